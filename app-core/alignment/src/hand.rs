@@ -53,7 +53,11 @@ pub(crate) fn photograph_from_plate(level: &Level) -> Option<DQuat> {
     let [photograph, plate] = [&level.frame, plate].map(|picture| Gray {
         size_px: picture.size_px,
         values: places(picture.size_px)
-            .map(|at| picture.get(at).map_or(f32::NAN, |[r, g, b]| (r + g + b).max(0.0).sqrt()))
+            .map(|at| {
+                picture
+                    .get(at)
+                    .map_or(f32::NAN, |[r, g, b]| (r + g + b).max(0.0).sqrt())
+            })
             .collect(),
     });
     let matches: Vec<Match> = photograph
@@ -75,7 +79,9 @@ pub(crate) fn photograph_from_plate(level: &Level) -> Option<DQuat> {
         };
         matches.iter().filter(agrees).count()
     };
-    let rotations = hypotheses(&matches).into_iter().map(|rotation| (n_agreeing(&rotation), rotation));
+    let rotations = hypotheses(&matches)
+        .into_iter()
+        .map(|rotation| (n_agreeing(&rotation), rotation));
     let rotations: Vec<(usize, DQuat)> = rotations.collect();
     let n_best = rotations.iter().map(|(n, _)| *n).max()?;
     let is_best = |n: usize| n as f64 >= SAME * n_best as f64;
@@ -127,7 +133,9 @@ fn rotation_of(photograph: [DVec3; 2], plate: [DVec3; 2]) -> Option<DQuat> {
         let z = a.cross(b).try_normalize()?;
         Some(DMat3::from_cols(x, z.cross(x), z))
     };
-    Some(DQuat::from_mat3(&(frame(photograph)? * frame(plate)?.transpose())))
+    Some(DQuat::from_mat3(
+        &(frame(photograph)? * frame(plate)?.transpose()),
+    ))
 }
 
 impl Gray {
@@ -197,7 +205,11 @@ impl Gray {
             *value = self.at(place + 2 * step - HALF_PX);
         }
         let mean = patch.iter().sum::<f32>() / 49.0;
-        let length = patch.iter().map(|value| (value - mean).powi(2)).sum::<f32>().sqrt();
+        let length = patch
+            .iter()
+            .map(|value| (value - mean).powi(2))
+            .sum::<f32>()
+            .sqrt();
         (length.is_finite() && length > 0.0).then(|| patch.map(|value| (value - mean) / length))
     }
 }

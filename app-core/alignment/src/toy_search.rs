@@ -170,7 +170,11 @@ fn follow(
         let found = Finder::default().find(photograph, known, uncertainty)?;
         let (camera, _) = corrected(&input.camera, Some(found));
         let moved = input.camera.world_from_camera * camera.world_from_camera.inverse();
-        loss = Some(if camera == input.camera { found.losses[0] } else { found.losses[1] });
+        loss = Some(if camera == input.camera {
+            found.losses[0]
+        } else {
+            found.losses[1]
+        });
         plate.camera.world_from_camera = moved * plate.camera.world_from_camera;
     }
     loss
@@ -267,10 +271,13 @@ impl<'a> Search<'a> {
                 None => poses.push((*one, 1)),
             }
         }
-        let alone_px = if self.scene.plates.is_empty() { 0.0 } else { ALONE_PX };
-        let is_supported = |(pose, support): &(Followed, usize)| {
-            *support >= LEAST_SUPPORT || pose.outline_px <= alone_px
+        let alone_px = if self.scene.plates.is_empty() {
+            0.0
+        } else {
+            ALONE_PX
         };
+        let is_supported =
+            |(pose, support): &(Followed, usize)| *support >= LEAST_SUPPORT || pose.outline_px <= alone_px;
         let supported = poses.into_iter().filter(is_supported);
         supported.map(|(pose, _)| pose).collect()
     }

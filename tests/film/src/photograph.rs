@@ -259,7 +259,8 @@ fn focal_35mm(bytes: &[u8]) -> Option<f64> {
 
 /// What a file is that is neither PNG nor JPEG.
 fn foreign(bytes: &[u8]) -> PhotographReason {
-    const PHONE: &str = "on an iPhone choose Settings, Camera, Formats, Most Compatible, or export the photograph as JPEG";
+    const PHONE: &str =
+        "on an iPhone choose Settings, Camera, Formats, Most Compatible, or export the photograph as JPEG";
     const CAMERA: &str = "develop it, and export it as PNG or JPEG in sRGB";
     const OTHER: &str = "export it as PNG or JPEG";
     let brand = bytes.get(4..12).filter(|box_| box_.starts_with(b"ftyp"));

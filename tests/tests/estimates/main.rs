@@ -6,6 +6,7 @@ mod alignment;
 mod bundled;
 mod discovery;
 mod focal_length;
+mod from_photographs;
 mod lens_found;
 mod model;
 mod moved_lights;

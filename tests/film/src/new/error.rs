@@ -33,7 +33,9 @@ pub enum NewError {
         expected_px: [u32; 2],
     },
     /// The model's unit is no metre.
-    #[error("the model is {own:.4} units high, which are hardly metres: say the toy's --height, such as 12cm")]
+    #[error(
+        "the model is {own:.4} units high, which are hardly metres: say the toy's --height, such as 12cm"
+    )]
     NoHeight {
         /// Its height.
         own: f64,

@@ -1,7 +1,9 @@
 //! Where toy, table, cameras and lights are, by the photographs.
 
 use anyhow::Context;
-use app_core::alignment::{Aligner, Alignment, AlignmentWarning, FoundToy, Outlines, PoseAlignment, find_toy};
+use app_core::alignment::{
+    Aligner, Alignment, AlignmentWarning, FoundToy, Outlines, PoseAlignment, find_toy,
+};
 use app_core::frame::FrameInput;
 use app_core::scene::{Camera, Image, Light, Plate, PoseUncertainty, Receiver, Scene, Surface};
 use desk::check::overlay;
@@ -53,7 +55,10 @@ pub(super) fn find(given: &Given, wanted: &Wanted) -> anyhow::Result<Found> {
         [] => return Err(not_found(given, search.nearest_px).into()),
         [toy] => toy.clone(),
         several => {
-            let mut sides: Vec<Side> = several.iter().map(|toy| Side::of_turn(turn_rad(toy, given))).collect();
+            let mut sides: Vec<Side> = several
+                .iter()
+                .map(|toy| Side::of_turn(turn_rad(toy, given)))
+                .collect();
             sides.dedup();
             return Err(NewError::Ambiguous { sides }.into());
         }
@@ -62,7 +67,10 @@ pub(super) fn find(given: &Given, wanted: &Wanted) -> anyhow::Result<Found> {
     for world_from_table in &toy.world_from_tables {
         let laid = world_from_camera(given, wanted, &toy, world_from_table);
         let other = aligned(given, (&scene, &search.plate_cameras), &toy, &laid)?;
-        if found.as_ref().is_none_or(|found| other.unexplained() < found.unexplained()) {
+        if found
+            .as_ref()
+            .is_none_or(|found| other.unexplained() < found.unexplained())
+        {
             found = Some(other);
         }
     }
@@ -102,7 +110,12 @@ fn aligned(
     let mut scene = Scene::clone(aligner.scene());
     let input = alignment.applied_to(&input);
     let is_found = |_: &&_| alignment.report.assumed.is_none();
-    scene.lights = alignment.lights.as_deref().filter(is_found).unwrap_or_default().to_vec();
+    scene.lights = alignment
+        .lights
+        .as_deref()
+        .filter(is_found)
+        .unwrap_or_default()
+        .to_vec();
     scene.world_from_object = input.world_from_object;
     Ok(Found {
         turn_rad: turn_rad(toy, given),
@@ -151,7 +164,9 @@ fn table(world_from_plane: DMat4, given: &Given) -> Receiver {
 fn not_found(given: &Given, nearest_px: Option<f64>) -> NewError {
     let reached = match nearest_px {
         None => "too little of any outline is seen".to_owned(),
-        Some(px) => format!("the nearest outline stays {px:.1} px from the photograph's, or is met by chance alone"),
+        Some(px) => {
+            format!("the nearest outline stays {px:.1} px from the photograph's, or is met by chance alone")
+        }
     };
     let plate = if given.plates.is_empty() {
         "Photograph the place without the toy as well, from the same stand. "
@@ -200,7 +215,11 @@ impl Found {
     pub(super) fn drawn(&self, given: &Given) -> anyhow::Result<Image> {
         let mut picture = given.photograph.image.clone();
         overlay::receivers(&mut picture, &self.scene, &self.input);
-        overlay::outlines(&mut picture, &Outlines::of(&self.scene, &self.input)?, overlay::ALIGNED);
+        overlay::outlines(
+            &mut picture,
+            &Outlines::of(&self.scene, &self.input)?,
+            overlay::ALIGNED,
+        );
         Ok(picture)
     }
 
@@ -250,7 +269,12 @@ impl Found {
                 slope_rad.to_degrees()
             ));
         }
-        if let Some(part) = self.alignment.report.unexplained.filter(|part| *part > UNEXPLAINED) {
+        if let Some(part) = self
+            .alignment
+            .report
+            .unexplained
+            .filter(|part| *part > UNEXPLAINED)
+        {
             warnings.push(format!(
                 "{:.0} % of the shadow stays unexplained: look at the drawing before going on",
                 100.0 * part

@@ -102,10 +102,14 @@ fn read(wanted: &Wanted) -> anyhow::Result<Given> {
     for plate in &plates {
         same_size(plate, &photograph)?;
     }
-    let stated_px = wanted.focal_35mm.map(|focal_35mm| focal_px(focal_35mm, &photograph.image));
-    let focal_px = stated_px.or(photograph.focal_px).ok_or_else(|| NewError::NoFocalLength {
-        path: photograph.path.clone(),
-    })?;
+    let stated_px = wanted
+        .focal_35mm
+        .map(|focal_35mm| focal_px(focal_35mm, &photograph.image));
+    let focal_px = stated_px
+        .or(photograph.focal_px)
+        .ok_or_else(|| NewError::NoFocalLength {
+            path: photograph.path.clone(),
+        })?;
     let (toy, toy_bytes) = read_toy(&wanted.toy)?;
     let pose = match &wanted.moment {
         None => Pose::Authored,
@@ -156,7 +160,11 @@ fn same_size(plate: &Photograph, photograph: &Photograph) -> Result<(), NewError
 fn read_toy(path: &Path) -> anyhow::Result<(Toy, Vec<u8>)> {
     let name = path.display().to_string();
     let length = std::fs::metadata(path).with_context(|| name.clone())?.len();
-    anyhow::ensure!(length <= MOST_TOY_BYTES, "{name}: is larger than {} MiB", MOST_TOY_BYTES >> 20);
+    anyhow::ensure!(
+        length <= MOST_TOY_BYTES,
+        "{name}: is larger than {} MiB",
+        MOST_TOY_BYTES >> 20
+    );
     let bytes = std::fs::read(path).with_context(|| name.clone())?;
     Ok((Toy::from_glb(&name, &bytes)?, bytes))
 }
@@ -165,7 +173,13 @@ fn read_toy(path: &Path) -> anyhow::Result<(Toy, Vec<u8>)> {
 fn upright([min, max]: [DVec3; 2], wanted: &Wanted) -> Result<DMat4, NewError> {
     let turn = DMat4::from_quat(glam::DQuat::from_rotation_arc(wanted.up, DVec3::Y));
     let heights = (0..8).map(|corner| {
-        let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
+        let pick = |axis: usize| {
+            if corner >> axis & 1 == 0 {
+                min[axis]
+            } else {
+                max[axis]
+            }
+        };
         turn.transform_point3(DVec3::new(pick(0), pick(1), pick(2))).y
     });
     let (lowest, highest) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), y| {

@@ -27,12 +27,16 @@ pub(super) fn higher_m(
 ) -> anyhow::Result<Option<f64>> {
     let step_m = STEP * diagonal_m;
     let loss = |height_m: f64| -> anyhow::Result<Option<f64>> {
-        Ok(aligned_at(scene, input, lights, height_m)?.report.light_errors.map(|[_, found]| found))
+        Ok(aligned_at(scene, input, lights, height_m)?
+            .report
+            .light_errors
+            .map(|[_, found]| found))
     };
     let losses = thread::scope(|threads| {
         let others = [-step_m, step_m].map(|height_m| threads.spawn(move || loss(height_m)));
         let own = loss(0.0);
-        let [lower, higher] = others.map(|thread| thread.join().map_err(|_| anyhow::anyhow!("a thread ended early")));
+        let [lower, higher] =
+            others.map(|thread| thread.join().map_err(|_| anyhow::anyhow!("a thread ended early")));
         anyhow::Ok([lower??, own?, higher??])
     })?;
     let [Some(lower), Some(own), Some(higher)] = losses else {
@@ -50,10 +54,12 @@ pub(super) fn aligned_at(
     lights: &[Light],
     height_m: f64,
 ) -> anyhow::Result<Alignment> {
-    let mut scene = scene.clone().with_lights(lights.to_vec()).with_resting(Some(false));
+    let mut scene = scene
+        .clone()
+        .with_lights(lights.to_vec())
+        .with_resting(Some(false));
     for receiver in &mut scene.receivers {
-        receiver.world_from_plane =
-            DMat4::from_translation(height_m * DVec3::Y) * receiver.world_from_plane;
+        receiver.world_from_plane = DMat4::from_translation(height_m * DVec3::Y) * receiver.world_from_plane;
     }
     Ok(Aligner::new(scene).align(input)?)
 }

@@ -91,7 +91,8 @@ impl FromStr for View {
                 "high" => Some(Height::High),
                 _ => None,
             };
-            let is_said_twice = (side.is_some() && view.side.is_some()) || (height.is_some() && view.height.is_some());
+            let is_said_twice =
+                (side.is_some() && view.side.is_some()) || (height.is_some() && view.height.is_some());
             if is_said_twice || (side.is_none() && height.is_none()) {
                 return Err(format!(
                     "{text:?} is not one of front, left, back and right, with low or high after a comma"
@@ -109,7 +110,9 @@ impl View {
     #[must_use]
     pub fn directions(self) -> Vec<ViewDirection> {
         let turns: Vec<f64> = match self.side {
-            None => (0..N_TURNS).map(|turn| TAU * f64::from(turn) / f64::from(N_TURNS)).collect(),
+            None => (0..N_TURNS)
+                .map(|turn| TAU * f64::from(turn) / f64::from(N_TURNS))
+                .collect(),
             Some(side) => (-BESIDE..=BESIDE)
                 .map(|step| side.turn_rad() + BESIDE_RAD * f64::from(step))
                 .collect(),
