@@ -2,3 +2,6 @@
 //! photographed one by one get their in-between frames.
 
 #![forbid(unsafe_code)]
+
+pub mod animate;
+pub mod small;

@@ -43,6 +43,26 @@ impl ClipReach {
         })
     }
 
+    /// All that a scene says will be shown: poses at places in anchor space, and the physical pose.
+    pub(crate) fn of_film<'a>(
+        toy: &Toy,
+        (physical, anchor_from_object): (&Pose, &DMat4),
+        film: impl Iterator<Item = (&'a Pose, DMat4)>,
+        posed: &mut PosedMesh,
+    ) -> Result<Self, ToyError> {
+        toy.pose(physical, anchor_from_object, posed)?;
+        let mut outline = Outline::around(posed);
+        for (pose, anchor_from_shown) in film {
+            toy.pose(pose, &anchor_from_shown, posed)?;
+            posed.points().for_each(|p| outline.include(p));
+        }
+        Ok(Self {
+            clip: None,
+            bounds: Bounds::around(outline.points()),
+            outline,
+        })
+    }
+
     /// Includes a pose of the same toy, from a tracker or between the moments; returns whether the bounds grew.
     pub(crate) fn grow(&mut self, posed: &PosedMesh) -> bool {
         let mut has_grown = false;

@@ -1,8 +1,9 @@
 //! The footprint of a frame: its view, work region and plates; or why the frame passes through.
 
+use std::mem;
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 use super::Stage;
 use crate::frame::FrameReport;
@@ -18,8 +19,8 @@ use crate::plates::choice::{PlateChoice, choose, covered_fraction, plate_views};
 use crate::preset::Settings;
 use app_scene::frame::FrameInput;
 use app_scene::geometry::bounds::Bounds;
-use app_scene::scene::Camera;
-use app_scene::toy::ToyError;
+use app_scene::scene::{Camera, Shown};
+use app_scene::toy::{ClipId, ToyError};
 
 /// What a new region has on each side beyond what it needs, so that a pose that reaches a little farther is no new view.
 pub(super) const SPARE_PX: u32 = 8;
@@ -147,15 +148,14 @@ impl Stage {
     /// further places are only known when they come.
     fn reach_shown_pose(&mut self, input: &FrameInput) -> Result<(), ToyError> {
         let clip = input.shown_pose.clip();
-        let anchor_from_shown = self.anchor_from_shown(input);
-        let known = self.reach.take().filter(|known| known.clip == clip);
+        let anchor_from_shown = self.anchor_from_shown(input.world_from_shown.as_ref());
+        let is_film = !self.scene.film.is_empty();
+        let known = self.reach.take().filter(|known| is_film || known.clip == clip);
         let mut reach = match known {
             Some(known) => known,
             None => {
                 self.cached_footprint = None;
-                let physical = (&self.scene.physical_pose, &self.anchor_from_object());
-                let shown = (clip, &anchor_from_shown);
-                ClipReach::new(&self.scene.toy, physical, shown, &mut self.posed)?
+                self.first_reach(clip, &anchor_from_shown)?
             }
         };
         let shown = &input.shown_pose;
@@ -165,6 +165,30 @@ impl Stage {
         }
         self.reach = Some(reach);
         Ok(())
+    }
+}
+
+impl Stage {
+    /// What the film reaches, where there is one; else what a clip reaches at a place.
+    fn first_reach(
+        &mut self,
+        clip: Option<ClipId>,
+        anchor_from_shown: &DMat4,
+    ) -> Result<ClipReach, ToyError> {
+        let mut posed = mem::take(&mut self.posed);
+        let anchor_from_object = self.anchor_from_object();
+        let physical = (&self.scene.physical_pose, &anchor_from_object);
+        let toy = &self.scene.toy;
+        let film = self.scene.film.iter();
+        let reach = if self.scene.film.is_empty() {
+            ClipReach::new(toy, physical, (clip, anchor_from_shown), &mut posed)
+        } else {
+            let place = |shown: &Shown| self.anchor_from_shown(shown.world_from_shown.as_ref());
+            let film = film.map(|shown| (&shown.pose, place(shown)));
+            ClipReach::of_film(toy, physical, film, &mut posed)
+        };
+        self.posed = posed;
+        reach
     }
 }
 

@@ -94,8 +94,7 @@ impl Stage {
     }
 
     /// To the anchor from the object where it is shown: with no place of its own, where it stands.
-    pub(super) fn anchor_from_shown(&self, input: &FrameInput) -> DMat4 {
-        let world_from_shown = input.world_from_shown.as_ref();
+    pub(super) fn anchor_from_shown(&self, world_from_shown: Option<&DMat4>) -> DMat4 {
         self.layout().world_from_anchor().inverse() * *world_from_shown.unwrap_or(&self.world_from_object)
     }
 

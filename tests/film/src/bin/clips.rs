@@ -1,0 +1,3 @@
+//! A program for animators.
+
+fn main() {}
