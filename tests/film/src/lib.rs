@@ -5,3 +5,4 @@
 
 pub mod animate;
 pub mod small;
+pub mod thumbnail;
