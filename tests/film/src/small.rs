@@ -32,7 +32,11 @@ pub fn shrunk(picture: &RgbImage, side_px: u32) -> RgbImage {
 /// The code of a linear value.
 #[must_use]
 pub fn code(linear: f32) -> u8 {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 255")]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to 255"
+    )]
     {
         (255.0 * srgb_from_linear(linear.clamp(0.0, 1.0))).round() as u8
     }
@@ -46,11 +50,7 @@ pub fn sheet(pictures: &[RgbImage], n_columns: u32, gap_px: u32) -> RgbImage {
     let n_columns = n_columns.clamp(1, n_pictures.max(1));
     let n_rows = n_pictures.div_ceil(n_columns).max(1);
     let side = |n: u32, px: u32| n * (px + gap_px) + gap_px;
-    let mut sheet = RgbImage::from_pixel(
-        side(n_columns, width_px),
-        side(n_rows, height_px),
-        Rgb([32; 3]),
-    );
+    let mut sheet = RgbImage::from_pixel(side(n_columns, width_px), side(n_rows, height_px), Rgb([32; 3]));
     for (place, picture) in (0..n_pictures).zip(pictures) {
         let x = side(place % n_columns, width_px);
         let y = side(place / n_columns, height_px);

@@ -1,7 +1,7 @@
 //! A plain shaded picture of a toy, drawn on the processor.
 
-use app_core::toy::{Material, PosedMesh, Toy, ToyError, Wrap};
 use app_core::scene::Pose;
+use app_core::toy::{Material, PosedMesh, Toy, ToyError, Wrap};
 use app_scene::geometry::color::linear_of_codes;
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use image::{Rgb, RgbImage};
@@ -35,8 +35,8 @@ impl Stand {
     /// # Errors
     /// When a pose is none of the toy's.
     pub fn new(toy: &Toy, poses: &[Pose]) -> Result<Self, ToyError> {
-        let view_from_object = DMat4::from_rotation_x(PITCH_DEG.to_radians())
-            * DMat4::from_rotation_y(YAW_DEG.to_radians());
+        let view_from_object =
+            DMat4::from_rotation_x(PITCH_DEG.to_radians()) * DMat4::from_rotation_y(YAW_DEG.to_radians());
         let mut posed = PosedMesh::default();
         let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for pose in poses {
@@ -63,11 +63,19 @@ impl Stand {
         toy.pose(pose, &self.view_from_object, &mut posed)?;
         let side = f64::from(side_px * N_SAMPLES);
         let extent = (self.max - self.min).truncate().max_element();
-        let scale = if extent > 0.0 { (1.0 - 2.0 * MARGIN) * side / extent } else { 0.0 };
+        let scale = if extent > 0.0 {
+            (1.0 - 2.0 * MARGIN) * side / extent
+        } else {
+            0.0
+        };
         let centre = 0.5 * (self.min + self.max);
         let on_picture = |point: DVec3| {
             let at = (point - centre) * scale;
-            Vec3::new((0.5 * side + at.x) as f32, (0.5 * side - at.y) as f32, at.z as f32)
+            Vec3::new(
+                (0.5 * side + at.x) as f32,
+                (0.5 * side - at.y) as f32,
+                at.z as f32,
+            )
         };
         let points: Vec<Vec3> = posed.points().map(on_picture).collect();
         let mut canvas = Canvas::new(side_px * N_SAMPLES);
@@ -99,10 +107,15 @@ impl Stand {
         let mut color = Vec3::ZERO;
         for (corner, weight) in corners.into_iter().zip(weights) {
             normal += weight * posed.normals[corner];
-            uv += weight * toy.uvs().get(corner).map_or(Vec2::ZERO, |uv| Vec2::from_array(*uv));
-            color += weight * toy.colors_linear().map_or(Vec3::ONE, |colors| {
-                Vec3::new(colors[corner][0], colors[corner][1], colors[corner][2])
-            });
+            uv += weight
+                * toy
+                    .uvs()
+                    .get(corner)
+                    .map_or(Vec2::ZERO, |uv| Vec2::from_array(*uv));
+            color += weight
+                * toy.colors_linear().map_or(Vec3::ONE, |colors| {
+                    Vec3::new(colors[corner][0], colors[corner][1], colors[corner][2])
+                });
         }
         let [r, g, b, _] = material.base_color_linear;
         let albedo = color * Vec3::new(r, g, b) * self.texel(toy, material, uv);
@@ -139,7 +152,11 @@ fn texel_index(coordinate: f32, wrap: Wrap, side_px: u32) -> usize {
         Wrap::MirroredRepeat => 1.0 - (coordinate.rem_euclid(2.0) - 1.0).abs(),
         Wrap::ClampToEdge => coordinate.clamp(0.0, 1.0),
     };
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the texture")]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped to the texture"
+    )]
     {
         ((share * side_px as f32) as usize).min(side_px.saturating_sub(1) as usize)
     }
@@ -168,7 +185,11 @@ impl Canvas {
         }
         let side_px = self.picture.width();
         let pixels = |low: f32, high: f32| {
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the picture")]
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "clamped to the picture"
+            )]
             let [low, high] = [low, high].map(|at| at.clamp(0.0, side_px as f32) as u32);
             low..(high + 1).min(side_px)
         };

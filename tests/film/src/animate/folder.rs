@@ -133,7 +133,11 @@ impl FilmFolder {
         );
         let lock_path = path.join(LOCK_FILE);
         let lock = File::create(&lock_path).with_context(|| lock_path.display().to_string())?;
-        let locked = if is_shared { lock.try_lock_shared() } else { lock.try_lock() };
+        let locked = if is_shared {
+            lock.try_lock_shared()
+        } else {
+            lock.try_lock()
+        };
         match locked {
             Err(TryLockError::WouldBlock) => {
                 bail!("{}: another run is making a film there", path.display())

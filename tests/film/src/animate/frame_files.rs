@@ -23,7 +23,9 @@ pub enum PatternError {
     #[error("\"{0}\" must have one run of #, such as shot_####: a frame's number stands there")]
     Runs(String),
     /// Not a name of a file.
-    #[error("\"{0}\" must be the name of a file, of letters, digits, spaces and . _ - ( ) alone, and begin with none of . and -")]
+    #[error(
+        "\"{0}\" must be the name of a file, of letters, digits, spaces and . _ - ( ) alone, and begin with none of . and -"
+    )]
     Signs(String),
 }
 
@@ -68,7 +70,11 @@ impl NamePattern {
     /// The file of a frame.
     #[must_use]
     pub fn file(&self, number: u32) -> String {
-        let Self { before, n_digits, after } = self;
+        let Self {
+            before,
+            n_digits,
+            after,
+        } = self;
         format!("{before}{number:0n_digits$}{after}.png")
     }
 }

@@ -42,7 +42,9 @@ pub enum Item {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum GrammarError {
     /// There is nothing between two commas, or nothing at all.
-    #[error("item {number} is empty: an item is a clip such as Look, Look*2, Look@0.5x, Look*2@-1x, or a hold such as hold:12")]
+    #[error(
+        "item {number} is empty: an item is a clip such as Look, Look*2, Look@0.5x, Look*2@-1x, or a hold such as hold:12"
+    )]
     Empty {
         /// From 1.
         number: usize,
@@ -60,7 +62,9 @@ pub enum GrammarError {
         clips: Vec<String>,
     },
     /// A speed that is none.
-    #[error("item {number}, \"{item}\": \"{speed}\" is no speed: one is such as 0.5x, from 0.01x to 100x, or below zero to run backwards")]
+    #[error(
+        "item {number}, \"{item}\": \"{speed}\" is no speed: one is such as 0.5x, from 0.01x to 100x, or below zero to run backwards"
+    )]
     Speed {
         /// From 1.
         number: usize,
@@ -104,7 +108,13 @@ fn known(clips: &[String]) -> String {
 pub fn items(text: &str, clips: &[ClipFacts]) -> Result<Vec<Item>, GrammarError> {
     let texts = text.split(',').map(str::trim).enumerate();
     let items: Vec<Item> = texts
-        .map(|(index, text)| ItemText { number: index + 1, text }.item(clips))
+        .map(|(index, text)| {
+            ItemText {
+                number: index + 1,
+                text,
+            }
+            .item(clips)
+        })
         .collect::<Result<_, _>>()?;
     if items.iter().all(|item| matches!(item, Item::Hold { .. })) {
         return Err(GrammarError::HoldsAlone { clips: names(clips) });
@@ -119,7 +129,12 @@ fn names(clips: &[ClipFacts]) -> Vec<String> {
 /// A name wins over a number.
 fn find(name: &str, clips: &[ClipFacts]) -> Option<usize> {
     let by_name = clips.iter().position(|clip| clip.name == name);
-    let by_number = || name.strip_prefix('#')?.parse().ok().filter(|index| *index < clips.len());
+    let by_number = || {
+        name.strip_prefix('#')?
+            .parse()
+            .ok()
+            .filter(|index| *index < clips.len())
+    };
     by_name.or_else(by_number)
 }
 
@@ -160,15 +175,13 @@ impl ItemText<'_> {
             name: name.to_owned(),
             clips: names(clips),
         })?;
-        Ok(Item::Clip {
-            clip,
-            n_times,
-            speed,
-        })
+        Ok(Item::Clip { clip, n_times, speed })
     }
 
     fn speed(&self, text: &str) -> Result<f64, GrammarError> {
-        let number = text.strip_suffix('x').and_then(|number| number.parse::<f64>().ok());
+        let number = text
+            .strip_suffix('x')
+            .and_then(|number| number.parse::<f64>().ok());
         let allowed = MAX_SPEED.recip()..=MAX_SPEED;
         number
             .filter(|speed| allowed.contains(&speed.abs()))

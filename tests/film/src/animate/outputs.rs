@@ -41,7 +41,9 @@ pub fn write_xsheet(folder: &Path, film: &Film, clips: &[ClipFacts]) -> anyhow::
         let name = clips.get(clip).map_or("", |clip| clip.name.as_str());
         format!("\"{}\"", name.replace('"', "\"\""))
     };
-    let mut text = "frame,file,time_secs,clip,clip_time_secs,is_held,blend_from_clip,blend_from_time_secs,blend_share\n".to_owned();
+    let mut text =
+        "frame,file,time_secs,clip,clip_time_secs,is_held,blend_from_clip,blend_from_time_secs,blend_share\n"
+            .to_owned();
     for (index, frame) in film.frames.iter().enumerate() {
         let FilmFrame { number, file, pose } = frame;
         let time_secs = index as f64 / film.timing.fps;
@@ -125,7 +127,11 @@ fn write_apng(folder: &Path, film: &Film) -> anyhow::Result<()> {
         let mut encoder = png::Encoder::new(file, width_px, height_px);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_animated(u32::try_from(film.frames.len())?, 0)?;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 240 a second")]
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "at most 240 a second"
+        )]
         let centi_fps = (100.0 * film.timing.fps).round() as u16;
         encoder.set_frame_delay(100, centi_fps)?;
         let mut writer = encoder.write_header()?;
@@ -150,7 +156,11 @@ fn write_gif(folder: &Path, film: &Film) -> anyhow::Result<()> {
             let mut encoded = gif::Frame::from_rgb_speed(width_px, height_px, &small, GIF_SPEED);
             // Hundredths of a second, whose sum is the film's length.
             let end = (100.0 * (index + 1) as f64 / film.timing.fps).round();
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most a hundred")]
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "at most a hundred"
+            )]
             {
                 encoded.delay = (end - until) as u16;
             }
@@ -167,7 +177,16 @@ fn write_mp4(folder: &Path, film: &Film) -> anyhow::Result<bool> {
     let process = Command::new("ffmpeg")
         .args(["-y", "-loglevel", "error", "-f", "image2pipe", "-framerate"])
         .arg(film.timing.fps.to_string())
-        .args(["-i", "-", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", "-f", "mp4"])
+        .args([
+            "-i",
+            "-",
+            "-vf",
+            "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+            "-pix_fmt",
+            "yuv420p",
+            "-f",
+            "mp4",
+        ])
         .arg(&partial)
         .stdin(Stdio::piped())
         .spawn();

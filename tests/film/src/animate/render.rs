@@ -38,7 +38,10 @@ pub fn pose_of(toy: &Toy, frame: &FramePose) -> anyhow::Result<Pose> {
 }
 
 fn pose_at(toy: &Toy, moment: &Moment) -> anyhow::Result<Pose> {
-    let clip = toy.clip_ids().nth(moment.clip).context("film.json: a clip that the toy lacks")?;
+    let clip = toy
+        .clip_ids()
+        .nth(moment.clip)
+        .context("film.json: a clip that the toy lacks")?;
     Ok(Pose::Clip {
         clip,
         time_secs: moment.time_secs,
@@ -66,7 +69,11 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     let scene = alignments.scene(capture.scene());
     let toy = scene.toy.clone();
     core.set_scene(with_film(scene, &film, input.world_from_shown)?, preset)?;
-    let n_pictures = if core.is_software() { N_PICTURES_OF_PROCESS } else { usize::MAX };
+    let n_pictures = if core.is_software() {
+        N_PICTURES_OF_PROCESS
+    } else {
+        usize::MAX
+    };
     for frame in missing.into_iter().take(n_pictures) {
         let input = input.clone().with_shown_pose(pose_of(&toy, &frame.pose)?);
         let failed = || frame.file.clone();
@@ -103,7 +110,9 @@ fn with_film(scene: Scene, film: &Film, world_from_shown: Option<glam::DMat4>) -
 #[must_use]
 pub fn missing<'a>(folder: &Path, film: &'a Film, range: &Range<u32>) -> Vec<&'a FilmFrame> {
     let frames = film.frames.iter().filter(|frame| range.contains(&frame.number));
-    frames.filter(|frame| !folder.join(&frame.file).exists()).collect()
+    frames
+        .filter(|frame| !folder.join(&frame.file).exists())
+        .collect()
 }
 
 /// Whoever began this process holds the other end of its standard input, and lets it go when it ends, however that is.

@@ -9,8 +9,8 @@ use std::{env, fs};
 
 use anyhow::{Context, ensure};
 use app_core::preset::Preset;
-use app_core::session::{Capture, MAX_INDEX_BYTES, Session};
 use app_core::session::Files;
+use app_core::session::{Capture, MAX_INDEX_BYTES, Session};
 use app_core::toy::Toy;
 use desk::alignment::{Alignments, Asked};
 use desk::check::aligned_session;
@@ -83,9 +83,9 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
     let all = order.start..last.number + 1;
     let range = match &order.frames {
         None => all.clone(),
-        Some(asked) => asked.within(&all).with_context(|| {
-            format!("--frames: the film has frames {} to {}", all.start, last.number)
-        })?,
+        Some(asked) => asked
+            .within(&all)
+            .with_context(|| format!("--frames: the film has frames {} to {}", all.start, last.number))?,
     };
     let is_part = order.frames.is_some();
     let folder = FilmFolder::take(&order.out, is_part)?;
@@ -184,9 +184,15 @@ fn make(order: &Order, folder: &Path, film: &Film, range: &Range<u32>) -> anyhow
             progress.next();
         }
         let status = process.wait()?;
-        ensure!(status.success(), "the process that makes the pictures has ended with {status}");
+        ensure!(
+            status.success(),
+            "the process that makes the pictures has ended with {status}"
+        );
         let n_left = missing(folder, film, range).len();
-        ensure!(n_left < n_missing, "the process that makes the pictures has made none");
+        ensure!(
+            n_left < n_missing,
+            "the process that makes the pictures has made none"
+        );
         n_missing = n_left;
     }
     progress.0.finish_and_clear();
@@ -214,7 +220,10 @@ impl Progress {
         let (position, length) = (self.0.position(), self.0.length().unwrap_or_default());
         if self.1 && (position.is_multiple_of(24) || position == length) {
             let left_secs = self.0.elapsed().as_secs_f64() / position as f64 * (length - position) as f64;
-            let _ = writeln!(io::stderr(), "{position} of {length} pictures, {left_secs:.0} s left");
+            let _ = writeln!(
+                io::stderr(),
+                "{position} of {length} pictures, {left_secs:.0} s left"
+            );
         }
     }
 }

@@ -178,9 +178,17 @@ pub fn frames(items: &[Item], clips: &[ClipFacts], timing: &Timing) -> Result<Ve
     let segments = segments(items, clips, timing);
     let length = segments.last().map_or(0.0, |last| last.start + last.length);
     let from = timing.from_secs * timing.fps;
-    let to = timing.to_secs.map_or(length, |secs| (secs * timing.fps).min(length));
+    let to = timing
+        .to_secs
+        .map_or(length, |secs| (secs * timing.fps).min(length));
     // The last pose of a clip is shown, too, unless the first one follows it; a hold already shows its own long enough.
-    let ends_in_clip = matches!(segments.last(), Some(Segment { shows: Shows::Clip(_), .. }));
+    let ends_in_clip = matches!(
+        segments.last(),
+        Some(Segment {
+            shows: Shows::Clip(_),
+            ..
+        })
+    );
     let is_whole = timing.to_secs.is_none_or(|_| to >= length);
     let is_end_shown = timing.end != End::Loop && ends_in_clip && is_whole;
     let span = to - from;
@@ -199,7 +207,11 @@ pub fn frames(items: &[Item], clips: &[ClipFacts], timing: &Timing) -> Result<Ve
     if n_frames > f64::from(MAX_FRAMES) {
         return Err(TimelineError::TooLong { n_frames });
     }
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to the most")]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to the most"
+    )]
     let n_frames = n_frames as u32;
     let on = timing.on.max(1);
     let shown = |frame: u32| pose_at(&segments, timing, from + f64::from(frame - frame % on));
@@ -284,7 +296,11 @@ fn pose_at(segments: &[Segment], timing: &Timing, at: f64) -> Option<FramePose> 
         Shows::Clip(played) => played,
     };
     let reached = passed / segment.length;
-    let reached = if segment.length - passed < ROUNDING_FRAMES { 1.0 } else { reached };
+    let reached = if segment.length - passed < ROUNDING_FRAMES {
+        1.0
+    } else {
+        reached
+    };
     let n_blend = f64::from(timing.n_blend_frames).min(segment.length);
     let share = smooth(((passed + 1.0) / (n_blend + 1.0)).min(1.0));
     Some(FramePose {

@@ -107,10 +107,17 @@ fn render_part(folder: &Path, args: &Args) -> anyhow::Result<()> {
     let first = film.frames.first().context("a film without frames")?.number;
     let last = film.frames.last().context("a film without frames")?.number;
     let all = first..last + 1;
-    let range = args.frames.as_ref().map_or(Some(all.clone()), |frames| frames.within(&all));
+    let range = args
+        .frames
+        .as_ref()
+        .map_or(Some(all.clone()), |frames| frames.within(&all));
     let adapter = args.adapter.clone();
     let adapter = adapter.map_or(AdapterChoice::Fastest, AdapterChoice::Named);
-    render(folder, &range.context("--frames: the film has no such frames")?, &adapter)
+    render(
+        folder,
+        &range.context("--frames: the film has no such frames")?,
+        &adapter,
+    )
 }
 
 fn order(args: Args) -> anyhow::Result<Order> {
@@ -156,8 +163,14 @@ fn default_out(session: &Path) -> anyhow::Result<PathBuf> {
     let session = session
         .canonicalize()
         .with_context(|| session.display().to_string())?;
-    let name = if session.is_file() { session.file_stem() } else { session.file_name() };
-    Ok(repository().join(RESULTS).join(name.unwrap_or("session".as_ref())))
+    let name = if session.is_file() {
+        session.file_stem()
+    } else {
+        session.file_name()
+    };
+    Ok(repository()
+        .join(RESULTS)
+        .join(name.unwrap_or("session".as_ref())))
 }
 
 fn parse_fps(text: &str) -> Result<f64, String> {

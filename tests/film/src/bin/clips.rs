@@ -76,14 +76,26 @@ fn read(path: &Path) -> anyhow::Result<Toy> {
 
 fn table(toy: &Toy) -> String {
     let names = toy.clip_names();
-    let width = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(4);
-    let lines = names.iter().zip(toy.clips()).enumerate().map(|(index, (name, clip))| {
-        let secs = clip.duration_secs;
-        // The first and the last pose are both shown.
-        let n_frames = (secs * FPS + 1e-6).floor() + 1.0;
-        format!("#{index:<4} {name:width$} {secs:>9.3} {n_frames:>10}\n")
-    });
-    let head = format!("{:5} {:width$} {:>9} {:>10}\n", "", "clip", "seconds", "at 24 fps");
+    let width = names
+        .iter()
+        .map(|name| name.chars().count())
+        .max()
+        .unwrap_or(0)
+        .max(4);
+    let lines = names
+        .iter()
+        .zip(toy.clips())
+        .enumerate()
+        .map(|(index, (name, clip))| {
+            let secs = clip.duration_secs;
+            // The first and the last pose are both shown.
+            let n_frames = (secs * FPS + 1e-6).floor() + 1.0;
+            format!("#{index:<4} {name:width$} {secs:>9.3} {n_frames:>10}\n")
+        });
+    let head = format!(
+        "{:5} {:width$} {:>9} {:>10}\n",
+        "", "clip", "seconds", "at 24 fps"
+    );
     head + &lines.collect::<String>()
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use app_core::preset::Preset;
-use app_core::scene::Pose;
+use app_core::scene::{Pose, Shown};
 use app_core::toy::{NodePose, Trs};
 use glam::{DMat4, DQuat, DVec3};
 
@@ -74,6 +74,39 @@ fn the_physical_pose_at_another_place_does_not_pass_through() {
     };
     let made = [None, Some(place), Some(beside(&place))].map(&mut is_made);
     assert_eq!(made, [false, false, true]);
+}
+
+/// Frames of a film may be made in any order, and by different programs.
+#[test]
+fn a_frame_of_a_film_depends_on_no_other() {
+    let mut core = core();
+    let (scene, first) = (scene(), first_input());
+    let clip = first.shown_pose.clip().unwrap();
+    let moment = |time_secs| Pose::Clip { clip, time_secs };
+    let toy = &scene.toy;
+    let between = toy.blended(&moment(0.3), &moment(1.4), 0.5).unwrap();
+    let film = [moment(0.2), between, Pose::Authored, moment(1.2)].map(|pose| Shown {
+        pose,
+        world_from_shown: Some(beside(&first.world_from_object)),
+    });
+    let known = scene.clone().with_film(film.clone());
+    for preset in [Preset::Balanced, Preset::Paper] {
+        let mut made = |order: &[usize]| -> Vec<Vec<u8>> {
+            core.set_scene(known.clone(), preset).unwrap();
+            let shown = order.iter().map(|index| &film[*index]);
+            let inputs = shown.map(|shown| {
+                let input = first.clone().with_shown_pose(shown.pose.clone());
+                input.with_world_from_shown(shown.world_from_shown)
+            });
+            inputs.map(|input| picture_of(&mut core, &input)).collect()
+        };
+        let forth = made(&[0, 1, 2, 3]);
+        let mut back = made(&[3, 2, 1, 0]);
+        back.reverse();
+        assert!(forth == back, "{preset}");
+        assert!(forth[1..2] == made(&[1]), "{preset}");
+        assert!(forth[0] != forth[1], "{preset}");
+    }
 }
 
 #[test]
