@@ -71,11 +71,7 @@ impl Stand {
         let centre = 0.5 * (self.min + self.max);
         let on_picture = |point: DVec3| {
             let at = (point - centre) * scale;
-            Vec3::new(
-                (0.5 * side + at.x) as f32,
-                (0.5 * side - at.y) as f32,
-                at.z as f32,
-            )
+            DVec3::new(0.5 * side + at.x, 0.5 * side - at.y, at.z).as_vec3()
         };
         let points: Vec<Vec3> = posed.points().map(on_picture).collect();
         let mut canvas = Canvas::new(side_px * N_SAMPLES);

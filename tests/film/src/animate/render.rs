@@ -22,8 +22,8 @@ use desk::stored::Stored;
 use super::folder::{Film, FilmFolder, FilmFrame, SESSION_FOLDER};
 use super::timeline::{FramePose, Moment};
 
-/// Pictures that one process makes on a software driver: Mesa 22.3 keeps 2.3 MiB of each until the process ends.
-const N_PICTURES_OF_PROCESS: usize = 100;
+/// Pictures that one process makes on a software driver: Mesa 22.3 keeps some MiB of each until the process ends.
+const N_PICTURES_OF_PROCESS: usize = 50;
 
 /// The pose of a frame.
 ///
