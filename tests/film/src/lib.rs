@@ -3,6 +3,9 @@
 
 #![forbid(unsafe_code)]
 
+pub mod animate;
 pub mod length;
 pub mod new;
 pub mod photograph;
+pub mod small;
+pub mod thumbnail;

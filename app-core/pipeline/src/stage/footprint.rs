@@ -1,8 +1,9 @@
 //! The footprint of a frame: its view, work region and plates; or why the frame passes through.
 
+use std::mem;
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 use super::Stage;
 use crate::frame::FrameReport;
@@ -18,8 +19,8 @@ use crate::plates::choice::{PlateChoice, choose, covered_fraction, plate_views};
 use crate::preset::Settings;
 use app_scene::frame::FrameInput;
 use app_scene::geometry::bounds::Bounds;
-use app_scene::scene::Camera;
-use app_scene::toy::ToyError;
+use app_scene::scene::{Camera, Shown};
+use app_scene::toy::{ClipId, ToyError};
 
 /// What a new region has on each side beyond what it needs, so that a pose that reaches a little farther is no new view.
 pub(super) const SPARE_PX: u32 = 8;
@@ -80,8 +81,7 @@ impl Stage {
         input: &FrameInput,
     ) -> Result<Result<Arc<Footprint>, PassThrough>, ToyError> {
         let warned = |warning| Ok(Err(PassThrough::Warned(warning)));
-        let is_physical = input.shown_pose == self.scene.physical_pose;
-        if is_physical && !self.is_shadow_withheld {
+        if self.shows_what_is_there(input) && !self.is_shadow_withheld {
             return Ok(Err(PassThrough::PhysicalPose));
         }
         if input.effect == 0.0 {
@@ -134,29 +134,61 @@ impl Stage {
         })
     }
 
-    /// Poses the toy as it is to be shown, and makes `reach` hold it.
+    /// Whether the toy is to be shown as it really is and where it really stands.
+    fn shows_what_is_there(&self, input: &FrameInput) -> bool {
+        let is_elsewhere = input
+            .world_from_shown
+            .is_some_and(|world_from_shown| world_from_shown != input.world_from_object);
+        !is_elsewhere && input.shown_pose == self.scene.physical_pose
+    }
+
+    /// Poses the toy as and where it is to be shown, and makes `reach` hold it.
     ///
-    /// A clip is looked through at once, so that the region rarely grows while it plays; poses by nodes are only known when
-    /// they come.
+    /// A clip is looked through at once where it is shown first, so that the region rarely grows while it plays; poses by nodes and
+    /// further places are only known when they come.
     fn reach_shown_pose(&mut self, input: &FrameInput) -> Result<(), ToyError> {
         let clip = input.shown_pose.clip();
-        let (physical, anchor_from_object) = (&self.scene.physical_pose, self.anchor_from_object());
-        let known = self.reach.take().filter(|known| known.clip == clip);
+        let anchor_from_shown = self.anchor_from_shown(input.world_from_shown.as_ref());
+        let is_film = !self.scene.film.is_empty();
+        let known = self.reach.take().filter(|known| is_film || known.clip == clip);
         let mut reach = match known {
             Some(known) => known,
             None => {
                 self.cached_footprint = None;
-                let poses = (physical, clip);
-                ClipReach::new(&self.scene.toy, &anchor_from_object, poses, &mut self.posed)?
+                self.first_reach(clip, &anchor_from_shown)?
             }
         };
         let shown = &input.shown_pose;
-        self.scene.toy.pose(shown, &anchor_from_object, &mut self.posed)?;
+        self.scene.toy.pose(shown, &anchor_from_shown, &mut self.posed)?;
         if reach.grow(&self.posed) {
             self.cached_footprint = None;
         }
         self.reach = Some(reach);
         Ok(())
+    }
+}
+
+impl Stage {
+    /// What the film reaches, where there is one; else what a clip reaches at a place.
+    fn first_reach(
+        &mut self,
+        clip: Option<ClipId>,
+        anchor_from_shown: &DMat4,
+    ) -> Result<ClipReach, ToyError> {
+        let mut posed = mem::take(&mut self.posed);
+        let anchor_from_object = self.anchor_from_object();
+        let physical = (&self.scene.physical_pose, &anchor_from_object);
+        let toy = &self.scene.toy;
+        let film = self.scene.film.iter();
+        let reach = if self.scene.film.is_empty() {
+            ClipReach::new(toy, physical, (clip, anchor_from_shown), &mut posed)
+        } else {
+            let place = |shown: &Shown| self.anchor_from_shown(shown.world_from_shown.as_ref());
+            let film = film.map(|shown| (&shown.pose, place(shown)));
+            ClipReach::of_film(toy, physical, film, &mut posed)
+        };
+        self.posed = posed;
+        reach
     }
 }
 

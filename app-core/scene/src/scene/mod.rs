@@ -64,6 +64,18 @@ pub struct Scene {
     pub probe: Option<Probe>,
     /// How far camera, toy and lights may be off.
     pub uncertainty: Uncertainty,
+    /// All that frames will show, where that is known beforehand: what is learned then covers all of it from the first frame on, and no
+    /// frame depends on those that were shown before it. Empty where only time will tell.
+    pub film: Arc<[Shown]>,
+}
+
+/// A pose at a place.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shown {
+    /// The pose that the toy is shown in.
+    pub pose: Pose,
+    /// Where it is shown, if that is not where the real one stands.
+    pub world_from_shown: Option<DMat4>,
 }
 
 impl Scene {
@@ -85,6 +97,7 @@ impl Scene {
             plates: Vec::new(),
             probe: None,
             uncertainty: Uncertainty::default(),
+            film: Arc::default(),
         }
     }
 
@@ -151,6 +164,13 @@ impl Scene {
         self
     }
 
+    /// Sets all that frames will show.
+    #[must_use]
+    pub fn with_film(mut self, film: impl Into<Arc<[Shown]>>) -> Self {
+        self.film = film.into();
+        self
+    }
+
     /// Sets how far camera, toy and lights may be off.
     #[must_use]
     pub fn with_uncertainty(mut self, uncertainty: Uncertainty) -> Self {
@@ -162,6 +182,13 @@ impl Scene {
     pub fn check(&self) -> Result<(), InputError> {
         let similarity = check::similarity(self.world_from_object.to_cols_array());
         InputError::at("world_from_object", similarity)?;
+        for (index, shown) in self.film.iter().enumerate() {
+            let Some(world_from_shown) = &shown.world_from_shown else {
+                continue;
+            };
+            let similarity = check::similarity(world_from_shown.to_cols_array());
+            InputError::at(&format!("film[{index}].world_from_shown"), similarity)?;
+        }
         let size = check::picture_size(self.width_px, self.height_px);
         InputError::at("width_px, height_px", size)?;
         if self.receivers.is_empty() {

@@ -1,0 +1,262 @@
+//! A film's folder: what is in it is the film's own, and `film.json` says what each of its pictures shows.
+//!
+//! `film.json` is written before any picture, and pictures that it says otherwise of are removed before that. So a picture that is
+//! there is always the one that `film.json` says, whenever a run is ended.
+
+use std::fs::{File, TryLockError};
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+use anyhow::{Context, bail, ensure};
+use app_core::preset::Preset;
+use app_core::session::Files;
+use desk::output::{make_folder, remove_file, write_whole};
+use desk::stored::Stored;
+use serde::{Deserialize, Serialize};
+
+use super::timeline::{FramePose, Timing};
+
+/// What a film is.
+pub const FILM_FILE: &str = "film.json";
+/// The aligned session that its frames are made from, in the film's folder.
+pub const SESSION_FOLDER: &str = "session";
+const LOCK_FILE: &str = "film.lock";
+const TURN_FILE: &str = "begin.lock";
+const MAX_SESSION_FILE_BYTES: u64 = 1 << 30;
+
+/// What decides each pixel of a film.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Film {
+    /// Version of the program.
+    pub version: String,
+    /// Name of the session.
+    pub name: String,
+    /// The session's files.
+    pub sources: Vec<SourceFile>,
+    /// Whether camera, pose and lights are the session's, without a look at its pictures.
+    pub is_as_given: bool,
+    /// How much work a frame may cost.
+    pub preset: String,
+    /// The text of the clips.
+    pub clips: String,
+    /// How they become frames.
+    pub timing: Timing,
+    /// All frames, in order.
+    pub frames: Vec<FilmFrame>,
+}
+
+/// A file that a film is made from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SourceFile {
+    /// Its path in the session.
+    pub path: String,
+    /// Its size.
+    pub n_bytes: u64,
+    /// Its checksum.
+    pub crc32: u32,
+}
+
+/// One frame of a film.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FilmFrame {
+    /// Its number, which its file's name has.
+    pub number: u32,
+    /// Its picture.
+    pub file: String,
+    /// What it shows.
+    pub pose: FramePose,
+}
+
+impl Film {
+    /// The preset.
+    ///
+    /// # Errors
+    /// When there is none of that name.
+    pub fn preset(&self) -> anyhow::Result<Preset> {
+        self.preset.parse().map_err(anyhow::Error::msg)
+    }
+
+    /// Whether both are made from the same session in the same way.
+    fn has_session_of(&self, other: &Self) -> bool {
+        let of = |film: &Self| (film.version.clone(), film.sources.clone(), film.is_as_given);
+        of(self) == of(other)
+    }
+
+    /// Whether two films with equal frames have equal pictures. All poses decide on the part of the picture that is worked on.
+    fn has_pictures_of(&self, other: &Self) -> bool {
+        let poses = |film: &Self| -> Vec<FramePose> { film.frames.iter().map(|frame| frame.pose).collect() };
+        self.has_session_of(other) && self.preset == other.preset && poses(self) == poses(other)
+    }
+}
+
+/// Sizes and checksums of a session's files.
+///
+/// # Errors
+/// When one cannot be read.
+pub fn sources(session: &Stored) -> anyhow::Result<Vec<SourceFile>> {
+    let mut paths = session.paths()?;
+    paths.sort();
+    let source = |path: String| {
+        let bytes = session
+            .read(&path, MAX_SESSION_FILE_BYTES)
+            .with_context(|| path.clone())?;
+        Ok(SourceFile {
+            n_bytes: bytes.len() as u64,
+            crc32: crc32fast::hash(&bytes),
+            path,
+        })
+    };
+    paths.into_iter().map(source).collect()
+}
+
+/// A folder that one film is being made in.
+pub struct FilmFolder {
+    path: PathBuf,
+    is_shared: bool,
+    /// Held as long as this lives.
+    _lock: File,
+}
+
+impl FilmFolder {
+    /// Takes a new folder, an empty one, or that of a film. Several runs share one where each makes a part of its frames.
+    ///
+    /// # Errors
+    /// When it has other files, or another run works in it.
+    pub fn take(path: &Path, is_shared: bool) -> anyhow::Result<Self> {
+        make_folder(path)?;
+        let is_film = [FILM_FILE, LOCK_FILE].iter().any(|file| path.join(file).exists());
+        let is_empty = fs::read_dir(path)?.next().is_none();
+        ensure!(
+            is_film || is_empty,
+            "{}: has files that are no film's; name another folder",
+            path.display()
+        );
+        let lock_path = path.join(LOCK_FILE);
+        let lock = File::create(&lock_path).with_context(|| lock_path.display().to_string())?;
+        let locked = if is_shared {
+            lock.try_lock_shared()
+        } else {
+            lock.try_lock()
+        };
+        match locked {
+            Err(TryLockError::WouldBlock) => {
+                bail!("{}: another run is making a film there", path.display())
+            }
+            // Some network drives have no locks.
+            Err(TryLockError::Error(error)) if error.kind() != io::ErrorKind::Unsupported => {
+                return Err(error).with_context(|| lock_path.display().to_string());
+            }
+            _ => {}
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            is_shared,
+            _lock: lock,
+        })
+    }
+
+    /// Its path.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The film that is in a folder, if any.
+    ///
+    /// # Errors
+    /// When its file is none.
+    pub fn film_in(path: &Path) -> anyhow::Result<Option<Film>> {
+        let path = path.join(FILM_FILE);
+        match fs::read(&path) {
+            Ok(bytes) => Ok(Some(
+                serde_json::from_slice(&bytes).with_context(|| path.display().to_string())?,
+            )),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error).with_context(|| path.display().to_string()),
+        }
+    }
+
+    /// Makes `film` the one that is in the folder: `write_session` makes its session where that is not there, and pictures that it
+    /// shows otherwise are removed.
+    ///
+    /// # Errors
+    /// When something cannot be read, written or removed.
+    pub fn begin(
+        &self,
+        film: &Film,
+        is_forced: bool,
+        write_session: impl FnOnce(&Path) -> anyhow::Result<()>,
+    ) -> anyhow::Result<()> {
+        let turn_path = self.path.join(TURN_FILE);
+        let turn = File::create(&turn_path).with_context(|| turn_path.display().to_string())?;
+        // One of several runs begins, the others find it done. Where there are no locks, they are to be begun one by one.
+        let _ = turn.lock();
+        // A file that nobody can read any more is no film's.
+        let before = Self::film_in(&self.path).ok().flatten();
+        // As it will be read.
+        let bytes = serde_json::to_vec_pretty(film)?;
+        let film: Film = serde_json::from_slice(&bytes)?;
+        ensure!(
+            !self.is_shared || !is_forced && before.as_ref().is_none_or(|before| *before == film),
+            "{}: a run for some frames of a film leaves another film as it is; name another folder, or run without --frames first",
+            self.path.display()
+        );
+        let has_session = before.as_ref().is_some_and(|before| before.has_session_of(&film));
+        let session = self.path.join(SESSION_FOLDER);
+        if is_forced || !has_session || !session.exists() {
+            let partial = self.path.join(format!("{SESSION_FOLDER}.partial"));
+            remove_folder(&partial)?;
+            write_session(&partial)?;
+            self.remove_pictures(before.as_ref(), |_| false)?;
+            remove_file(&self.path.join(FILM_FILE))?;
+            remove_folder(&session)?;
+            fs::rename(&partial, &session)?;
+        } else if let Some(before) = &before
+            && *before != film
+        {
+            let is_kept = before.has_pictures_of(&film);
+            self.remove_pictures(Some(before), |frame| is_kept && film.frames.contains(frame))?;
+        }
+        let path = self.path.join(FILM_FILE);
+        if before.as_ref() != Some(&film) || !path.exists() {
+            write_whole(&path, &bytes)?;
+        }
+        Ok(())
+    }
+
+    fn remove_pictures(
+        &self,
+        before: Option<&Film>,
+        is_kept: impl Fn(&FilmFrame) -> bool,
+    ) -> anyhow::Result<()> {
+        for frame in before.iter().flat_map(|before| &before.frames) {
+            if !is_kept(frame) {
+                remove_file(&self.path.join(&frame.file))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes what runs that were ended in the middle of a file have left.
+    ///
+    /// # Errors
+    /// When a file cannot be removed.
+    pub fn remove_partial(&self) -> anyhow::Result<()> {
+        for entry in fs::read_dir(&self.path)? {
+            let path = entry?.path();
+            if path.is_file() && path.extension().is_some_and(|extension| extension == "partial") {
+                remove_file(&path)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn remove_folder(path: &Path) -> anyhow::Result<()> {
+    match fs::remove_dir_all(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => {
+            Err(error).with_context(|| path.display().to_string())
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,9 @@
+//! One photograph and clips become a film.
+
+pub mod folder;
+pub mod frame_files;
+pub mod grammar;
+pub mod outputs;
+pub mod render;
+pub mod run;
+pub mod timeline;

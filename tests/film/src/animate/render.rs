@@ -1,0 +1,125 @@
+//! Makes pictures of a film, in a process that ends before its driver has taken too much memory.
+
+use std::io::{self, Read, Write};
+use std::ops::Range;
+use std::path::Path;
+use std::process;
+use std::thread;
+
+use anyhow::{Context, ensure};
+use app_core::core::Core;
+use app_core::gpu::AdapterChoice;
+use app_core::grain::Grain;
+use app_core::scene::{Pose, Scene, Shown};
+use app_core::session::{Capture, Session};
+use app_core::toy::Toy;
+use app_core::wgpu;
+use desk::alignment::Alignments;
+use desk::lens::through_lens;
+use desk::output::write_png;
+use desk::stored::Stored;
+
+use super::folder::{Film, FilmFolder, FilmFrame, SESSION_FOLDER};
+use super::timeline::{FramePose, Moment};
+
+/// Pictures that one process makes on a software driver: Mesa 22.3 keeps some MiB of each until the process ends.
+const N_PICTURES_OF_PROCESS: usize = 50;
+
+/// The pose of a frame.
+///
+/// # Errors
+/// When the toy has no such clip.
+pub fn pose_of(toy: &Toy, frame: &FramePose) -> anyhow::Result<Pose> {
+    let moment = pose_at(toy, &frame.moment)?;
+    Ok(match &frame.after {
+        None => moment,
+        Some(after) => toy.blended(&pose_at(toy, &after.from)?, &moment, after.share)?,
+    })
+}
+
+fn pose_at(toy: &Toy, moment: &Moment) -> anyhow::Result<Pose> {
+    let clip = toy
+        .clip_ids()
+        .nth(moment.clip)
+        .context("film.json: a clip that the toy lacks")?;
+    Ok(Pose::Clip {
+        clip,
+        time_secs: moment.time_secs,
+    })
+}
+
+/// Makes those pictures of the film in `folder` with numbers in `range` that are not there, and writes the number of each to standard
+/// output. It may end before all are made. The process ends when standard input does, as it does with whoever began it.
+///
+/// # Errors
+/// When the film cannot be read, or a picture cannot be made or written.
+pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> anyhow::Result<()> {
+    end_with_stdin();
+    let film = FilmFolder::film_in(folder)?.context("there is no film.json")?;
+    let missing = missing(folder, &film, range);
+    let capture = Capture::open(Stored::open(folder.join(SESSION_FOLDER))?)?;
+    let frame = capture.frame(0)?;
+    let mut alignments = Alignments::none();
+    alignments.align(capture.scene(), 0, &frame)?;
+    let preset = film.preset()?;
+    let input = alignments.input(0, &frame, preset);
+    let grain = Grain::of(capture.scene(), input.image.rgba(), &input.camera);
+    let input = input.with_grain(grain);
+    let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), adapter))?;
+    let scene = alignments.scene(capture.scene());
+    let toy = scene.toy.clone();
+    core.set_scene(with_film(scene, &film, input.world_from_shown)?, preset)?;
+    let n_pictures = if core.is_software() {
+        N_PICTURES_OF_PROCESS
+    } else {
+        usize::MAX
+    };
+    for frame in missing.into_iter().take(n_pictures) {
+        let input = input.clone().with_shown_pose(pose_of(&toy, &frame.pose)?);
+        let failed = || frame.file.clone();
+        core.frame(&input).with_context(failed)?;
+        let picture = core.read_picture().with_context(failed)?;
+        write_png(&folder.join(&frame.file), &through_lens(&capture, 0, picture)?)?;
+        let mut out = io::stdout().lock();
+        writeln!(out, "{}", frame.number)?;
+        out.flush()?;
+    }
+    Ok(())
+}
+
+/// The scene that knows all that is going to be shown, so that no frame depends on those that were made before it.
+fn with_film(scene: Scene, film: &Film, world_from_shown: Option<glam::DMat4>) -> anyhow::Result<Scene> {
+    let mut poses: Vec<&FramePose> = Vec::new();
+    for frame in &film.frames {
+        if !poses.contains(&&frame.pose) {
+            poses.push(&frame.pose);
+        }
+    }
+    let shown = poses.into_iter().map(|frame| {
+        Ok(Shown {
+            pose: pose_of(&scene.toy, frame)?,
+            world_from_shown,
+        })
+    });
+    let shown = shown.collect::<anyhow::Result<Vec<Shown>>>()?;
+    ensure!(!shown.is_empty(), "film.json: a film without frames");
+    Ok(scene.with_film(shown))
+}
+
+/// Frames of a film in a range of numbers whose pictures are not there.
+#[must_use]
+pub fn missing<'a>(folder: &Path, film: &'a Film, range: &Range<u32>) -> Vec<&'a FilmFrame> {
+    let frames = film.frames.iter().filter(|frame| range.contains(&frame.number));
+    frames
+        .filter(|frame| !folder.join(&frame.file).exists())
+        .collect()
+}
+
+/// Whoever began this process holds the other end of its standard input, and lets it go when it ends, however that is.
+fn end_with_stdin() {
+    thread::spawn(|| {
+        let mut sink = [0; 64];
+        while matches!(io::stdin().read(&mut sink), Ok(1..)) {}
+        process::exit(1);
+    });
+}

@@ -1,0 +1,237 @@
+//! A film from its beginning to its end, or a part of it, by processes that make its pictures.
+
+use std::io::{self, BufRead, BufReader, IsTerminal, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+use std::{env, fs};
+
+use anyhow::{Context, ensure};
+use app_core::preset::Preset;
+use app_core::session::Files;
+use app_core::session::{Capture, MAX_INDEX_BYTES, Session};
+use app_core::toy::Toy;
+use desk::alignment::{Alignments, Asked};
+use desk::check::aligned_session;
+use desk::convert;
+use desk::files::SESSION_FILE;
+use desk::output::write_whole;
+use desk::program::open_session;
+use desk::stored::Stored;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::Value;
+
+use super::folder::{Film, FilmFolder, FilmFrame, sources};
+use super::frame_files::{FrameRange, NamePattern};
+use super::grammar::{ClipFacts, items};
+use super::outputs;
+use super::render::missing;
+use super::timeline::{Timing, frames};
+
+/// What is asked for.
+pub struct Order {
+    /// The session.
+    pub session: PathBuf,
+    /// The folder of the film.
+    pub out: PathBuf,
+    /// The text of the clips.
+    pub clips: String,
+    /// How they become frames.
+    pub timing: Timing,
+    /// How much work a frame may cost.
+    pub preset: Preset,
+    /// Whether camera, pose and lights are the session's.
+    pub is_as_given: bool,
+    /// Number of the first frame.
+    pub start: u32,
+    /// Names of pictures; those of the session where there is none.
+    pub name: Option<NamePattern>,
+    /// Frames to make; all where there is none.
+    pub frames: Option<FrameRange>,
+    /// Whether what is there is made again.
+    pub is_forced: bool,
+    /// Whether no preview is made.
+    pub is_without_preview: bool,
+    /// Part of a graphics adapter's name.
+    pub adapter: Option<String>,
+    /// Whether nothing is said.
+    pub is_quiet: bool,
+}
+
+/// The clips of a toy.
+#[must_use]
+pub fn clip_facts(toy: &Toy) -> Vec<ClipFacts> {
+    let names = toy.clip_names().into_iter().zip(toy.clips());
+    names
+        .map(|(name, clip)| ClipFacts {
+            name,
+            duration_secs: clip.duration_secs,
+        })
+        .collect()
+}
+
+/// Makes a film, or what is missing of it. Returns what there is to say.
+///
+/// # Errors
+/// When the order cannot be, the session cannot be read, or a picture cannot be made or written.
+pub fn run(order: &Order) -> anyhow::Result<String> {
+    let named = || order.session.display().to_string();
+    let capture = Capture::open(open_session(&order.session)?).with_context(named)?;
+    let film = planned(order, &capture)?;
+    let last = film.frames.last().context("a film without frames")?;
+    let all = order.start..last.number + 1;
+    let range = match &order.frames {
+        None => all.clone(),
+        Some(asked) => asked
+            .within(&all)
+            .with_context(|| format!("--frames: the film has frames {} to {}", all.start, last.number))?,
+    };
+    let is_part = order.frames.is_some();
+    let folder = FilmFolder::take(&order.out, is_part)?;
+    if !is_part {
+        folder.remove_partial()?;
+    }
+    let say = |line: &str| {
+        if !order.is_quiet {
+            let _ = writeln!(io::stderr(), "{line}");
+        }
+    };
+    folder.begin(&film, order.is_forced, |to| {
+        say("aligning the photograph");
+        write_session(order, &capture, to)
+    })?;
+    outputs::write_xsheet(folder.path(), &film, &clip_facts(&capture.scene().toy))?;
+    let n_missing = missing(folder.path(), &film, &range).len();
+    let start = Instant::now();
+    make(order, folder.path(), &film, &range)?;
+    let secs = start.elapsed().as_secs_f64();
+    let mut said = format!(
+        "{} of {} frames are there, {n_missing} made now in {secs:.1} s ({:.2} a second): {}\n",
+        film.frames.len() - missing(folder.path(), &film, &all).len(),
+        film.frames.len(),
+        n_missing as f64 / secs.max(1e-3),
+        order.out.display()
+    );
+    if !is_part && !order.is_without_preview {
+        say("writing previews");
+        said += &outputs::write_previews(folder.path(), &film)?;
+    }
+    Ok(said)
+}
+
+fn planned(order: &Order, capture: &Capture) -> anyhow::Result<Film> {
+    let scene = capture.scene();
+    let clips = clip_facts(&scene.toy);
+    let items = items(&order.clips, &clips).context("--clips")?;
+    let poses = frames(&items, &clips, &order.timing)?;
+    let name = order.name.clone();
+    let name = name.unwrap_or_else(|| NamePattern::of_session(&scene.name));
+    let numbered = (order.start..).zip(poses);
+    Ok(Film {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        name: scene.name.clone(),
+        sources: sources(&Stored::open(&order.session)?)?,
+        is_as_given: order.is_as_given,
+        preset: order.preset.name().to_owned(),
+        clips: order.clips.clone(),
+        timing: order.timing,
+        frames: numbered
+            .map(|(number, pose)| FilmFrame {
+                number,
+                file: name.file(number),
+                pose,
+            })
+            .collect(),
+    })
+}
+
+/// The session as its first picture corrects it, with that frame alone.
+fn write_session(order: &Order, capture: &Capture, to: &Path) -> anyhow::Result<()> {
+    let stored = Stored::open(&order.session)?;
+    if order.is_as_given {
+        convert::write(&stored, None, to)?;
+    } else {
+        let alignments = Alignments::find(capture, 0..1, Asked::default())?;
+        aligned_session::write(&stored, to, &alignments)?;
+    }
+    let index = Stored::open(to)?.read(SESSION_FILE, MAX_INDEX_BYTES)?;
+    let mut index: Value = serde_json::from_slice(&index)?;
+    if let Some(frames) = index["frames"].as_array_mut() {
+        frames.truncate(1);
+    }
+    write_whole(&to.join(SESSION_FILE), format!("{index:#}\n").as_bytes())?;
+    Ok(())
+}
+
+/// Begins one process after the other until all pictures are there.
+fn make(order: &Order, folder: &Path, film: &Film, range: &Range<u32>) -> anyhow::Result<()> {
+    let mut n_missing = missing(folder, film, range).len();
+    let progress = Progress::new(n_missing, order.is_quiet);
+    while n_missing > 0 {
+        let mut command = Command::new(env::current_exe()?);
+        command
+            .arg("--render")
+            .arg(folder)
+            .args(["--frames", &format!("{}..{}", range.start, range.end)]);
+        if let Some(adapter) = &order.adapter {
+            command.args(["--adapter", adapter]);
+        }
+        let mut process = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
+        let lines = process.stdout.take().map(BufReader::new);
+        for line in lines.into_iter().flat_map(BufRead::lines) {
+            line?;
+            progress.next();
+        }
+        let status = process.wait()?;
+        ensure!(
+            status.success(),
+            "the process that makes the pictures has ended with {status}"
+        );
+        let n_left = missing(folder, film, range).len();
+        ensure!(
+            n_left < n_missing,
+            "the process that makes the pictures has made none"
+        );
+        n_missing = n_left;
+    }
+    progress.0.finish_and_clear();
+    Ok(())
+}
+
+/// How far a film is, with the time left: a bar on a terminal, a line now and then in a log.
+struct Progress(ProgressBar, bool);
+
+impl Progress {
+    fn new(n_pictures: usize, is_quiet: bool) -> Self {
+        let is_terminal = io::stderr().is_terminal();
+        let bar = if is_quiet || !is_terminal {
+            ProgressBar::hidden()
+        } else {
+            let style = ProgressStyle::with_template("[{bar:40}] {pos}/{len} pictures, {eta} left");
+            ProgressBar::no_length().with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        };
+        bar.set_length(n_pictures as u64);
+        Self(bar, !is_quiet && !is_terminal)
+    }
+
+    fn next(&self) {
+        self.0.inc(1);
+        let (position, length) = (self.0.position(), self.0.length().unwrap_or_default());
+        if self.1 && (position.is_multiple_of(24) || position == length) {
+            let left_secs = self.0.elapsed().as_secs_f64() / position as f64 * (length - position) as f64;
+            let _ = writeln!(
+                io::stderr(),
+                "{position} of {length} pictures, {left_secs:.0} s left"
+            );
+        }
+    }
+}
+
+/// Whether a film's picture can be read.
+pub(crate) fn picture(folder: &Path, frame: &FilmFrame) -> anyhow::Result<image::RgbImage> {
+    let path = folder.join(&frame.file);
+    let named = || path.display().to_string();
+    let bytes = fs::read(&path).with_context(named)?;
+    Ok(image::load_from_memory(&bytes).with_context(named)?.to_rgb8())
+}

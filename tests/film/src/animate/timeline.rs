@@ -1,0 +1,319 @@
+//! Which pose each frame of a film shows.
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::grammar::{ClipFacts, Item};
+
+/// Most frames of a film: more than an hour at 24 a second.
+pub const MAX_FRAMES: u32 = 100_000;
+
+/// Parts of a frame that rounding may add to a sum of lengths.
+const ROUNDING_FRAMES: f64 = 1e-6;
+
+/// How a clip speeds up and slows down over its length.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Ease {
+    /// Not at all.
+    #[default]
+    Linear,
+    /// It speeds up.
+    In,
+    /// It slows down.
+    Out,
+    /// It speeds up and slows down.
+    InOut,
+}
+
+impl Ease {
+    fn of(self, share: f64) -> f64 {
+        match self {
+            Self::Linear => share,
+            Self::In => share * share,
+            Self::Out => share * (2.0 - share),
+            Self::InOut => smooth(share),
+        }
+    }
+}
+
+/// How a film ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum End {
+    /// With the last pose.
+    #[default]
+    Once,
+    /// Before its first frame, which comes again after the last.
+    Loop,
+    /// With the way back to its second frame.
+    PingPong,
+}
+
+/// How items become frames.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Timing {
+    /// Frames a second.
+    pub fps: f64,
+    /// Frames that each pose stays for.
+    pub on: u32,
+    /// How the film ends.
+    pub end: End,
+    /// How each clip runs.
+    pub ease: Ease,
+    /// Frames in which a clip's start takes over from the pose before it.
+    pub n_blend_frames: u32,
+    /// Where the film begins in what the items say, in seconds.
+    pub from_secs: f64,
+    /// Where it ends; none where they do.
+    pub to_secs: Option<f64>,
+}
+
+impl Default for Timing {
+    fn default() -> Self {
+        Self {
+            fps: 24.0,
+            on: 1,
+            end: End::Once,
+            ease: Ease::Linear,
+            n_blend_frames: 0,
+            from_secs: 0.0,
+            to_secs: None,
+        }
+    }
+}
+
+/// A moment of a clip.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Moment {
+    /// Index of the clip among the toy's.
+    pub clip: usize,
+    /// Time within it.
+    pub time_secs: f64,
+}
+
+/// What a frame shows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FramePose {
+    /// The moment.
+    pub moment: Moment,
+    /// The moment that it takes over from, and the share that it has reached.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub after: Option<Blend>,
+    /// Whether a pose is held.
+    pub is_held: bool,
+}
+
+/// A pose that another takes over from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Blend {
+    /// The pose.
+    pub from: Moment,
+    /// The other's share, above 0 and below 1.
+    pub share: f64,
+}
+
+/// Why there is no film of such a length.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum TimelineError {
+    /// Too long.
+    #[error("the film would have {n_frames:.0} frames; at most {MAX_FRAMES} are made")]
+    TooLong {
+        /// Its length.
+        n_frames: f64,
+    },
+    /// Nothing is left of it.
+    #[error("nothing lies from {from_secs} s to {to_secs} s: the clips last {length_secs:.3} s")]
+    Empty {
+        /// Where it should begin.
+        from_secs: f64,
+        /// Where it should end.
+        to_secs: f64,
+        /// How long the items last.
+        length_secs: f64,
+    },
+}
+
+/// A stretch of the film, in frames.
+struct Segment {
+    start: f64,
+    length: f64,
+    shows: Shows,
+    /// The pose that a clip takes over from.
+    after: Option<Moment>,
+}
+
+#[derive(Clone, Copy)]
+enum Shows {
+    Held(Moment),
+    Clip(Played),
+}
+
+#[derive(Clone, Copy)]
+struct Played {
+    clip: usize,
+    duration_secs: f64,
+    n_times: f64,
+    is_backward: bool,
+}
+
+impl Played {
+    fn at(&self, progress: f64) -> Moment {
+        let times = self.n_times * progress;
+        // The end of all repetitions is the clip's end, the end of any other the start of the next.
+        let share = if times >= self.n_times { 1.0 } else { times.fract() };
+        let share = if self.is_backward { 1.0 - share } else { share };
+        Moment {
+            clip: self.clip,
+            time_secs: share * self.duration_secs,
+        }
+    }
+}
+
+/// The poses of a film's frames.
+///
+/// # Errors
+/// When it would have none, or too many.
+pub fn frames(items: &[Item], clips: &[ClipFacts], timing: &Timing) -> Result<Vec<FramePose>, TimelineError> {
+    let segments = segments(items, clips, timing);
+    let length = segments.last().map_or(0.0, |last| last.start + last.length);
+    let from = timing.from_secs * timing.fps;
+    let to = timing
+        .to_secs
+        .map_or(length, |secs| (secs * timing.fps).min(length));
+    // The last pose of a clip is shown, too, unless the first one follows it; a hold already shows its own long enough.
+    let ends_in_clip = matches!(
+        segments.last(),
+        Some(Segment {
+            shows: Shows::Clip(_),
+            ..
+        })
+    );
+    let is_whole = timing.to_secs.is_none_or(|_| to >= length);
+    let is_end_shown = timing.end != End::Loop && ends_in_clip && is_whole;
+    let span = to - from;
+    if span < 0.0 || (span < ROUNDING_FRAMES && !is_end_shown) {
+        return Err(TimelineError::Empty {
+            from_secs: timing.from_secs,
+            to_secs: to / timing.fps,
+            length_secs: length / timing.fps,
+        });
+    }
+    let n_frames = if is_end_shown {
+        (span + ROUNDING_FRAMES).floor() + 1.0
+    } else {
+        (span - ROUNDING_FRAMES).ceil()
+    };
+    if n_frames > f64::from(MAX_FRAMES) {
+        return Err(TimelineError::TooLong { n_frames });
+    }
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to the most"
+    )]
+    let n_frames = n_frames as u32;
+    let on = timing.on.max(1);
+    let shown = |frame: u32| pose_at(&segments, timing, from + f64::from(frame - frame % on));
+    let mut frames: Vec<FramePose> = (0..n_frames).filter_map(shown).collect();
+    if timing.end == End::PingPong && frames.len() > 2 {
+        let back: Vec<FramePose> = frames[1..frames.len() - 1].iter().rev().copied().collect();
+        frames.extend(back);
+    }
+    Ok(frames)
+}
+
+fn segments(items: &[Item], clips: &[ClipFacts], timing: &Timing) -> Vec<Segment> {
+    let mut segments: Vec<Segment> = Vec::new();
+    let mut start = 0.0;
+    let mut before: Option<Moment> = None;
+    for (index, item) in items.iter().enumerate() {
+        let (length, shows) = match item {
+            Item::Hold { n_frames } => {
+                let first = || items[index..].iter().find_map(|item| played(item, clips));
+                let held = before.or_else(|| Some(first()?.at(0.0)));
+                let Some(held) = held else { continue };
+                (f64::from(n_frames.get()), Shows::Held(held))
+            }
+            Item::Clip { speed, n_times, .. } => {
+                let Some(played) = played(item, clips) else {
+                    continue;
+                };
+                let once = played.duration_secs * timing.fps / speed.abs();
+                // A clip of one key has no length: it is a pose.
+                let once = if once > 0.0 { once } else { 1.0 };
+                (once * f64::from(n_times.get()), Shows::Clip(played))
+            }
+        };
+        let after = before.filter(|_| matches!(shows, Shows::Clip(_)));
+        before = Some(match shows {
+            Shows::Held(moment) => moment,
+            Shows::Clip(played) => played.at(1.0),
+        });
+        segments.push(Segment {
+            start,
+            length,
+            shows,
+            after,
+        });
+        start += length;
+    }
+    // What comes round again takes over from the end.
+    if timing.end == End::Loop
+        && let Some(first) = segments.first_mut()
+        && matches!(first.shows, Shows::Clip(_))
+    {
+        first.after = before;
+    }
+    segments
+}
+
+fn played(item: &Item, clips: &[ClipFacts]) -> Option<Played> {
+    match item {
+        Item::Hold { .. } => None,
+        Item::Clip { clip, n_times, speed } => Some(Played {
+            clip: *clip,
+            duration_secs: clips.get(*clip)?.duration_secs,
+            n_times: f64::from(n_times.get()),
+            is_backward: *speed < 0.0,
+        }),
+    }
+}
+
+fn pose_at(segments: &[Segment], timing: &Timing, at: f64) -> Option<FramePose> {
+    let begun = segments.iter().rev();
+    let segment = { begun }.find(|segment| at + ROUNDING_FRAMES >= segment.start);
+    let segment = segment.or(segments.first())?;
+    let passed = (at - segment.start).clamp(0.0, segment.length);
+    let played = match segment.shows {
+        Shows::Held(moment) => {
+            return Some(FramePose {
+                moment,
+                after: None,
+                is_held: true,
+            });
+        }
+        Shows::Clip(played) => played,
+    };
+    let reached = passed / segment.length;
+    let reached = if segment.length - passed < ROUNDING_FRAMES {
+        1.0
+    } else {
+        reached
+    };
+    let n_blend = f64::from(timing.n_blend_frames).min(segment.length);
+    let share = smooth(((passed + 1.0) / (n_blend + 1.0)).min(1.0));
+    Some(FramePose {
+        moment: played.at(timing.ease.of(reached)),
+        after: segment
+            .after
+            .filter(|_| share < 1.0)
+            .map(|from| Blend { from, share }),
+        is_held: false,
+    })
+}
+
+/// Goes from 0 to 1 with a slope of 0 at both.
+fn smooth(share: f64) -> f64 {
+    share * share * (3.0 - 2.0 * share)
+}

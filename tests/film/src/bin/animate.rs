@@ -1,0 +1,185 @@
+//! Makes a film of a session's photograph and clips of its toy.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, ensure};
+use app_core::gpu::AdapterChoice;
+use app_core::preset::Preset;
+use clap::Parser;
+use desk::files::BUNDLED_SESSION;
+use desk::program::{exit_code, print, repository};
+use film::animate::folder::FilmFolder;
+use film::animate::frame_files::{FrameRange, NamePattern};
+use film::animate::render::render;
+use film::animate::run::{Order, run};
+use film::animate::timeline::{Ease, End, Timing};
+
+/// Where films go that were given no place, below the top of the repository.
+const RESULTS: &str = "target/film";
+
+/// Make a film of one photograph: clips of the toy become numbered pictures, a contact sheet, an exposure sheet (xsheet.csv) and
+/// previews that play. A run that was ended goes on where it was: run it again.
+#[derive(Parser)]
+#[command(name = "animate", bin_name = "cargo xtask animate")]
+struct Args {
+    /// Folder of the session, or a recording; its first frame's photograph is animated [default: the bundled one]
+    session: Option<PathBuf>,
+    /// What to play, such as 'Look,Step*2@0.5x,hold:12': clips one after the other, with how often and how fast, and frames to hold a
+    /// pose; `clips` lists a toy's
+    #[arg(long, value_name = "CLIPS", required_unless_present = "render")]
+    clips: Option<String>,
+    /// Frames a second
+    #[arg(long, value_name = "N", default_value_t = 24.0, value_parser = parse_fps)]
+    fps: f64,
+    /// Frames that each pose stays for: 2 is "on twos"
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=24))]
+    on: u32,
+    /// Leave out the last pose, which the first one follows
+    #[arg(long = "loop", conflicts_with = "pingpong")]
+    is_loop: bool,
+    /// Play it back to the start, too
+    #[arg(long)]
+    pingpong: bool,
+    /// How each clip speeds up and slows down over its length
+    #[arg(long, value_enum, default_value_t)]
+    ease: Ease,
+    /// Frames in which a clip's start takes over from the pose before it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=240))]
+    blend: u32,
+    /// Where to begin in what the clips say, in seconds
+    #[arg(long, value_name = "SECS", default_value_t = 0.0, value_parser = parse_secs)]
+    from: f64,
+    /// Where to end
+    #[arg(long, value_name = "SECS", value_parser = parse_secs)]
+    to: Option<f64>,
+    /// How much work a frame may cost
+    #[arg(long, value_name = "NAME", default_value = "best")]
+    preset: Preset,
+    /// Make these frames alone, by their numbers: 3, 3.., ..9 or 3..9, without the one after the dots. Several such runs may share a
+    /// folder
+    #[arg(long, value_name = "A..B")]
+    frames: Option<FrameRange>,
+    /// Number of the first frame
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..=9_000_000))]
+    start: u32,
+    /// Names of the pictures, with # for the digits of the number [default: the session's name and _####]
+    #[arg(long, value_name = "NAME_####")]
+    name: Option<NamePattern>,
+    /// Make again what is there
+    #[arg(long)]
+    force: bool,
+    /// Folder of the film [default: target/film/ and the name of folder or recording]
+    #[arg(long, value_name = "FILM")]
+    out: Option<PathBuf>,
+    /// Take camera, pose and lights as recorded, without aligning them by the photograph
+    #[arg(long)]
+    as_given: bool,
+    /// Make the pictures alone
+    #[arg(long)]
+    no_preview: bool,
+    /// Part of a graphics adapter's name [default: the fastest]
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// Print nothing but errors
+    #[arg(long)]
+    quiet: bool,
+    /// Make some pictures of the film in this folder, as this program asks itself
+    #[arg(long, value_name = "FILM", hide = true)]
+    render: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    exit_code(start(Args::parse()))
+}
+
+fn start(args: Args) -> anyhow::Result<()> {
+    if let Some(folder) = &args.render {
+        return render_part(folder, &args);
+    }
+    let is_quiet = args.quiet;
+    let said = run(&order(args)?)?;
+    if is_quiet { Ok(()) } else { print(&said) }
+}
+
+fn render_part(folder: &Path, args: &Args) -> anyhow::Result<()> {
+    let film = FilmFolder::film_in(folder)?.context("there is no film.json")?;
+    let first = film.frames.first().context("a film without frames")?.number;
+    let last = film.frames.last().context("a film without frames")?.number;
+    let all = first..last + 1;
+    let range = args
+        .frames
+        .as_ref()
+        .map_or(Some(all.clone()), |frames| frames.within(&all));
+    let adapter = args.adapter.clone();
+    let adapter = adapter.map_or(AdapterChoice::Fastest, AdapterChoice::Named);
+    render(
+        folder,
+        &range.context("--frames: the film has no such frames")?,
+        &adapter,
+    )
+}
+
+fn order(args: Args) -> anyhow::Result<Order> {
+    let session = args.session.unwrap_or_else(|| BUNDLED_SESSION.into());
+    ensure!(
+        args.to.is_none_or(|to| to >= args.from),
+        "--to lies before --from"
+    );
+    Ok(Order {
+        out: match args.out {
+            Some(out) => out,
+            None => default_out(&session)?,
+        },
+        session,
+        clips: args.clips.context("--clips is missing")?,
+        timing: Timing {
+            fps: args.fps,
+            on: args.on,
+            end: match (args.is_loop, args.pingpong) {
+                (true, _) => End::Loop,
+                (_, true) => End::PingPong,
+                _ => End::Once,
+            },
+            ease: args.ease,
+            n_blend_frames: args.blend,
+            from_secs: args.from,
+            to_secs: args.to,
+        },
+        preset: args.preset,
+        is_as_given: args.as_given,
+        start: args.start,
+        name: args.name,
+        frames: args.frames,
+        is_forced: args.force,
+        is_without_preview: args.no_preview,
+        adapter: args.adapter,
+        is_quiet: args.quiet,
+    })
+}
+
+fn default_out(session: &Path) -> anyhow::Result<PathBuf> {
+    // `.` and `..` have a name of their own only when they are followed.
+    let session = session
+        .canonicalize()
+        .with_context(|| session.display().to_string())?;
+    let name = if session.is_file() {
+        session.file_stem()
+    } else {
+        session.file_name()
+    };
+    Ok(repository()
+        .join(RESULTS)
+        .join(name.unwrap_or("session".as_ref())))
+}
+
+fn parse_fps(text: &str) -> Result<f64, String> {
+    let fps = text.parse().ok().filter(|fps| (1.0..=240.0).contains(fps));
+    fps.ok_or_else(|| "from 1 to 240 frames a second".to_owned())
+}
+
+fn parse_secs(text: &str) -> Result<f64, String> {
+    let secs = text.strip_suffix('s').unwrap_or(text).parse().ok();
+    let secs = secs.filter(|secs| (0.0..=86_400.0).contains(secs));
+    secs.ok_or_else(|| "a number of seconds, such as 1.5 or 1.5s".to_owned())
+}

@@ -1,0 +1,100 @@
+//! What a film's folder keeps of the film before, and refuses.
+
+use std::fs;
+use std::path::Path;
+
+use film::animate::folder::{Film, FilmFolder, FilmFrame, SourceFile};
+use film::animate::grammar::items;
+use film::animate::timeline::{Timing, frames};
+use harness::temporary::Temporary;
+
+use super::clips;
+
+fn film(text: &str) -> Film {
+    let clips = clips();
+    // Times are exact, in a text as well.
+    let timing = Timing {
+        fps: 8.0,
+        ..Timing::default()
+    };
+    let poses = frames(&items(text, &clips).unwrap(), &clips, &timing).unwrap();
+    Film {
+        version: "1".to_owned(),
+        name: "a toy".to_owned(),
+        sources: vec![SourceFile {
+            path: "toy.glb".to_owned(),
+            n_bytes: 1,
+            crc32: 2,
+        }],
+        is_as_given: false,
+        preset: "best".to_owned(),
+        clips: text.to_owned(),
+        timing,
+        frames: (1..)
+            .zip(poses)
+            .map(|(number, pose)| FilmFrame {
+                number,
+                file: format!("{number}.png"),
+                pose,
+            })
+            .collect(),
+    }
+}
+
+/// Begins a film; returns whether its session was made, and which of the first three pictures are there.
+fn begun(path: &Path, film: &Film) -> (bool, [bool; 3]) {
+    let mut is_made = false;
+    let folder = FilmFolder::take(path, false).unwrap();
+    folder
+        .begin(film, false, |to| {
+            is_made = true;
+            Ok(fs::create_dir(to)?)
+        })
+        .unwrap();
+    assert_eq!(FilmFolder::film_in(path).unwrap().as_ref(), Some(film));
+    (
+        is_made,
+        [1, 2, 3].map(|number| path.join(format!("{number}.png")).exists()),
+    )
+}
+
+#[test]
+fn pictures_stay_as_long_as_all_that_decides_on_them_does() {
+    let folder = Temporary::new("film-kept");
+    let path = &folder.0.join("film");
+    let write = || [1, 3].map(|number| fs::write(path.join(format!("{number}.png")), "").unwrap());
+    let first = film("Look");
+    assert_eq!(begun(path, &first), (true, [false; 3]));
+    write();
+    assert_eq!(begun(path, &first), (false, [true, false, true]));
+    // Other frames beside them change the part of the picture that is worked on.
+    let longer = film("Look,Step");
+    assert_eq!(begun(path, &longer), (false, [false; 3]));
+    write();
+    let other_preset = Film {
+        preset: "fast".to_owned(),
+        ..longer
+    };
+    assert_eq!(begun(path, &other_preset), (false, [false; 3]));
+    write();
+    let mut other_toy = other_preset;
+    other_toy.sources[0].crc32 = 3;
+    assert_eq!(begun(path, &other_toy), (true, [false; 3]));
+}
+
+#[test]
+fn a_folder_of_others_or_in_use_is_refused() {
+    let folder = Temporary::new("film-refused");
+    let path = folder.0.as_path();
+    fs::write(path.join("holiday.png"), "").unwrap();
+    let refused = |is_shared| FilmFolder::take(path, is_shared).err().unwrap().to_string();
+    assert!(refused(false).contains("no film's"));
+    fs::remove_file(path.join("holiday.png")).unwrap();
+    let one = FilmFolder::take(path, true).unwrap();
+    let _two = FilmFolder::take(path, true).unwrap();
+    assert!(refused(false).contains("another run"));
+    one.begin(&film("Look"), false, |to| Ok(fs::create_dir(to)?))
+        .unwrap();
+    let other = one.begin(&film("Step"), false, |_| Ok(()));
+    assert!(other.unwrap_err().to_string().contains("another film"));
+}

@@ -1,0 +1,36 @@
+//! Names and numbers of pictures.
+
+use film::animate::frame_files::{FrameRange, NamePattern};
+
+#[test]
+fn a_number_stands_where_the_signs_are() {
+    let file = |pattern: &str, number| pattern.parse::<NamePattern>().unwrap().file(number);
+    assert_eq!(file("shot_####", 7), "shot_0007.png");
+    assert_eq!(file("a#b.png", 1001), "a1001b.png");
+    assert_eq!(file("######", 12), "000012.png");
+    assert_eq!(
+        NamePattern::of_session("llama: best/of").file(1),
+        "llama__best_of_0001.png"
+    );
+    for refused in ["shot", "a#b#", "../a#", "a/b#", "-#", ".#", "a#\\b", ""] {
+        assert!(refused.parse::<NamePattern>().is_err(), "{refused}");
+    }
+}
+
+#[test]
+fn ranges_are_of_the_films_own_numbers() {
+    let all = 1001..1049;
+    let within = |text: &str| text.parse::<FrameRange>().unwrap().within(&all);
+    assert_eq!(within("1003"), Some(1003..1004));
+    assert_eq!(within("1003.."), Some(1003..1049));
+    assert_eq!(within("..1003"), Some(1001..1003));
+    assert_eq!(within("1010..1020"), Some(1010..1020));
+    assert_eq!(
+        [within("0..3"), within("1049"), within("1040..1050")],
+        [None, None, None]
+    );
+    for refused in ["", "a", "5..5", "6..5", "1-2", "..x"] {
+        let parsed = refused.parse::<FrameRange>();
+        assert!(parsed.is_err(), "{refused}");
+    }
+}
