@@ -208,6 +208,8 @@ impl FilmFolder {
             remove_folder(&partial)?;
             write_session(&partial)?;
             self.remove_pictures(before.as_ref(), |_| false)?;
+            // Nobody knows of what film they are.
+            self.remove_pictures(Some(&film), |_| false)?;
             remove_file(&self.path.join(FILM_FILE))?;
             remove_folder(&session)?;
             fs::rename(&partial, &session)?;
@@ -216,6 +218,7 @@ impl FilmFolder {
         {
             let is_kept = before.has_pictures_of(&film);
             self.remove_pictures(Some(before), |frame| is_kept && film.frames.contains(frame))?;
+            self.remove_pictures(Some(&film), |frame| is_kept && before.frames.contains(frame))?;
         }
         let path = self.path.join(FILM_FILE);
         if before.as_ref() != Some(&film) || !path.exists() {
@@ -226,10 +229,10 @@ impl FilmFolder {
 
     fn remove_pictures(
         &self,
-        before: Option<&Film>,
+        film: Option<&Film>,
         is_kept: impl Fn(&FilmFrame) -> bool,
     ) -> anyhow::Result<()> {
-        for frame in before.iter().flat_map(|before| &before.frames) {
+        for frame in film.iter().flat_map(|film| &film.frames) {
             if !is_kept(frame) {
                 remove_file(&self.path.join(&frame.file))?;
             }

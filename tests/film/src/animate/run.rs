@@ -106,11 +106,17 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
     let start = Instant::now();
     make(order, folder.path(), &film, &range)?;
     let secs = start.elapsed().as_secs_f64();
+    let now = match n_missing {
+        0 => "none had to be made".to_owned(),
+        _ => format!(
+            "{n_missing} made now in {secs:.1} s, {:.2} a second",
+            n_missing as f64 / secs
+        ),
+    };
     let mut said = format!(
-        "{} of {} frames are there, {n_missing} made now in {secs:.1} s ({:.2} a second): {}\n",
+        "{} of {} frames are there, {now}: {}\n",
         film.frames.len() - missing(folder.path(), &film, &all).len(),
         film.frames.len(),
-        n_missing as f64 / secs.max(1e-3),
         order.out.display()
     );
     if !is_part && !order.is_without_preview {

@@ -77,6 +77,10 @@ fn pictures_stay_as_long_as_all_that_decides_on_them_does() {
     };
     assert_eq!(begun(path, &other_preset), (false, [false; 3]));
     write();
+    // Nobody knows what these show.
+    fs::write(path.join("film.json"), "{").unwrap();
+    assert_eq!(begun(path, &other_preset), (true, [false; 3]));
+    write();
     let mut other_toy = other_preset;
     other_toy.sources[0].crc32 = 3;
     assert_eq!(begun(path, &other_toy), (true, [false; 3]));
