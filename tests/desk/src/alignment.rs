@@ -335,6 +335,9 @@ impl Alignments {
         for (index, camera) in &self.moved_plates {
             scene.plates[*index].camera = *camera;
         }
+        if let Some(receivers) = &self.laid_receivers {
+            scene.receivers.clone_from(receivers);
+        }
         scene
     }
 
@@ -347,8 +350,7 @@ impl Alignments {
         let is_relit = pairs.any(|(now, given)| !Arc::ptr_eq(&now.image, &given.image));
         let is_changed = is_relit || !Arc::ptr_eq(&now.toy, &given.toy);
         is_changed.then(|| {
-            given
-                .clone()
+            self.scene(given)
                 .with_plates(now.plates.clone())
                 .with_toy(Arc::clone(&now.toy))
         })

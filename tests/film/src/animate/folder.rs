@@ -18,10 +18,10 @@ use super::timeline::{FramePose, Timing};
 
 /// What a film is.
 pub const FILM_FILE: &str = "film.json";
-/// The aligned session that its frames are made from, in the film's folder.
+/// The copy of the session that its frames are made from, in the film's folder.
 pub const SESSION_FOLDER: &str = "session";
-const LOCK_FILE: &str = "film.lock";
-const TURN_FILE: &str = "begin.lock";
+const LOCK_FILE: &str = ".film.lock";
+const TURN_FILE: &str = ".begin.lock";
 const MAX_SESSION_FILE_BYTES: u64 = 1 << 30;
 
 /// What decides each pixel of a film.

@@ -14,7 +14,7 @@ use app_core::scene::{Pose, Scene, Shown};
 use app_core::session::{Capture, Session};
 use app_core::toy::Toy;
 use app_core::wgpu;
-use desk::alignment::Alignments;
+use desk::alignment::{Alignments, Asked};
 use desk::lens::through_lens;
 use desk::output::write_png;
 use desk::stored::Stored;
@@ -59,7 +59,12 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     let missing = missing(folder, &film, range);
     let capture = Capture::open(Stored::open(folder.join(SESSION_FOLDER))?)?;
     let frame = capture.frame(0)?;
-    let mut alignments = Alignments::none();
+    // Each process aligns the photograph for itself, and so in the same way: no file holds all that is found.
+    let mut alignments = if film.is_as_given {
+        Alignments::none()
+    } else {
+        Alignments::new(capture.scene(), Asked::default())
+    };
     alignments.align(capture.scene(), 0, &frame)?;
     let preset = film.preset()?;
     let input = alignments.input(0, &frame, preset);
@@ -67,6 +72,7 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     let input = input.with_grain(grain);
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), adapter))?;
     let scene = alignments.scene(capture.scene());
+    let scene = alignments.changed_scene(&scene, 0).unwrap_or(scene);
     let toy = scene.toy.clone();
     core.set_scene(with_film(scene, &film, input.world_from_shown)?, preset)?;
     let n_pictures = if core.is_software() {

@@ -12,8 +12,6 @@ use app_core::preset::Preset;
 use app_core::session::Files;
 use app_core::session::{Capture, MAX_INDEX_BYTES, Session};
 use app_core::toy::Toy;
-use desk::alignment::{Alignments, Asked};
-use desk::check::aligned_session;
 use desk::convert;
 use desk::files::SESSION_FILE;
 use desk::output::write_whole;
@@ -97,10 +95,7 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
             let _ = writeln!(io::stderr(), "{line}");
         }
     };
-    folder.begin(&film, order.is_forced, |to| {
-        say("aligning the photograph");
-        write_session(order, &capture, to)
-    })?;
+    folder.begin(&film, order.is_forced, |to| write_session(order, to))?;
     outputs::write_xsheet(folder.path(), &film, &clip_facts(&capture.scene().toy))?;
     let n_missing = missing(folder.path(), &film, &range).len();
     let start = Instant::now();
@@ -152,15 +147,9 @@ fn planned(order: &Order, capture: &Capture) -> anyhow::Result<Film> {
     })
 }
 
-/// The session as its first picture corrects it, with that frame alone.
-fn write_session(order: &Order, capture: &Capture, to: &Path) -> anyhow::Result<()> {
-    let stored = Stored::open(&order.session)?;
-    if order.is_as_given {
-        convert::write(&stored, None, to)?;
-    } else {
-        let alignments = Alignments::find(capture, 0..1, Asked::default())?;
-        aligned_session::write(&stored, to, &alignments)?;
-    }
+/// A copy of the session with its first frame alone: what is made later is made of that.
+fn write_session(order: &Order, to: &Path) -> anyhow::Result<()> {
+    convert::write(&Stored::open(&order.session)?, None, to)?;
     let index = Stored::open(to)?.read(SESSION_FILE, MAX_INDEX_BYTES)?;
     let mut index: Value = serde_json::from_slice(&index)?;
     if let Some(frames) = index["frames"].as_array_mut() {
