@@ -27,12 +27,13 @@ const REPLAY: Program =
 
 /// Programs that are run with whatever stands after their name.
 #[rustfmt::skip] // One program a line.
-const PROGRAMS: [Program; 12] = [
+const PROGRAMS: [Program; 13] = [
     REPLAY,
     Program::new("check", "desk", "Say what is wrong with a session, and draw what it predicts over its first frame"),
     Program::new("align", "desk", "Write a session anew with cameras, pose and lights aligned by its pictures"),
     Program::new("convert", "desk", "Make a recording of a session's folder, or a folder of a recording"),
     Program::new("import", "desk", "Make a session of a recording of nerfstudio, Record3D or Stray Scanner"),
+    Program::new("inbetween", "film", "Make the frames between key poses that were printed and photographed one by one").on_device(),
     Program::new("card", "desk", "Write a card to print and to lay beside the toy"),
     Program::new("bench", "measure", "Measure presets over sessions: time against error").on_device(),
     Program::new("ledger", "measure", "What frames of a session must cost on any device, without one"),

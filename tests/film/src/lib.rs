@@ -2,3 +2,6 @@
 //! photographed one by one get their in-between frames.
 
 #![forbid(unsafe_code)]
+
+pub mod inbetween;
+pub mod sheet;
