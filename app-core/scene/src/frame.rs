@@ -37,6 +37,8 @@ pub struct FrameInput {
     pub sharpness: Sharpness,
     /// The pose the toy is to be shown in.
     pub shown_pose: Pose,
+    /// Where the toy is to be shown, if that is not where the real one stands: by the rules of `world_from_object`.
+    pub world_from_shown: Option<DMat4>,
     /// Part of the effect that is shown, from 0, the camera's picture, to 1: an app fades it while pose or lights are not
     /// known. At 0 nothing is learned.
     pub effect: f64,
@@ -59,6 +61,7 @@ impl FrameInput {
             things: None,
             sharpness: Sharpness::SHARP,
             shown_pose: Pose::default(),
+            world_from_shown: None,
             effect: 1.0,
             grain: None,
         }
@@ -127,6 +130,13 @@ impl FrameInput {
         self
     }
 
+    /// Sets where the toy is shown; with none that is where the real one stands.
+    #[must_use]
+    pub fn with_world_from_shown(mut self, world_from_shown: Option<DMat4>) -> Self {
+        self.world_from_shown = world_from_shown;
+        self
+    }
+
     /// Sets the part of the effect that is shown, from 0 to 1.
     #[must_use]
     pub fn with_effect(mut self, effect: f64) -> Self {
@@ -155,6 +165,10 @@ impl FrameInput {
         InputError::at("effect", check::number(self.effect, &(0.0..=1.0)))?;
         let similarity = check::similarity(self.world_from_object.to_cols_array());
         InputError::at("world_from_object", similarity)?;
+        if let Some(world_from_shown) = &self.world_from_shown {
+            let similarity = check::similarity(world_from_shown.to_cols_array());
+            InputError::at("world_from_shown", similarity)?;
+        }
         self.grain.map_or(Ok(()), |grain| grain.check())?;
         for (index, light) in self.lights.iter().flat_map(|lights| lights.iter()).enumerate() {
             light.check(&format!("lights[{index}]"))?;

@@ -78,6 +78,7 @@ struct Frame {
     exposure: f64,
     light_estimate: Option<LightEstimate>,
     shown_pose: Pose,
+    world_from_shown: Option<DMat4>,
     warnings: Vec<SessionWarning>,
     truth: Option<TruthFiles>,
 }
@@ -160,6 +161,7 @@ impl Session for Capture {
             exposure: frame.exposure,
             light_estimate: frame.light_estimate,
             shown_pose: frame.shown_pose.clone(),
+            world_from_shown: frame.world_from_shown,
             warnings: frame.warnings.iter().cloned().chain(turned).collect(),
         })
     }

@@ -88,6 +88,8 @@ pub struct SessionFrame {
     pub light_estimate: Option<LightEstimate>,
     /// The pose the toy is to be shown in.
     pub shown_pose: Pose,
+    /// Where the toy is to be shown, if that is not where the real one stands.
+    pub world_from_shown: Option<DMat4>,
     /// Warnings about this frame.
     pub warnings: Vec<SessionWarning>,
 }
@@ -98,6 +100,7 @@ impl From<&SessionFrame> for FrameInput {
             .with_exposure(frame.exposure)
             .with_light_estimate(frame.light_estimate)
             .with_shown_pose(frame.shown_pose.clone())
+            .with_world_from_shown(frame.world_from_shown)
     }
 }
 

@@ -134,6 +134,7 @@ mod tests {
             exposure: 1.0,
             light_estimate: None,
             shown_pose: Pose::Authored,
+            world_from_shown: None,
         };
         (scene, live)
     }

@@ -59,6 +59,7 @@ impl App {
                 exposure: input.exposure,
                 light_estimate: input.light_estimate,
                 shown_pose: input.shown_pose,
+                world_from_shown: input.world_from_shown,
             })
         });
         let Some(recorder) = &mut self.recorder else {

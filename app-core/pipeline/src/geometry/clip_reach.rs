@@ -23,17 +23,17 @@ pub(crate) struct ClipReach {
 }
 
 impl ClipReach {
-    /// Poses the toy at moments of `clip` and once as `physical`, into `posed`.
+    /// Poses the toy into `posed`: once as `physical`, where it really stands, and at moments of `clip`, where it is shown.
     pub(crate) fn new(
         toy: &Toy,
-        anchor_from_object: &DMat4,
-        (physical, clip): (&Pose, Option<ClipId>),
+        (physical, anchor_from_object): (&Pose, &DMat4),
+        (clip, anchor_from_shown): (Option<ClipId>, &DMat4),
         posed: &mut PosedMesh,
     ) -> Result<Self, ToyError> {
         toy.pose(physical, anchor_from_object, posed)?;
         let mut outline = Outline::around(posed);
         for moment in &moments(toy, clip)? {
-            toy.pose(moment, anchor_from_object, posed)?;
+            toy.pose(moment, anchor_from_shown, posed)?;
             posed.points().for_each(|p| outline.include(p));
         }
         Ok(Self {

@@ -80,8 +80,7 @@ impl Stage {
         input: &FrameInput,
     ) -> Result<Result<Arc<Footprint>, PassThrough>, ToyError> {
         let warned = |warning| Ok(Err(PassThrough::Warned(warning)));
-        let is_physical = input.shown_pose == self.scene.physical_pose;
-        if is_physical && !self.is_shadow_withheld {
+        if self.shows_what_is_there(input) && !self.is_shadow_withheld {
             return Ok(Err(PassThrough::PhysicalPose));
         }
         if input.effect == 0.0 {
@@ -134,24 +133,33 @@ impl Stage {
         })
     }
 
-    /// Poses the toy as it is to be shown, and makes `reach` hold it.
+    /// Whether the toy is to be shown as it really is and where it really stands.
+    fn shows_what_is_there(&self, input: &FrameInput) -> bool {
+        let is_elsewhere = input
+            .world_from_shown
+            .is_some_and(|world_from_shown| world_from_shown != input.world_from_object);
+        !is_elsewhere && input.shown_pose == self.scene.physical_pose
+    }
+
+    /// Poses the toy as and where it is to be shown, and makes `reach` hold it.
     ///
-    /// A clip is looked through at once, so that the region rarely grows while it plays; poses by nodes are only known when
-    /// they come.
+    /// A clip is looked through at once where it is shown first, so that the region rarely grows while it plays; poses by nodes and
+    /// further places are only known when they come.
     fn reach_shown_pose(&mut self, input: &FrameInput) -> Result<(), ToyError> {
         let clip = input.shown_pose.clip();
-        let (physical, anchor_from_object) = (&self.scene.physical_pose, self.anchor_from_object());
+        let anchor_from_shown = self.anchor_from_shown(input);
         let known = self.reach.take().filter(|known| known.clip == clip);
         let mut reach = match known {
             Some(known) => known,
             None => {
                 self.cached_footprint = None;
-                let poses = (physical, clip);
-                ClipReach::new(&self.scene.toy, &anchor_from_object, poses, &mut self.posed)?
+                let physical = (&self.scene.physical_pose, &self.anchor_from_object());
+                let shown = (clip, &anchor_from_shown);
+                ClipReach::new(&self.scene.toy, physical, shown, &mut self.posed)?
             }
         };
         let shown = &input.shown_pose;
-        self.scene.toy.pose(shown, &anchor_from_object, &mut self.posed)?;
+        self.scene.toy.pose(shown, &anchor_from_shown, &mut self.posed)?;
         if reach.grow(&self.posed) {
             self.cached_footprint = None;
         }

@@ -93,6 +93,12 @@ impl Stage {
         self.layout().world_from_anchor().inverse() * self.world_from_object
     }
 
+    /// To the anchor from the object where it is shown: with no place of its own, where it stands.
+    pub(super) fn anchor_from_shown(&self, input: &FrameInput) -> DMat4 {
+        let world_from_shown = input.world_from_shown.as_ref();
+        self.layout().world_from_anchor().inverse() * *world_from_shown.unwrap_or(&self.world_from_object)
+    }
+
     /// The middle of the physical toy.
     pub(super) fn toy_in_anchor(&self) -> DVec3 {
         self.physical_bounds.centre()

@@ -191,6 +191,10 @@ fn frame_from_record(
             Some(matrix) => at(&format!("{field}.world_from_object"), check::similarity(matrix))?,
             None => defaults.world_from_object,
         },
+        world_from_shown: record
+            .world_from_shown
+            .map(|matrix| at(&format!("{field}.world_from_shown"), check::similarity(matrix)))
+            .transpose()?,
         exposure: at(
             &format!("{field}.exposure"),
             check::number(record.exposure.unwrap_or(1.0), &check::EXPOSURE),

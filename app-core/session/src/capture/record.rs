@@ -310,6 +310,11 @@ pub struct FrameRecord {
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::COORDINATE_M)))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub world_from_object: Option<[f64; 16]>,
+    /// Where the toy is to be shown in this frame, by the rules of the toy's own `world_from_object`; where the real toy
+    /// stands if there is none. It is a place in the world: a correction of the real toy's does not move it.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::COORDINATE_M)))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub world_from_shown: Option<[f64; 16]>,
     /// Exposure (duration times sensitivity) of the picture over that of the session's other frames; 1 where there is
     /// none.
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::EXPOSURE)))]

@@ -22,6 +22,8 @@ pub struct LiveFrame {
     pub light_estimate: Option<LightEstimate>,
     /// The pose that was shown.
     pub shown_pose: Pose,
+    /// Where it was shown, if that is not where the real toy stands.
+    pub world_from_shown: Option<DMat4>,
 }
 
 impl LiveFrame {
@@ -32,6 +34,7 @@ impl LiveFrame {
             image: path.to_owned(),
             intrinsics: Some((&self.camera.intrinsics).into()),
             world_from_object: Some(self.world_from_object.to_cols_array()),
+            world_from_shown: self.world_from_shown.map(|matrix| matrix.to_cols_array()),
             exposure: Some(self.exposure),
             light_estimate: self.light_estimate.as_ref().map(Into::into),
             world_from_camera: self.camera.world_from_camera.to_cols_array(),

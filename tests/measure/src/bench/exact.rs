@@ -53,18 +53,23 @@ pub(super) fn measure(
         let input = FrameInput::from(&session.frame(index)?);
         if let Some(rect) = core.frame(&input).map_err(failed)?.region {
             let rays = Rays::new(scene, &input.camera, &rect);
-            let map = |pose: &Pose| rays.visibility(scene, pose).map_err(|error| failed(error.into()));
+            let map = |pose: &Pose, world_from_object: &DMat4| {
+                let visibility = rays.visibility(scene, pose, world_from_object);
+                visibility.map_err(|error| failed(error.into()))
+            };
             let known = physical.take().filter(|(camera, map)| {
                 *camera == input.camera && [map.width, map.height] == rect.size_px.to_array()
             });
             let of_place = match known {
                 Some((_, map)) => map,
-                None => map(&scene.physical_pose)?,
+                None => map(&scene.physical_pose, &scene.world_from_object)?,
             };
             physical = Some((input.camera, of_place.clone()));
+            let world_from_shown = input.world_from_shown.as_ref();
+            let world_from_shown = world_from_shown.unwrap_or(&scene.world_from_object);
             let maps = InjectedVisibility {
                 physical: Some(of_place),
-                shown: Some(map(&input.shown_pose)?),
+                shown: Some(map(&input.shown_pose, world_from_shown)?),
             };
             core.inject_visibility(&maps).map_err(failed)?;
             core.frame(&input).map_err(failed)?;
@@ -93,7 +98,7 @@ pub(super) fn measure(
 struct Rays {
     region: Region,
     lights: Vec<Vec<Light>>,
-    anchor_from_object: DMat4,
+    anchor_from_world: DMat4,
 }
 
 impl Rays {
@@ -126,14 +131,20 @@ impl Rays {
         Self {
             region: Region::new(&view, rect, &layout),
             lights: planes_from_world.iter().map(lights_in).collect(),
-            anchor_from_object: layout.world_from_anchor().inverse() * scene.world_from_object,
+            anchor_from_world: layout.world_from_anchor().inverse(),
         }
     }
 
-    /// Visibility of each light over the region with the toy in a pose.
-    fn visibility(&self, scene: &Scene, pose: &Pose) -> Result<FloatMap, ToyError> {
+    /// Visibility of each light over the region with the toy in a pose at a place.
+    fn visibility(
+        &self,
+        scene: &Scene,
+        pose: &Pose,
+        world_from_object: &DMat4,
+    ) -> Result<FloatMap, ToyError> {
         let mut posed = PosedMesh::default();
-        scene.toy.pose(pose, &self.anchor_from_object, &mut posed)?;
+        let anchor_from_object = self.anchor_from_world * *world_from_object;
+        scene.toy.pose(pose, &anchor_from_object, &mut posed)?;
         let occluder_in = |plane_from_anchor: &DMat4| {
             let positions = posed.positions.iter();
             let positions: Vec<DVec3> = positions

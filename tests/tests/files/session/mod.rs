@@ -124,6 +124,11 @@ fn a_frame_brings_what_a_live_camera_changes() {
     assert_eq!([first.exposure, second.exposure], [1.0, 0.5]);
     assert_eq!(first.world_from_object, capture.scene().world_from_object);
     assert_eq!(second.world_from_object.w_axis.x, 0.25);
+    let [of_first, of_second] = [first.world_from_shown, second.world_from_shown];
+    assert_eq!(
+        (of_first, of_second.map(|place| place.w_axis.x)),
+        (None, Some(0.5))
+    );
 }
 
 #[test]
@@ -197,6 +202,7 @@ fn each_wrong_value_is_named() {
         ("frames[1].light_estimate.spherical_harmonics[26]", json!(1e10), "is not from"),
         ("frames[1].intrinsics.fx", json!(-1), "-1 is not from"),
         ("frames[1].world_from_object", with(5, json!(-1)), "mirrors"),
+        ("frames[1].world_from_shown", with(5, json!(-1)), "mirrors"),
         ("backgrounds[0].intrinsics.fy", json!(0), "0 is not from"),
         ("backgrounds", json!(vec![plate; 513]), "has 513 entries, but at most 512"),
         ("frames[0].animation.clip", json!("Wafe"), "none is called \"Wafe\"; it has Wave"),

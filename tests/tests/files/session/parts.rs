@@ -121,6 +121,7 @@ pub(crate) fn good_index() -> Value {
                 "light_estimate": {"direction_to_light": [0, 2, 0], "intensity": [1, 2, 3],
                     "ambient_intensity": 1000, "color_temperature": 5600, "spherical_harmonics": vec![0.5; 27]},
                 "world_from_object": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.25, 0, 0, 1],
+                "world_from_shown": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.5, 0, 0, 1],
                 "animation": {"clip": null, "time": 0}}
         ],
         "probe": {"kind": "fresnel_lens", "world_from_lens": IDENTITY, "radius": 0.05,

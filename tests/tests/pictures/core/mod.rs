@@ -11,6 +11,7 @@ mod refused;
 mod reuse;
 mod scale;
 mod shaders;
+mod shown;
 mod still;
 mod things;
 mod warnings;
