@@ -49,7 +49,10 @@ pub fn contact_sheet(cells: &[Cell], columns: u32) -> Option<Image> {
         rgba8: BACKGROUND.repeat(n_pixels),
     };
     for (index, cell) in (0..).zip(cells) {
-        let corner = [index % columns * step[0] + MARGIN_PX, index / columns * step[1] + MARGIN_PX];
+        let corner = [
+            index % columns * step[0] + MARGIN_PX,
+            index / columns * step[1] + MARGIN_PX,
+        ];
         if cell.is_marked {
             let half = MARGIN_PX / 2;
             let framed_px = [first.width_px, first.height_px].map(|side| side + MARGIN_PX);

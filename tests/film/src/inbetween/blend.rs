@@ -43,7 +43,9 @@ impl Mix<'_> {
         let [left, right] = self.pictures;
         let weights = self.weights();
         let pixels = left.rgb.iter().zip(&right.rgb).zip(&weights);
-        let rgb = pixels.map(|((left, right), weight)| mixed(left, right, *weight)).collect();
+        let rgb = pixels
+            .map(|((left, right), weight)| mixed(left, right, *weight))
+            .collect();
         let blend = LightPicture { rgb, ..*left };
         match reference {
             Some(reference) => with_table(blend, reference, self.touched),
@@ -116,9 +118,13 @@ fn with_table(blend: LightPicture, reference: &Reference, touched: &[bool]) -> L
 /// 1 well clear of what is touched, and 0 there.
 fn table(touched: Vec<[f32; 1]>, width_px: usize) -> Vec<[f32; 1]> {
     let grown = smoothed(touched, width_px, GROWN_PX / 3);
-    let grown = grown.into_iter().map(|[near]| [if near > 1e-4 { 1.0 } else { 0.0 }]);
+    let grown = grown
+        .into_iter()
+        .map(|[near]| [if near > 1e-4 { 1.0 } else { 0.0 }]);
     let seam = smoothed(grown.collect(), width_px, SEAM_PX);
-    seam.into_iter().map(|[near]| [(1.0 - near).clamp(0.0, 1.0)]).collect()
+    seam.into_iter()
+        .map(|[near]| [(1.0 - near).clamp(0.0, 1.0)])
+        .collect()
 }
 
 /// Light of the blend over that of the reference, over a neighbourhood of the table.
@@ -158,7 +164,10 @@ fn same(blend: &LightPicture, shown: &[[f32; 3]], table: &[[f32; 1]]) -> Vec<f32
     let usual = if sorted.is_empty() {
         LEAST_NOISE
     } else {
-        sorted.select_nth_unstable_by(middle, f32::total_cmp).1.max(LEAST_NOISE)
+        sorted
+            .select_nth_unstable_by(middle, f32::total_cmp)
+            .1
+            .max(LEAST_NOISE)
     };
     sizes
         .into_iter()

@@ -49,7 +49,11 @@ pub(super) fn gains(picture: &LightPicture, reference: &LightPicture, clear: &Cl
     let [ours, theirs] =
         [picture, reference].map(|picture| smoothed(picture.rgb.clone(), picture.width_px, REACH_PX));
     let of_channel = |channel: usize| {
-        let pixels = ours.iter().zip(&theirs).zip(&clear.0).filter(|(_, is_clear)| **is_clear);
+        let pixels = ours
+            .iter()
+            .zip(&theirs)
+            .zip(&clear.0)
+            .filter(|(_, is_clear)| **is_clear);
         let lights = pixels.map(|((ours, theirs), _)| [ours[channel], theirs[channel]]);
         let usable = lights.filter(|lights| lights.iter().all(|light| USABLE.contains(light)));
         let ratios: Vec<f64> = usable.map(|[ours, theirs]| f64::from(theirs / ours)).collect();

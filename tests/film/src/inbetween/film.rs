@@ -92,7 +92,7 @@ impl<'a> Ready<'a> {
     /// The toy in a pose at the place where all frames show it.
     fn picture(&mut self, pose: &Pose) -> Result<LightPicture, InbetweenError> {
         let input = self.key.input.clone().with_shown_pose(pose.clone());
-        let input = shown_at(input, self.world_from_shown);
+        let input = input.with_world_from_shown(Some(self.world_from_shown));
         let picture = self.core.frame(&input).and_then(|_| self.core.read_picture());
         let failed = |reason: CoreError| InbetweenError::Core {
             index: self.index,
@@ -100,10 +100,6 @@ impl<'a> Ready<'a> {
         };
         Ok(LightPicture::of(&picture.map_err(failed)?))
     }
-}
-
-fn shown_at(input: app_core::frame::FrameInput, _world_from_shown: DMat4) -> app_core::frame::FrameInput {
-    input
 }
 
 /// Makes the film of a shot on the device of `core`. Tells `progress` the step that begins, and how many there are.
@@ -275,9 +271,16 @@ impl Maker<'_> {
         for ((pixel, left), right) in sum.rgb.iter_mut().zip(&left.rgb).zip(&right.rgb) {
             for channel in 0..3 {
                 let lights = [left[channel], pixel[channel], right[channel]];
-                pixel[channel] = lights.iter().zip(ONION_WEIGHTS).map(|(light, weight)| light * weight).sum();
+                pixel[channel] = lights
+                    .iter()
+                    .zip(ONION_WEIGHTS)
+                    .map(|(light, weight)| light * weight)
+                    .sum();
             }
         }
-        write_png(&self.options.out.join(format!("onion_{:04}.png", entry.number)), &sum.encoded())
+        write_png(
+            &self.options.out.join(format!("onion_{:04}.png", entry.number)),
+            &sum.encoded(),
+        )
     }
 }

@@ -11,6 +11,7 @@ use super::InbetweenError;
 use super::blend::Reference;
 use super::exposure::{Clear, gains};
 use super::light::LightPicture;
+use super::placement;
 use super::resample::resampled;
 use super::shot::Shot;
 use super::stage::Figure;
@@ -153,10 +154,12 @@ fn sighted_key(shot: &Shot, index: usize) -> Result<Sighted, InbetweenError> {
 }
 
 fn aligned(aligner: &mut Aligner, input: &FrameInput, index: usize) -> Result<Alignment, InbetweenError> {
-    aligner.align(input).map_err(|reason: AlignError| InbetweenError::Align {
-        index,
-        reason: Box::new(reason),
-    })
+    aligner
+        .align(input)
+        .map_err(|reason: AlignError| InbetweenError::Align {
+            index,
+            reason: Box::new(reason),
+        })
 }
 
 /// The lights as most keys have them: medians of what was found in each.
@@ -171,7 +174,11 @@ fn common_lights(scene: &Scene, keys: &[Sighted]) -> Arc<[Light]> {
     };
     if lists.iter().any(|list| list.len() != first.len()) {
         // The list of most lights that anyone has found.
-        return lists.iter().max_by_key(|list| list.len()).unwrap_or(first).clone();
+        return lists
+            .iter()
+            .max_by_key(|list| list.len())
+            .unwrap_or(first)
+            .clone();
     }
     let light = |index: usize| {
         let of_keys: Vec<Light> = lists.iter().map(|list| list[index]).collect();
@@ -252,7 +259,24 @@ impl Stage<'_> {
 
     fn figure(&self, pose: &Pose, world_from_object: &DMat4) -> Result<Figure, InbetweenError> {
         let toy = &self.shot.scene().toy;
-        Ok(Figure::new(toy, (pose, world_from_object), &self.camera, self.size_px())?)
+        Ok(Figure::new(
+            toy,
+            (pose, world_from_object),
+            &self.camera,
+            self.size_px(),
+        )?)
+    }
+
+    /// Where a print stands that was found somewhere: shifted and turned on the table alone, if that explains it.
+    fn on_plane(&self, key: &Sighted, found: &DMat4) -> Result<DMat4, InbetweenError> {
+        let scene = self.shot.scene();
+        let mark = &scene.world_from_object;
+        let Some(receiver) = nearest(&scene.receivers, mark) else {
+            return Ok(*found);
+        };
+        let on_mark = self.figure(&key.pose, mark)?;
+        let standing = placement::on_plane([mark, found], on_mark.points(), &self.camera, receiver);
+        Ok(standing.unwrap_or(*found))
     }
 
     /// A key's photograph in camera and exposure of all, and its print as it is found in there.
@@ -287,13 +311,22 @@ impl Stage<'_> {
             alignment = aligned(&mut Aligner::new(of_print.clone()), &input, index)?;
         }
         let warnings = alignment.warnings.iter().map(ToString::to_string).collect();
+        let world_from_object = self.on_plane(key, &alignment.world_from_object)?;
         let input = alignment
             .applied_to(&input)
             .with_camera(self.camera)
+            .with_world_from_object(world_from_object)
             .with_lights(Some(Arc::clone(self.lights)));
         let scene = alignment.scene.map_or_else(
             || Arc::new(of_print.clone()),
-            |changed| Arc::new(of_print.clone().with_plates(plates(&changed, scene)).with_toy(Arc::clone(&changed.toy))),
+            |changed| {
+                Arc::new(
+                    of_print
+                        .clone()
+                        .with_plates(plates(&changed, scene))
+                        .with_toy(Arc::clone(&changed.toy)),
+                )
+            },
         );
         let grain = app_core::grain::Grain::of(&scene, input.image.rgba(), &input.camera);
         let [now, then] = [&self.camera, &found_camera].map(|camera| camera.world_from_camera);

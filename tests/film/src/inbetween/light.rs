@@ -61,7 +61,11 @@ pub fn code_of_linear(light: f32) -> u8 {
 /// Values of each pixel, averaged over squares of `2 * reach_px + 1` three times, which is close to a Gaussian whose deviation is
 /// `reach_px + 0.5`. Beyond the border there is nothing, which counts as 0: divide by the same of a picture of ones.
 #[must_use]
-pub fn smoothed<const N: usize>(mut values: Vec<[f32; N]>, width_px: usize, reach_px: usize) -> Vec<[f32; N]> {
+pub fn smoothed<const N: usize>(
+    mut values: Vec<[f32; N]>,
+    width_px: usize,
+    reach_px: usize,
+) -> Vec<[f32; N]> {
     if width_px == 0 || values.is_empty() {
         return values;
     }
@@ -94,7 +98,9 @@ fn average<const N: usize>(
             sum[channel] += sign * f64::from(value[channel]);
         }
     };
-    line.iter().take(reach_px).for_each(|value| add(&mut sum, value, 1.0));
+    line.iter()
+        .take(reach_px)
+        .for_each(|value| add(&mut sum, value, 1.0));
     for k in 0..n {
         if let Some(entering) = line.get(k + reach_px) {
             add(&mut sum, entering, 1.0);

@@ -8,6 +8,7 @@ mod exposure;
 mod film;
 mod keys;
 pub mod light;
+mod placement;
 pub mod raster;
 mod report;
 pub mod resample;

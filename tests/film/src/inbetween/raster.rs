@@ -30,21 +30,28 @@ impl Sights {
             let Some(projected) = in_front(corners, *triangle) else {
                 continue;
             };
-            cover(projected.map(DVec3::truncate), [width_px, height_px], |pixel, weights| {
-                let place: &mut Option<Sight> = &mut sights[pixel];
-                // One over the depth is linear in the picture.
-                let shares = [0, 1, 2].map(|k| weights[k] / projected[k].z);
-                let nearness = shares.iter().sum::<f64>();
-                #[allow(clippy::cast_possible_truncation, reason = "depths and weights of one picture")]
-                let sight = Sight {
-                    triangle: index,
-                    corners: shares.map(|share| (share / nearness) as f32),
-                    depth_m: (1.0 / nearness) as f32,
-                };
-                if place.is_none_or(|known| sight.depth_m < known.depth_m) {
-                    *place = Some(sight);
-                }
-            });
+            cover(
+                projected.map(DVec3::truncate),
+                [width_px, height_px],
+                |pixel, weights| {
+                    let place: &mut Option<Sight> = &mut sights[pixel];
+                    // One over the depth is linear in the picture.
+                    let shares = [0, 1, 2].map(|k| weights[k] / projected[k].z);
+                    let nearness = shares.iter().sum::<f64>();
+                    #[allow(
+                        clippy::cast_possible_truncation,
+                        reason = "depths and weights of one picture"
+                    )]
+                    let sight = Sight {
+                        triangle: index,
+                        corners: shares.map(|share| (share / nearness) as f32),
+                        depth_m: (1.0 / nearness) as f32,
+                    };
+                    if place.is_none_or(|known| sight.depth_m < known.depth_m) {
+                        *place = Some(sight);
+                    }
+                },
+            );
         }
         Self { width_px, sights }
     }

@@ -134,18 +134,26 @@ pub(super) fn write_report(folder: &Path, report: &Report, cells: &[Cell]) -> Re
 
 /// A line for each frame. Numbers of keys are counted from 0; what there is not is empty.
 fn exposure_sheet(report: &Report) -> String {
-    let mut text = "frame,picture,source,time_s,pose,left_key,right_key,left_weight,right_weight,unseen_share,\
+    let mut text =
+        "frame,picture,source,time_s,pose,left_key,right_key,left_weight,right_weight,unseen_share,\
                     left_gain,right_gain,left_camera_px,right_camera_px,left_print_mm,right_print_mm\n"
-        .to_owned();
+            .to_owned();
     for frame in &report.frames {
         let source = if frame.is_key { "key" } else { "in-between" };
         let of_keys = |value: &dyn Fn(usize) -> Option<String>| {
             let value = |at: usize| frame.keys.get(at).and_then(|_| value(at)).unwrap_or_default();
             format!("{},{}", value(0), value(1))
         };
-        let camera = |at: usize| report.keys[frame.keys[at]].camera.as_ref().map(|off| off.moved_px);
+        let camera = |at: usize| {
+            report.keys[frame.keys[at]]
+                .camera
+                .as_ref()
+                .map(|off| off.moved_px)
+        };
         let print = |at: usize| report.keys[frame.keys[at]].print.as_ref().map(|off| off.moved_mm);
-        let unseen = frame.unseen.map_or(String::new(), |unseen| format!("{unseen:.4}"));
+        let unseen = frame
+            .unseen
+            .map_or(String::new(), |unseen| format!("{unseen:.4}"));
         // A text cannot fail to grow.
         let _ = writeln!(
             text,

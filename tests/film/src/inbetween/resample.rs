@@ -59,10 +59,15 @@ fn mirrored(at: i64, n: usize) -> usize {
 fn sampled(picture: &LightPicture, coefficients: &[[f64; 3]], at: DVec2) -> [f32; 3] {
     let (width, height) = (picture.width_px, picture.height_px);
     // A place far outside, or none, is that of the border.
-    let at = at.max(DVec2::splat(-8.0)).min(DVec2::new(width as f64, height as f64) + 8.0);
+    let at = at
+        .max(DVec2::splat(-8.0))
+        .min(DVec2::new(width as f64, height as f64) + 8.0);
     let first = at.floor();
     let [columns, rows] = (at - first).to_array().map(weights);
-    #[allow(clippy::cast_possible_truncation, reason = "clamped to the picture's size above")]
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "clamped to the picture's size above"
+    )]
     let first = first.to_array().map(|corner| corner as i64 - 2);
     let mut sum = [0.0; 3];
     for (y, row_weight) in (first[1]..).zip(rows) {
@@ -124,4 +129,3 @@ fn filter(values: &mut [[f64; 3]], (first, step, n): (usize, usize, usize)) {
         }
     }
 }
-

@@ -7,6 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use app_core::scene::{Pose, Scene};
+use app_core::session::SessionWarning;
 use app_core::session::record::{
     BackgroundRecord, CaptureRecord, Encoding, FrameRecord, Index, IntrinsicsRecord, LensRecord, LightRecord,
     PoseRecord, ReceiverRecord, ToyRecord, UncertaintyRecord,
@@ -15,7 +16,6 @@ use app_core::session::{
     Capture, FileError, Files, Folder, FolderError, INDEX_FILE, MAX_INDEX_BYTES, Session, SessionError,
     SessionFrame,
 };
-use app_core::session::SessionWarning;
 use serde::Deserialize;
 use thiserror::Error;
 
@@ -154,9 +154,13 @@ impl Shot {
             path: file.clone(),
             reason,
         };
-        let n_bytes = fs::metadata(&file).map_err(|error| at_file(error.to_string()))?.len();
+        let n_bytes = fs::metadata(&file)
+            .map_err(|error| at_file(error.to_string()))?
+            .len();
         if n_bytes > MAX_INDEX_BYTES {
-            return Err(at_file(format!("larger than the {MAX_INDEX_BYTES} bytes allowed")));
+            return Err(at_file(format!(
+                "larger than the {MAX_INDEX_BYTES} bytes allowed"
+            )));
         }
         let text = fs::read(&file).map_err(|error| at_file(error.to_string()))?;
         let record = parsed(&text).map_err(at_file)?;

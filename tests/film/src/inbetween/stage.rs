@@ -93,6 +93,12 @@ impl Figure {
         mask
     }
 
+    /// Vertices in world.
+    #[must_use]
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
     /// The middle of the vertices.
     #[must_use]
     pub fn middle(&self) -> DVec3 {
@@ -128,8 +134,13 @@ impl Figure {
             );
             let steps = -at.y / step.y;
             let hit = at + steps * step;
-            let is_on = steps.is_finite() && steps >= 0.0 && DVec2::new(hit.x, hit.z).abs().cmple(receiver.half_extent_m).all();
-            is_on.then(|| self.camera.seen_at(receiver.world_from_plane.transform_point3(hit)))
+            let is_on = steps.is_finite()
+                && steps >= 0.0
+                && DVec2::new(hit.x, hit.z).abs().cmple(receiver.half_extent_m).all();
+            is_on.then(|| {
+                self.camera
+                    .seen_at(receiver.world_from_plane.transform_point3(hit))
+            })
         };
         self.points
             .iter()
@@ -192,7 +203,10 @@ fn points_of(light: &Light, from: DVec3) -> Vec<DVec3> {
         Light::Directional {
             direction_to_light_in_world,
             angular_radius_rad,
-        } => (direction_to_light_in_world.normalize_or_zero(), angular_radius_rad.tan()),
+        } => (
+            direction_to_light_in_world.normalize_or_zero(),
+            angular_radius_rad.tan(),
+        ),
     };
     let axis = match light {
         Light::Sphere { .. } => (middle - from).normalize_or(DVec3::Y),

@@ -120,7 +120,10 @@ pub fn moments(times_secs: &[f64], rate: Rate, ease: Ease, hold: usize) -> Resul
 /// The key before a time, and the part of the time to the next.
 fn part_at(times_secs: &[f64], time_secs: f64) -> (usize, f64) {
     let last = times_secs.len() - 1;
-    let left = times_secs.partition_point(|key| *key <= time_secs).clamp(1, last.max(1)) - 1;
+    let left = times_secs
+        .partition_point(|key| *key <= time_secs)
+        .clamp(1, last.max(1))
+        - 1;
     let (start, end) = (times_secs[left], times_secs[(left + 1).min(last)]);
     // Times of a shot rise from key to key.
     let part = if end > start {

@@ -15,11 +15,22 @@ pub fn findings(keys: &Keys) -> Vec<String> {
     for (index, key) in keys.keys.iter().enumerate() {
         let found = &key.found;
         let said = [camera(found), print(found, keys.is_mark), exposure(found)];
-        lines.extend(said.into_iter().flatten().map(|line| format!("key {index}: {line}")));
-        lines.extend(found.warnings.iter().map(|warning| format!("key {index}: warning: {warning}")));
+        lines.extend(
+            said.into_iter()
+                .flatten()
+                .map(|line| format!("key {index}: {line}")),
+        );
+        lines.extend(
+            found
+                .warnings
+                .iter()
+                .map(|warning| format!("key {index}: warning: {warning}")),
+        );
     }
     if !keys.is_mark {
-        lines.push("the prints stand far from the mark; all frames show the toy where print 0 stands".to_owned());
+        lines.push(
+            "the prints stand far from the mark; all frames show the toy where print 0 stands".to_owned(),
+        );
     }
     if lines.is_empty() {
         lines.push("all keys have one camera, one exposure and one place of the toy".to_owned());
@@ -63,7 +74,10 @@ fn exposure(found: &Found) -> Option<String> {
     if spread < ONE_COLOR {
         let change = 100.0 / green - 100.0;
         let word = if change < 0.0 { "darker" } else { "brighter" };
-        return Some(format!("the photograph is {:.1} % {word} than the reference; undone", change.abs()));
+        return Some(format!(
+            "the photograph is {:.1} % {word} than the reference; undone",
+            change.abs()
+        ));
     }
     let [red, green, blue] = found.gains.map(|gain| 100.0 / gain - 100.0);
     Some(format!(
