@@ -12,6 +12,7 @@ use super::blend::Reference;
 use super::exposure::{Clear, gains};
 use super::light::LightPicture;
 use super::placement;
+use super::register::registered;
 use super::resample::resampled;
 use super::shot::Shot;
 use super::stage::Figure;
@@ -21,6 +22,8 @@ const MOST_OFF_MARK_M: f64 = 0.006;
 const MOST_OFF_MARK_RAD: f64 = 0.1;
 /// A camera nearer to the reference than this, at the picture's corners, is left as it is.
 const LEAST_MOVED_PX: f64 = 0.02;
+/// Each begins where the one before ended.
+const N_REGISTRATIONS: usize = 2;
 
 /// A key as it would have been photographed by the reference camera, in the reference exposure.
 #[derive(Clone, Debug)]
@@ -229,6 +232,14 @@ pub(super) fn median(mut values: Vec<f64>) -> f64 {
     middle.iter().filter_map(|at| values.get(*at)).sum::<f64>() / 2.0
 }
 
+/// A photograph in the camera of all keys.
+struct Brought {
+    picture: LightPicture,
+    /// How far it was moved, at the corners; 0 where it is as it was taken.
+    moved_px: f64,
+    gains: [f64; 3],
+}
+
 /// What all keys are brought to.
 struct Stage<'a> {
     shot: &'a Shot,
@@ -279,22 +290,54 @@ impl Stage<'_> {
         Ok(standing.unwrap_or(*found))
     }
 
+    /// A photograph in the camera of all, and what its channels are to be multiplied by. `from_px` is where its camera was found.
+    fn brought(
+        &self,
+        own: &LightPicture,
+        from_px: DMat3,
+        (reference, clear): (&Reference, &Clear),
+    ) -> Brought {
+        let is_moved = |from_px: &DMat3| corner_px(from_px, self.size_px()) > LEAST_MOVED_PX;
+        let table = &reference.picture;
+        let mut brought = Brought {
+            picture: own.clone(),
+            moved_px: 0.0,
+            gains: gains(own, table, clear),
+        };
+        if !is_moved(&from_px) {
+            return brought;
+        }
+        let mut from_px = from_px;
+        for _ in 0..N_REGISTRATIONS {
+            let there = resampled(own, &from_px);
+            let gains = gains(&there, table, clear);
+            from_px *= registered(&brightened(there, gains), table, clear);
+        }
+        brought.picture = resampled(own, &from_px);
+        brought.gains = gains(&brought.picture, table, clear);
+        brought.moved_px = corner_px(&from_px, self.size_px());
+        brought
+    }
+
     /// A key's photograph in camera and exposure of all, and its print as it is found in there.
     fn key(&self, index: usize, key: &Sighted, reference: &Reference) -> Result<Key, InbetweenError> {
         let scene = self.shot.scene();
         let found_camera = key.alignment.camera;
         let receiver = nearest(&scene.receivers, &key.alignment.world_from_object);
-        let from_px = carried(&self.camera, &found_camera, receiver);
-        let moved_px = corner_px(&from_px, self.size_px());
-        let mut picture = LightPicture::of(key.recorded.image.rgba());
-        let is_moved = moved_px > LEAST_MOVED_PX;
-        if is_moved {
-            picture = resampled(&picture, &from_px);
-        }
+        let own = LightPicture::of(key.recorded.image.rgba());
         let figure = self.figure(&key.pose, &key.alignment.world_from_object)?;
         let touched = figure.touched(&scene.receivers, self.lights);
         let clear = Clear::new(&touched, reference, self.size_px());
-        let gains = gains(&picture, &reference.picture, &clear);
+        let Brought {
+            mut picture,
+            moved_px,
+            gains,
+        } = self.brought(
+            &own,
+            carried(&self.camera, &found_camera, receiver),
+            (reference, &clear),
+        );
+        let is_moved = moved_px > 0.0;
         let is_dimmed = gains != [1.0; 3];
         if is_dimmed {
             picture = brightened(picture, gains);

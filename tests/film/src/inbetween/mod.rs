@@ -10,6 +10,7 @@ mod keys;
 pub mod light;
 mod placement;
 pub mod raster;
+mod register;
 mod report;
 pub mod resample;
 pub mod shot;
