@@ -193,7 +193,11 @@ impl Maker<'_> {
             pictures: [&left_picture, &right_picture],
             share,
             seen: [&seen[0], &seen[1]],
+            covered: &figure.covered(),
             touched: &touched,
+            is_clean: [moment.left, right]
+                .iter()
+                .all(|key| keys.keys[*key].input.grain.is_none()),
         };
         let image = if is_key && self.options.keeps_keys {
             self.shot.key(moment.left)?.image.as_ref().clone()

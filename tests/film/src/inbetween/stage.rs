@@ -78,11 +78,18 @@ impl Figure {
         })
     }
 
+    /// Pixels of the toy.
+    #[must_use]
+    pub fn covered(&self) -> Vec<bool> {
+        let mut mask = vec![false; self.size_px[0] * self.size_px[1]];
+        self.draw(&self.corners, &mut mask);
+        mask
+    }
+
     /// Pixels of the toy and of all its shadows on receivers.
     #[must_use]
     pub fn touched(&self, receivers: &[Receiver], lights: &[Light]) -> Vec<bool> {
-        let mut mask = vec![false; self.size_px[0] * self.size_px[1]];
-        self.draw(&self.corners, &mut mask);
+        let mut mask = self.covered();
         for light in lights {
             for receiver in receivers {
                 for point in points_of(light, self.middle()) {
