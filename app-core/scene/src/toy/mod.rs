@@ -12,6 +12,7 @@
 
 mod accessor;
 mod assemble;
+mod blend;
 mod bounds;
 mod casters;
 mod check;

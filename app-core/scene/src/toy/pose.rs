@@ -5,6 +5,7 @@ use glam::{DAffine3, DMat4, DVec3, Vec3};
 use super::Toy;
 use super::error::ToyError;
 use super::geometry::{ActiveTarget, Geometry};
+use super::graph::Local;
 use super::limits::{MAX_NUMBER, MAX_POSED_M};
 use super::moment::{NodeId, NodePose, Pose};
 use super::normal::{carried_normal, face_normal};
@@ -53,7 +54,16 @@ impl Toy {
     }
 
     pub(super) fn rig_pose(&self, pose: &Pose, anchor_from_object: DAffine3) -> Result<RigPose, ToyError> {
-        let set = match pose {
+        Ok(self.rig.pose(&self.set(pose)?, anchor_from_object))
+    }
+
+    /// Each node's transform to its parent in a pose, and the weights of all morph targets.
+    pub(super) fn locals(&self, pose: &Pose) -> Result<(Vec<Local>, Vec<f64>), ToyError> {
+        Ok(self.rig.locals(&self.set(pose)?))
+    }
+
+    fn set<'a>(&'a self, pose: &'a Pose) -> Result<Set<'a>, ToyError> {
+        Ok(match pose {
             Pose::Authored => Set::Authored,
             Pose::Clip { clip, time_secs } => {
                 Set::Clip(self.clip(*clip)?, self.clamp_time(*clip, *time_secs)?.0)
@@ -62,8 +72,7 @@ impl Toy {
                 self.check_nodes(pose)?;
                 Set::Nodes(pose)
             }
-        };
-        Ok(self.rig.pose(&set, anchor_from_object))
+        })
     }
 
     fn check_nodes(&self, pose: &NodePose) -> Result<(), ToyError> {

@@ -33,6 +33,12 @@ pub(super) struct RigPose {
 impl Rig {
     /// Poses the rig.
     pub(super) fn pose(&self, set: &Set<'_>, anchor_from_object: DAffine3) -> RigPose {
+        let (locals, morph_weights) = self.locals(set);
+        self.posed(&locals, morph_weights, anchor_from_object)
+    }
+
+    /// Each node's transform to its parent, and the weights of all morph targets.
+    pub(super) fn locals(&self, set: &Set<'_>) -> (Vec<Local>, Vec<f64>) {
         let mut locals: Vec<Local> = self.graph.nodes.iter().map(|node| node.rest).collect();
         let mut morph_weights = self.graph.rest_weights.clone();
         match *set {
@@ -40,6 +46,10 @@ impl Rig {
             Set::Clip(clip, time_secs) => self.apply_clip(clip, time_secs, &mut locals, &mut morph_weights),
             Set::Nodes(pose) => self.apply_nodes(pose, &mut locals, &mut morph_weights),
         }
+        (locals, morph_weights)
+    }
+
+    fn posed(&self, locals: &[Local], morph_weights: Vec<f64>, anchor_from_object: DAffine3) -> RigPose {
         let mut anchor_from_node = vec![DAffine3::IDENTITY; locals.len()];
         for &node in &self.graph.parents_first {
             let parent = self.graph.nodes[node].parent;

@@ -250,19 +250,19 @@ impl Maker<'_> {
         if moment.share == 0.0 {
             return Ok(left.clone());
         }
-        match (left, of(moment.left + 1)) {
+        let right = of(moment.left + 1).ok_or(InbetweenError::NoKey)?;
+        match (left, right) {
             (
                 Pose::Clip { clip, time_secs },
-                Some(Pose::Clip {
+                Pose::Clip {
                     clip: next_clip,
                     time_secs: next_secs,
-                }),
+                },
             ) if clip == next_clip => Ok(Pose::Clip {
                 clip: *clip,
                 time_secs: time_secs + moment.share * (next_secs - time_secs),
             }),
-            (Pose::Authored, Some(Pose::Authored)) => Ok(Pose::Authored),
-            _ => Err(InbetweenError::NoWay { left: moment.left }),
+            _ => Ok(self.shot.scene().toy.blended(left, right, moment.share)?),
         }
     }
 

@@ -8,6 +8,7 @@ mod exposure;
 mod film;
 mod keys;
 pub mod light;
+mod nodes;
 mod placement;
 pub mod raster;
 mod register;
@@ -63,12 +64,6 @@ pub enum InbetweenError {
     /// Too many frames.
     #[error(transparent)]
     Timing(#[from] timing::TooMany),
-    /// Keys of two clips, between which nothing tells how to move.
-    #[error("keys[{left}] and keys[{}]: one clip must hold both poses, so that the poses between them are known", left + 1)]
-    NoWay {
-        /// The first of them, from 0.
-        left: usize,
-    },
     /// A folder that is not to be written into.
     #[error("{}: {reason}", folder.display())]
     Out {

@@ -102,30 +102,34 @@ fn filter(values: &mut [[f64; 3]], (first, step, n): (usize, usize, usize)) {
     if n < 2 {
         return;
     }
-    let index = |k: usize| first + k * step;
-    for channel in 0..3 {
-        for k in 0..n {
-            values[index(k)][channel] *= GAIN;
+    let mut line = vec![0.0; n];
+    for channel in [0, 1, 2] {
+        for (k, value) in line.iter_mut().enumerate() {
+            *value = GAIN * values[first + k * step][channel];
         }
-        for pole in POLES {
-            // The sum over all that is mirrored; a power beyond this one is below rounding.
-            let reach = n.min(64);
-            let mut power = 1.0;
-            let mut start = 0.0;
-            for k in 0..reach {
-                start += power * values[index(k)][channel];
-                power *= pole;
-            }
-            values[first][channel] = start;
-            for k in 1..n {
-                values[index(k)][channel] += pole * values[index(k - 1)][channel];
-            }
-            let [last, before] = [n - 1, n - 2].map(|k| values[index(k)][channel]);
-            values[index(n - 1)][channel] = pole / (pole * pole - 1.0) * (last + pole * before);
-            for k in (0..n - 1).rev() {
-                let next = values[index(k + 1)][channel];
-                values[index(k)][channel] = pole * (next - values[index(k)][channel]);
-            }
+        POLES.iter().for_each(|pole| filter_line(&mut line, *pole));
+        for (k, value) in line.iter().enumerate() {
+            values[first + k * step][channel] = *value;
         }
+    }
+}
+
+/// One pole's part, forth and back, of two values or more.
+fn filter_line(line: &mut [f64], pole: f64) {
+    // The sum over all that is mirrored; a power beyond these is below rounding.
+    let mut power = 1.0;
+    let mut start = 0.0;
+    for value in line.iter().take(64) {
+        start += power * value;
+        power *= pole;
+    }
+    line[0] = start;
+    for k in 1..line.len() {
+        line[k] += pole * line[k - 1];
+    }
+    let last = line.len() - 1;
+    line[last] = pole / (pole * pole - 1.0) * (line[last] + pole * line[last - 1]);
+    for k in (0..last).rev() {
+        line[k] = pole * (line[k + 1] - line[k]);
     }
 }

@@ -3,6 +3,7 @@
 //! The file has the fields of a session's `capture.json`, but for `keys` in place of `frames`, and a pose for each print in place of the
 //! toy's one.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -16,8 +17,12 @@ use app_core::session::{
     Capture, FileError, Files, Folder, FolderError, INDEX_FILE, MAX_INDEX_BYTES, Session, SessionError,
     SessionFrame,
 };
+use app_core::toy::ToyError;
 use serde::Deserialize;
 use thiserror::Error;
+
+use super::nodes;
+use super::nodes::NodeRecords;
 
 /// What a shot's index is called in its folder.
 pub const SHOT_FILE: &str = "shot.json";
@@ -67,8 +72,11 @@ struct KeyRecord {
     image: String,
     /// Seconds of the film.
     time: f64,
-    /// Pose that the print was made in.
+    /// Pose that the print was made in: a moment of a clip.
+    #[serde(default)]
     physical_pose: PoseRecord,
+    /// The same by its nodes, where no clip holds it.
+    nodes: Option<NodeRecords>,
     /// The camera; without it, that of the first plate.
     world_from_camera: Option<[f64; 16]>,
     intrinsics: Option<IntrinsicsRecord>,
@@ -109,6 +117,14 @@ pub enum ShotError {
         /// Its time.
         time_secs: f64,
     },
+    /// A pose that the toy cannot take.
+    #[error("{SHOT_FILE} (keys[{index}].nodes): {reason}")]
+    Nodes {
+        /// The key, from 0.
+        index: usize,
+        /// What is wrong with it.
+        reason: ToyError,
+    },
     /// Neither a key nor a plate tells where the camera is.
     #[error(
         "{SHOT_FILE} (keys[{index}].world_from_camera): missing, and there is no plate whose camera could stand in for it"
@@ -122,6 +138,8 @@ pub enum ShotError {
 /// A shot that was opened: everything is checked, and its photographs are read when they are asked for.
 pub struct Shot {
     capture: Capture,
+    /// Poses that no clip holds, by the index of their key.
+    node_poses: BTreeMap<usize, Pose>,
 }
 
 /// A shot's folder, whose index is read as that of a session.
@@ -165,12 +183,18 @@ impl Shot {
         let text = fs::read(&file).map_err(|error| at_file(error.to_string()))?;
         let record = parsed(&text).map_err(at_file)?;
         check_keys(&record)?;
+        let nodes = record
+            .keys
+            .iter()
+            .map(|key| key.nodes.clone())
+            .collect::<Vec<_>>();
         let capture = capture_record(record)?;
         let index = serde_json::to_vec(&Index::from(capture)).map_err(|error| at_file(error.to_string()))?;
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
         let folder = Folder::open(folder.unwrap_or(Path::new(".")))?;
         let capture = Capture::open(ShotFiles { folder, index }).map_err(as_of_shot)?;
-        Ok(Self { capture })
+        let node_poses = node_poses(capture.scene(), &nodes)?;
+        Ok(Self { capture, node_poses })
     }
 
     /// The scene, in which the toy has the pose of the first print.
@@ -196,7 +220,11 @@ impl Shot {
     /// # Errors
     /// When there is no such key, or its photograph cannot be read.
     pub fn key(&self, index: usize) -> Result<SessionFrame, ShotError> {
-        Ok(self.capture.frame(index).map_err(as_of_shot)?)
+        let mut frame = self.capture.frame(index).map_err(as_of_shot)?;
+        if let Some(pose) = self.node_poses.get(&index) {
+            frame.shown_pose = pose.clone();
+        }
+        Ok(frame)
     }
 
     /// The scene with the toy in the pose of a print.
@@ -234,6 +262,16 @@ fn parsed(text: &[u8]) -> Result<ShotRecord, String> {
         ));
     }
     Ok(record)
+}
+
+fn node_poses(scene: &Scene, nodes: &[Option<NodeRecords>]) -> Result<BTreeMap<usize, Pose>, ShotError> {
+    let given = nodes.iter().enumerate();
+    let given = given.filter_map(|(index, nodes)| Some((index, nodes.as_ref()?)));
+    let poses = given.map(|(index, nodes)| match nodes::pose(&scene.toy, nodes) {
+        Ok(pose) => Ok((index, pose)),
+        Err(reason) => Err(ShotError::Nodes { index, reason }),
+    });
+    poses.collect()
 }
 
 fn check_keys(record: &ShotRecord) -> Result<(), ShotError> {
