@@ -9,6 +9,7 @@ mod dependencies;
 mod gizmo;
 mod imported;
 mod imports;
+mod inbetween;
 mod metrics;
 mod mutated;
 mod photographer;

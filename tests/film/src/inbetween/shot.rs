@@ -142,18 +142,18 @@ pub struct Shot {
     node_poses: BTreeMap<usize, Pose>,
 }
 
-/// A shot's folder, whose index is read as that of a session.
-struct ShotFiles {
-    folder: Folder,
+/// A shot's files, whose index is read as that of a session.
+struct ShotFiles<F> {
+    files: F,
     index: Vec<u8>,
 }
 
-impl Files for ShotFiles {
+impl<F: Files> Files for ShotFiles<F> {
     fn read(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, FileError> {
         if path == INDEX_FILE {
             return Ok(self.index.clone());
         }
-        self.folder.read(path, max_bytes)
+        self.files.read(path, max_bytes)
     }
 }
 
@@ -181,23 +181,34 @@ impl Shot {
             )));
         }
         let text = fs::read(&file).map_err(|error| at_file(error.to_string()))?;
-        let record = parsed(&text).map_err(at_file)?;
-        check_keys(&record)?;
-        let nodes = record
-            .keys
-            .iter()
-            .map(|key| key.nodes.clone())
-            .collect::<Vec<_>>();
-        let capture = capture_record(record)?;
-        let index = serde_json::to_vec(&Index::from(capture)).map_err(|error| at_file(error.to_string()))?;
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
         let folder = Folder::open(folder.unwrap_or(Path::new(".")))?;
-        let capture = Capture::open(ShotFiles { folder, index }).map_err(as_of_shot)?;
+        Self::read(&text, folder).map_err(|error| match error {
+            ShotError::Index { reason, .. } => at_file(reason),
+            error => error,
+        })
+    }
+
+    /// Reads the text of a `shot.json`, whose pictures and toy are among `files`.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn read(text: &[u8], files: impl Files + 'static) -> Result<Self, ShotError> {
+        let at_file = |reason: String| ShotError::Index {
+            path: SHOT_FILE.into(),
+            reason,
+        };
+        let record = parsed(text).map_err(at_file)?;
+        check_keys(&record)?;
+        let nodes: Vec<_> = record.keys.iter().map(|key| key.nodes.clone()).collect();
+        let capture = capture_record(record)?;
+        let index = serde_json::to_vec(&Index::from(capture)).map_err(|error| at_file(error.to_string()))?;
+        let capture = Capture::open(ShotFiles { files, index }).map_err(as_of_shot)?;
         let node_poses = node_poses(capture.scene(), &nodes)?;
         Ok(Self { capture, node_poses })
     }
 
-    /// The scene, in which the toy has the pose of the first print.
+    /// The scene, in which the toy is as authored.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         self.capture.scene()
@@ -307,7 +318,6 @@ fn capture_record(record: ShotRecord) -> Result<CaptureRecord, ShotError> {
         })
     });
     let frames = frames.collect::<Result<Vec<_>, ShotError>>()?;
-    let first = record.keys.first().map(|key| key.physical_pose.clone());
     Ok(CaptureRecord {
         name: record.name,
         width: record.width,
@@ -318,7 +328,7 @@ fn capture_record(record: ShotRecord) -> Result<CaptureRecord, ShotError> {
         toy: ToyRecord {
             file: record.toy.file,
             world_from_object: record.toy.world_from_object,
-            physical_pose: first.unwrap_or_default(),
+            physical_pose: PoseRecord::default(),
             resting: record.toy.resting,
         },
         receivers: record.receivers,
