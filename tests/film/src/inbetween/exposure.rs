@@ -40,11 +40,6 @@ impl Clear {
         }
         Self(clear)
     }
-
-    /// Whether a pixel is clear, by its index.
-    pub(super) fn holds(&self, pixel: usize) -> bool {
-        self.0.get(pixel).is_some_and(|is_clear| *is_clear)
-    }
 }
 
 /// What each channel of a picture is to be multiplied by to be as bright as another; 1 where nothing can be compared, or where all differ

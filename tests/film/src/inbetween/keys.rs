@@ -12,7 +12,6 @@ use super::blend::Reference;
 use super::exposure::{Clear, gains};
 use super::light::LightPicture;
 use super::placement;
-use super::register::registered;
 use super::resample::resampled;
 use super::shot::Shot;
 use super::stage::Figure;
@@ -22,8 +21,6 @@ const MOST_OFF_MARK_M: f64 = 0.006;
 const MOST_OFF_MARK_RAD: f64 = 0.1;
 /// A camera nearer to the reference than this, at the picture's corners, is left as it is.
 const LEAST_MOVED_PX: f64 = 0.02;
-/// Each begins where the one before ended.
-const N_REGISTRATIONS: usize = 2;
 
 /// A key as it would have been photographed by the reference camera, in the reference exposure.
 #[derive(Clone, Debug)]
@@ -306,12 +303,6 @@ impl Stage<'_> {
         };
         if !is_moved(&from_px) {
             return brought;
-        }
-        let mut from_px = from_px;
-        for _ in 0..N_REGISTRATIONS {
-            let there = resampled(own, &from_px);
-            let gains = gains(&there, table, clear);
-            from_px *= registered(&brightened(there, gains), table, clear);
         }
         brought.picture = resampled(own, &from_px);
         brought.gains = gains(&brought.picture, table, clear);

@@ -11,7 +11,6 @@ pub mod light;
 mod nodes;
 mod placement;
 pub mod raster;
-mod register;
 mod report;
 pub mod resample;
 pub mod shot;
