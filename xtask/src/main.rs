@@ -27,7 +27,7 @@ const REPLAY: Program =
 
 /// Programs that are run with whatever stands after their name.
 #[rustfmt::skip] // One program a line.
-const PROGRAMS: [Program; 15] = [
+const PROGRAMS: [Program; 16] = [
     REPLAY,
     Program::new("check", "desk", "Say what is wrong with a session, and draw what it predicts over its first frame"),
     Program::new("align", "desk", "Write a session anew with cameras, pose and lights aligned by its pictures"),
@@ -36,6 +36,7 @@ const PROGRAMS: [Program; 15] = [
     Program::new("new", "film", "Make a session of photographs, found by the toy that they show"),
     Program::new("clips", "film", "List the clips of a toy, with thumbnails"),
     Program::new("animate", "film", "Make a film of a photograph: clips of the toy become numbered pictures").on_device(),
+    Program::new("inbetween", "film", "Make the frames between key poses that were printed and photographed one by one").on_device(),
     Program::new("card", "desk", "Write a card to print and to lay beside the toy"),
     Program::new("bench", "measure", "Measure presets over sessions: time against error").on_device(),
     Program::new("ledger", "measure", "What frames of a session must cost on any device, without one"),

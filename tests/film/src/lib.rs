@@ -4,8 +4,10 @@
 #![forbid(unsafe_code)]
 
 pub mod animate;
+pub mod inbetween;
 pub mod length;
 pub mod new;
 pub mod photograph;
+pub mod sheet;
 pub mod small;
 pub mod thumbnail;

@@ -10,6 +10,7 @@ mod film;
 mod gizmo;
 mod imported;
 mod imports;
+mod inbetween;
 mod metrics;
 mod mutated;
 mod photographer;

@@ -8,6 +8,7 @@ mod core;
 mod device;
 mod goldens;
 mod governor;
+mod inbetween;
 mod ledger;
 mod plan;
 mod profile;

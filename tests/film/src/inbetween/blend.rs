@@ -1,0 +1,223 @@
+//! One picture of two: what the keys before and after a moment make of it, in linear light.
+
+use super::light::{LightPicture, smoothed};
+use super::stage::seen_weight;
+
+/// Reach of the averages that seams are faded by.
+const SEAM_PX: usize = 2;
+/// Averages of this reach are compared to see whether both pictures show the same.
+const SAME_PX: usize = 1;
+/// The least that a usual difference is taken for, in parts of the light.
+const LEAST_NOISE: f32 = 2e-3;
+/// Light that differences are compared with, at least.
+const DARK: f32 = 0.01;
+
+/// Where the reference's detail is shown, and how level and detail are told apart.
+#[derive(Clone, Copy, Debug)]
+struct Detail {
+    /// How far from what lies on it the detail is shown, in pixels.
+    clear_px: usize,
+    /// Reach of the averages that are the level, in pixels.
+    level_px: usize,
+    /// Differences of so many times the usual one are no noise: an edge, or something that the reference lacks.
+    most_noise: f32,
+}
+
+/// The table, well clear of toy and shadows, outlines and penumbras that are a little elsewhere.
+const TABLE: Detail = Detail {
+    clear_px: 6,
+    level_px: 8,
+    most_noise: 8.0,
+};
+/// The table in shadow, clear of the toy: a shadow is a smooth factor. Chosen on one shot, where half and twice as much noise are
+/// within a fiftieth.
+const SHADOW: Detail = Detail {
+    clear_px: 3,
+    level_px: 1,
+    most_noise: 2.0,
+};
+
+/// The picture whose table is shown throughout, so that neither grain nor texture changes from frame to frame.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// A plate, or without one the first key.
+    pub picture: LightPicture,
+    /// Where it shows something else than the table.
+    pub touched: Option<Vec<bool>>,
+}
+
+/// What a picture is made of.
+pub struct Mix<'a> {
+    /// The moment, as it is made from the key before it and from that after it.
+    pub pictures: [&'a LightPicture; 2],
+    /// The part of the way, from 0 to 1.
+    pub share: f32,
+    /// How well each pixel of the toy was seen in both photographs; none where it does not show the toy.
+    pub seen: [&'a [Option<f32>]; 2],
+    /// Pixels of the toy.
+    pub covered: &'a [bool],
+    /// Pixels of the toy and its shadows.
+    pub touched: &'a [bool],
+    /// Whether the photographs have hardly any grain.
+    pub is_clean: bool,
+}
+
+impl Mix<'_> {
+    /// The picture.
+    #[must_use]
+    pub fn blended(&self, reference: Option<&Reference>) -> LightPicture {
+        let [left, right] = self.pictures;
+        let weights = self.weights();
+        let pixels = left.rgb.iter().zip(&right.rgb).zip(&weights);
+        let rgb = pixels
+            .map(|((left, right), weight)| mixed(left, right, *weight))
+            .collect();
+        let blend = LightPicture { rgb, ..*left };
+        match reference {
+            Some(reference) => self.with_table(blend, reference),
+            None => blend,
+        }
+    }
+
+    /// The blend with the reference's detail on the table, in the light, and in shadow where the pictures are clean.
+    fn with_table(&self, blend: LightPicture, reference: &Reference) -> LightPicture {
+        let own = reference.touched.as_deref();
+        let with_own = |covered: &[bool]| -> Vec<bool> {
+            let pixels = covered.iter().enumerate();
+            let is_covered =
+                |(pixel, is_covered): (usize, &bool)| *is_covered || own.is_some_and(|own| own[pixel]);
+            pixels.map(is_covered).collect()
+        };
+        let table = &reference.picture;
+        let blend = if self.is_clean {
+            SHADOW.shown(blend, table, &with_own(self.covered), |pixel| self.touched[pixel])
+        } else {
+            // The plate's grain, as dark as a shadow, is less than that of a photograph there.
+            blend
+        };
+        TABLE.shown(blend, table, &with_own(self.touched), |_| true)
+    }
+
+    /// Of the key after it, pixel by pixel: by time, and on the toy by what each has seen.
+    fn weights(&self) -> Vec<f32> {
+        let width_px = self.pictures[0].width_px;
+        let [left, right] = self.seen;
+        let seen = left.iter().zip(right).map(|(left, right)| match (left, right) {
+            (Some(left), Some(right)) => [seen_weight(*left), seen_weight(*right), 1.0],
+            _ => [0.0; 3],
+        });
+        // A pixel at the outline goes by its neighbours.
+        let seen = smoothed(seen.collect(), width_px, SAME_PX);
+        let weight = |[left, right, covered]: [f32; 3]| {
+            let [left, right] = [(1.0 - self.share) * left, self.share * right];
+            let sum = left + right;
+            if covered > 0.0 && sum > 0.0 {
+                right / sum
+            } else {
+                self.share
+            }
+        };
+        seen.into_iter().map(weight).collect()
+    }
+
+    /// Part of the toy's pixels that neither key has seen; none where no pixel shows the toy.
+    #[must_use]
+    pub fn unseen(&self) -> Option<f64> {
+        let [left, right] = self.seen;
+        let pairs = left.iter().zip(right);
+        let pairs = pairs.filter_map(|(left, right)| Some((*left)?.max((*right)?)));
+        let (mut n_shown, mut n_unseen) = (0.0, 0.0);
+        for seen in pairs {
+            n_shown += 1.0;
+            n_unseen += if seen > 0.0 { 0.0 } else { 1.0 };
+        }
+        (n_shown > 0.0).then(|| n_unseen / n_shown)
+    }
+}
+
+fn mixed(a: &[f32; 3], b: &[f32; 3], weight: f32) -> [f32; 3] {
+    [0, 1, 2].map(|channel| (1.0 - weight) * a[channel] + weight * b[channel])
+}
+
+impl Detail {
+    /// The blend with the reference's detail at the blend's level, wherever it is clear of what is `covered`. Usual differences are those
+    /// at pixels that are `usual`.
+    fn shown(
+        self,
+        blend: LightPicture,
+        reference: &LightPicture,
+        covered: &[bool],
+        usual: impl Fn(usize) -> bool,
+    ) -> LightPicture {
+        let clear = self.clear(covered, blend.width_px);
+        let level = self.level(&blend, reference, &clear);
+        let detailed: Vec<[f32; 3]> = level
+            .iter()
+            .zip(&reference.rgb)
+            .map(|(level, pixel)| [0, 1, 2].map(|channel| level[channel] * pixel[channel]))
+            .collect();
+        let same = self.same(&blend, &detailed, |pixel| clear[pixel][0] > 0.5 && usual(pixel));
+        let pixels = blend.rgb.iter().zip(&detailed).zip(clear.iter().zip(&same));
+        let rgb = pixels
+            .map(|((blend, detailed), ([clear], same))| mixed(blend, detailed, clear * same))
+            .collect();
+        LightPicture { rgb, ..blend }
+    }
+
+    /// 1 well clear of what is covered, and 0 there.
+    fn clear(self, covered: &[bool], width_px: usize) -> Vec<[f32; 1]> {
+        let near = |is_near: bool| [if is_near { 1.0 } else { 0.0 }];
+        let covered = covered.iter().map(|is_covered| near(*is_covered));
+        let grown = smoothed(covered.collect(), width_px, self.clear_px / 3);
+        let grown = grown.into_iter().map(|[value]| near(value > 1e-4));
+        let seam = smoothed(grown.collect(), width_px, SEAM_PX);
+        seam.into_iter()
+            .map(|[near]| [(1.0 - near).clamp(0.0, 1.0)])
+            .collect()
+    }
+
+    /// Light of the blend over that of the reference, over a neighbourhood of what is clear.
+    fn level(self, blend: &LightPicture, reference: &LightPicture, clear: &[[f32; 1]]) -> Vec<[f32; 3]> {
+        let weighted = |picture: &LightPicture| {
+            let pixels = picture.rgb.iter().zip(clear);
+            let pixels = pixels.map(|(pixel, [weight])| pixel.map(|light| weight * light));
+            smoothed(pixels.collect(), picture.width_px, self.level_px)
+        };
+        let pairs = weighted(blend).into_iter().zip(weighted(reference));
+        let ratio = |(blend, reference): ([f32; 3], [f32; 3])| {
+            [0, 1, 2].map(|channel| {
+                // Far from all that is clear there is nothing to compare, and the blend is shown.
+                if reference[channel] > 1e-6 {
+                    blend[channel] / reference[channel]
+                } else {
+                    1.0
+                }
+            })
+        };
+        pairs.map(ratio).collect()
+    }
+
+    /// 1 where two pictures differ by no more than noise, 0 where something else is seen.
+    fn same(self, blend: &LightPicture, detailed: &[[f32; 3]], is_usual: impl Fn(usize) -> bool) -> Vec<f32> {
+        let pairs = blend.rgb.iter().zip(detailed);
+        let differences = pairs.map(|(blend, detailed)| {
+            [0, 1, 2].map(|channel| (blend[channel] - detailed[channel]) / blend[channel].max(DARK))
+        });
+        let differences = smoothed(differences.collect(), blend.width_px, SAME_PX);
+        let sizes = differences.iter().map(|difference| difference.map(f32::abs));
+        let sizes: Vec<f32> = sizes.map(|[red, green, blue]| red.max(green).max(blue)).collect();
+        let sorted = sizes.iter().enumerate().filter(|(pixel, _)| is_usual(*pixel));
+        let mut sorted: Vec<f32> = sorted.map(|(_, size)| *size).collect();
+        let middle = sorted.len() / 2;
+        let usual = if sorted.is_empty() {
+            LEAST_NOISE
+        } else {
+            *sorted.select_nth_unstable_by(middle, f32::total_cmp).1
+        };
+        let most = self.most_noise * usual.max(LEAST_NOISE);
+        sizes
+            .into_iter()
+            .map(|size| (2.0 - size / most).clamp(0.0, 1.0))
+            .collect()
+    }
+}

@@ -1,0 +1,178 @@
+//! What is written beside the pictures: the exposure sheet, the report and the contact sheet.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use app_core::core::Core;
+use desk::files::SESSION_FILE;
+use desk::output::{WriteError, remove_file, write_png, write_whole};
+use serde::Serialize;
+
+use super::InbetweenError;
+use super::keys::{Keys, Off};
+use super::shot::{SHOT_FILE, Shot};
+use super::words::findings;
+use crate::sheet::{Cell, contact_sheet};
+
+/// The exposure sheet in the output folder.
+pub const SHEET_FILE: &str = "xsheet.csv";
+/// The report in the output folder.
+pub const REPORT_FILE: &str = "inbetween.json";
+/// The contact sheet in the output folder.
+pub const CONTACT_FILE: &str = "contact.png";
+/// Pictures side by side on the contact sheet.
+const COLUMNS: u32 = 5;
+
+/// A frame of the film.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct FrameEntry {
+    pub(super) number: usize,
+    pub(super) picture: String,
+    pub(super) is_key: bool,
+    pub(super) time_secs: f64,
+    pub(super) pose: String,
+    /// Numbers of the keys that it is made from, counted from 0.
+    pub(super) keys: Vec<usize>,
+    /// One for each of them.
+    pub(super) weights: Vec<f64>,
+    /// The same: what red, green and blue of the photograph are multiplied by.
+    pub(super) gains: Vec<[f64; 3]>,
+    /// Part of the toy that neither has seen.
+    pub(super) unseen: Option<f64>,
+}
+
+/// A key, as it was found.
+#[derive(Clone, Debug, Serialize)]
+struct KeyEntry {
+    time_secs: f64,
+    pose: String,
+    camera: Option<OffEntry>,
+    print: Option<OffEntry>,
+    gains: [f64; 3],
+    warnings: Vec<String>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct OffEntry {
+    moved_px: f64,
+    moved_mm: f64,
+    turned_deg: f64,
+}
+
+impl From<Off> for OffEntry {
+    fn from(off: Off) -> Self {
+        Self {
+            moved_px: off.moved_px,
+            moved_mm: 1e3 * off.moved_m,
+            turned_deg: off.turned_rad.to_degrees(),
+        }
+    }
+}
+
+/// The whole film.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Report {
+    shot: String,
+    adapter: String,
+    warnings: Vec<String>,
+    findings: Vec<String>,
+    is_shown_on_mark: bool,
+    keys: Vec<KeyEntry>,
+    pub(super) frames: Vec<FrameEntry>,
+}
+
+impl Report {
+    pub(super) fn new(shot: &Shot, keys: &Keys, core: &Core) -> Self {
+        let entries = keys.keys.iter().map(|key| KeyEntry {
+            time_secs: key.time_secs,
+            pose: shot.pose_text(&key.pose),
+            camera: key.found.camera.map(OffEntry::from),
+            print: key.found.print.map(OffEntry::from),
+            gains: key.found.gains,
+            warnings: key.found.warnings.clone(),
+        });
+        Self {
+            shot: shot.scene().name.clone(),
+            adapter: core.adapter_name(),
+            warnings: shot.warnings().iter().map(ToString::to_string).collect(),
+            findings: findings(keys),
+            is_shown_on_mark: keys.is_mark,
+            keys: entries.collect(),
+            frames: Vec::new(),
+        }
+    }
+}
+
+/// Refuses a folder whose files are someone's photographs, and takes an earlier report away: one in the folder means that all pictures
+/// were written.
+pub(super) fn check_folder(folder: &Path) -> Result<(), InbetweenError> {
+    for file in [SHOT_FILE, SESSION_FILE] {
+        if folder.join(file).exists() {
+            return Err(InbetweenError::Out {
+                folder: folder.to_owned(),
+                reason: "holds a shot or a session, whose photographs could be overwritten",
+            });
+        }
+    }
+    Ok(remove_file(&folder.join(REPORT_FILE))?)
+}
+
+/// Writes all lists; the report last.
+pub(super) fn write_report(folder: &Path, report: &Report, cells: &[Cell]) -> Result<(), WriteError> {
+    write_whole(&folder.join(SHEET_FILE), exposure_sheet(report).as_bytes())?;
+    if let Some(sheet) = contact_sheet(cells, COLUMNS) {
+        write_png(&folder.join(CONTACT_FILE), &sheet)?;
+    }
+    let path = folder.join(REPORT_FILE);
+    let mut json = serde_json::to_vec_pretty(report).map_err(|error| WriteError {
+        path: path.clone(),
+        reason: error.to_string(),
+    })?;
+    json.push(b'\n');
+    write_whole(&path, &json)
+}
+
+/// A line for each frame. Numbers of keys are counted from 0; what there is not is empty.
+fn exposure_sheet(report: &Report) -> String {
+    let mut text =
+        "frame,picture,source,time_s,pose,left_key,right_key,left_weight,right_weight,unseen_share,\
+                    left_gain,right_gain,left_camera_px,right_camera_px,left_print_mm,right_print_mm\n"
+            .to_owned();
+    for frame in &report.frames {
+        let source = if frame.is_key { "key" } else { "in-between" };
+        let of_keys = |value: &dyn Fn(usize) -> Option<String>| {
+            let value = |at: usize| frame.keys.get(at).and_then(|_| value(at)).unwrap_or_default();
+            format!("{},{}", value(0), value(1))
+        };
+        let camera = |at: usize| {
+            report.keys[frame.keys[at]]
+                .camera
+                .as_ref()
+                .map(|off| off.moved_px)
+        };
+        let print = |at: usize| report.keys[frame.keys[at]].print.as_ref().map(|off| off.moved_mm);
+        let unseen = frame
+            .unseen
+            .map_or(String::new(), |unseen| format!("{unseen:.4}"));
+        // A text cannot fail to grow.
+        let _ = writeln!(
+            text,
+            "{},{},{source},{:.4},{},{},{},{unseen},{},{},{}",
+            frame.number,
+            quoted(&frame.picture),
+            frame.time_secs,
+            quoted(&frame.pose),
+            of_keys(&|at| Some(frame.keys[at].to_string())),
+            of_keys(&|at| Some(format!("{:.4}", frame.weights[at]))),
+            of_keys(&|at| Some(format!("{:.4}", frame.gains[at].iter().sum::<f64>() / 3.0))),
+            of_keys(&|at| camera(at).map(|px| format!("{px:.2}"))),
+            of_keys(&|at| print(at).map(|mm| format!("{mm:.2}"))),
+        );
+    }
+    text
+}
+
+/// A text as a field of a table.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "\"\""))
+}

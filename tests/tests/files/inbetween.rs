@@ -1,0 +1,136 @@
+//! In-between frames: what a shot may hold, when frames are shown, and what a photograph keeps when it is moved.
+
+use app_core::session::Folder;
+use film::inbetween::light::LightPicture;
+use film::inbetween::resample::resampled;
+use film::inbetween::shot::Shot;
+use film::inbetween::timing::{Ease, Rate, moments};
+use glam::{DMat3, DVec2};
+use serde_json::{Value, json};
+
+const SESSION: &str = "sessions/llama";
+
+/// A shot of two prints, as its file has it.
+fn shot() -> Value {
+    let index = std::fs::read(format!("{SESSION}/capture.json")).unwrap();
+    let mut index: Value = serde_json::from_slice(&index).unwrap();
+    index["format"] = json!("shadow-shot");
+    index["keys"] = json!([
+        { "image": "truth_0000.png", "time": 0.0, "physical_pose": { "clip": "Look", "time": 0.6 } },
+        { "image": "frame_0000.png", "time": 1.0, "nodes": { "head": { "rotation": [0.0, 0.0, 0.0, 1.0] } } },
+    ]);
+    index
+}
+
+#[test]
+fn a_bad_shot_is_refused_by_file_field_and_reason() {
+    let refused = |path: &str, value: Value| {
+        let mut shot = shot();
+        *shot.pointer_mut(path).unwrap() = value;
+        let text = serde_json::to_vec(&shot).unwrap();
+        match Shot::read(&text, Folder::open(SESSION).unwrap()) {
+            Ok(_) => String::new(),
+            Err(error) => error.to_string(),
+        }
+    };
+    assert_eq!(refused("/keys/0/time", json!(0.5)), "");
+    let cases = [
+        (
+            "/format",
+            json!("shadow-capture"),
+            ["shot.json", "(format, version)", "shadow-shot"],
+        ),
+        (
+            "/keys/1/time",
+            json!(0.0),
+            ["shot.json", "(keys[1].time)", "not later"],
+        ),
+        (
+            "/keys/0/physical_pose/clip",
+            json!("Jump"),
+            ["shot.json", "(keys[0].physical_pose.clip)", "Look"],
+        ),
+        (
+            "/keys/1/nodes",
+            json!({ "trunk": {} }),
+            ["shot.json", "(keys[1].nodes)", "trunk"],
+        ),
+        (
+            "/keys/0/image",
+            json!("../key.png"),
+            ["shot.json", "(keys[0].image)", ".."],
+        ),
+        (
+            "/backgrounds",
+            json!([]),
+            ["shot.json", "(keys[0].world_from_camera)", "plate"],
+        ),
+        ("/keys", json!([]), ["shot.json", "(keys)", "two or more"]),
+    ];
+    for (path, value, parts) in cases {
+        let said = refused(path, value);
+        assert!(parts.iter().all(|part| said.contains(part)), "{path}: {said}");
+    }
+}
+
+#[test]
+fn frames_meet_their_keys_and_pictures_stay_as_long_as_they_are_held() {
+    let at = |rate, hold| {
+        let moments = moments(&[0.0, 0.5, 2.0], rate, Ease::Linear, hold).unwrap();
+        let ways = moments.iter().map(|moment| moment.left as f64 + moment.share);
+        ways.collect::<Vec<_>>()
+    };
+    assert_eq!(at(Rate::Between(1), 1), [0.0, 0.5, 1.0, 1.5, 2.0]);
+    let by_time = at(Rate::PerSecond(4.0), 1);
+    let expected = [
+        0.0,
+        0.5,
+        1.0,
+        7.0 / 6.0,
+        8.0 / 6.0,
+        1.5,
+        10.0 / 6.0,
+        11.0 / 6.0,
+        2.0,
+    ];
+    assert!(
+        by_time.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9),
+        "{by_time:?}"
+    );
+    assert_eq!(at(Rate::Between(1), 2), [0.0, 0.0, 1.0, 1.0, 2.0]);
+    assert!(moments(&[0.0, 1e9], Rate::PerSecond(24.0), Ease::Linear, 1).is_err());
+}
+
+/// A wave of a period of five pixels, which a cubic kernel would dim by a tenth at half a pixel.
+fn wave(shift_px: f64) -> LightPicture {
+    let (width_px, height_px) = (64, 48);
+    let pixels = (0..width_px * height_px).map(|pixel| {
+        let [x, y] = [pixel % width_px, pixel / width_px].map(|at| at as f64);
+        let phase = std::f64::consts::TAU * ((x + shift_px) / 5.0 + (y - 0.5 * shift_px) / 9.0);
+        #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
+        let light = (0.5 + 0.3 * phase.sin()) as f32;
+        [light; 3]
+    });
+    LightPicture {
+        width_px,
+        height_px,
+        rgb: pixels.collect(),
+    }
+}
+
+#[test]
+fn a_moved_photograph_keeps_its_detail() {
+    let still = wave(0.0);
+    let difference = |a: &LightPicture, b: &LightPicture| {
+        let inside = |pixel: &usize| (8..56).contains(&(pixel % 64)) && (8..40).contains(&(pixel / 64));
+        let pixels = (0..a.rgb.len()).filter(inside);
+        pixels
+            .map(|pixel| (a.rgb[pixel][0] - b.rgb[pixel][0]).abs())
+            .fold(0.0, f32::max)
+    };
+    let same = resampled(&still, &DMat3::IDENTITY);
+    assert!(difference(&same, &still) < 1e-6);
+    let moved = resampled(&still, &DMat3::from_translation(DVec2::new(0.5, -0.25)));
+    let error = difference(&moved, &wave(0.5));
+    assert!(error < 0.01 * 0.3, "{error}");
+}
