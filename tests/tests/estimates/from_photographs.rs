@@ -31,6 +31,8 @@ fn wanted(photographs: &[&str]) -> Wanted {
         view: View::default(),
         up: DVec3::Y,
         lifted_m: 0.0,
+        keys: Vec::new(),
+        apart_secs: 1.0,
     }
 }
 

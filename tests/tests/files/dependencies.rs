@@ -113,7 +113,11 @@ fn licences_and_sources_are_known() {
         .into_iter()
         .flat_map(|(package, target)| compiled(&["--package", package], target))
         .collect();
-    assert!(of_phones.len() > 100, "only {} packages are on phones", of_phones.len());
+    assert!(
+        of_phones.len() > 100,
+        "only {} packages are on phones",
+        of_phones.len()
+    );
     for package in all_metadata().iter().flat_map(|metadata| &metadata.packages) {
         let label = format!("{} {}", package.name, package.version);
         let licence = package
@@ -135,12 +139,9 @@ fn is_allowed(licence: &str, is_on_phone: bool) -> bool {
     let expression = Expression::parse_mode(licence, ParseMode::LAX).unwrap();
     expression.evaluate(|required| {
         required.addition.is_none()
-            && required
-                .license
-                .id()
-                .is_some_and(|id| {
-                    LICENCES.contains(&id.name) || (!is_on_phone && DESKTOP_LICENCES.contains(&id.name))
-                })
+            && required.license.id().is_some_and(|id| {
+                LICENCES.contains(&id.name) || (!is_on_phone && DESKTOP_LICENCES.contains(&id.name))
+            })
     })
 }
 

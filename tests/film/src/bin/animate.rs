@@ -63,7 +63,7 @@ struct Args {
     /// Number of the first frame
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..=9_000_000))]
     start: u32,
-    /// Names of the pictures, with # for the digits of the number [default: the session's name and _####]
+    /// Names of the pictures, with a # for each digit of the number; without it the session's name and four digits
     #[arg(long, value_name = "NAME_####")]
     name: Option<NamePattern>,
     /// Make again what is there

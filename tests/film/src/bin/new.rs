@@ -7,7 +7,7 @@ use anyhow::Context;
 use clap::Parser;
 use desk::program::{exit_code, print};
 use film::length::metres;
-use film::new::{DRAWING, View, Wanted, new};
+use film::new::{DRAWING, Key, View, Wanted, new};
 use glam::DVec3;
 
 /// Make a session of photographs: the place without the toy, then the toy on it. The toy is the marker: camera, table and lights
@@ -39,6 +39,13 @@ struct Args {
     /// The model's axis that points up as it stands: +x, -x, +y, -y, +z or -z
     #[arg(long, default_value = "+y", value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
     up: DVec3,
+    /// The photograph of another print and its pose; one for each further key of a film, in their order. A shot for `inbetween` is then
+    /// written, too
+    #[arg(long, value_name = "PHOTO@CLIP@TIME", value_parser = key)]
+    key: Vec<Key>,
+    /// Seconds of the film between two keys
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = seconds)]
+    apart: f64,
     /// How far the toy's lowest points are above the table, if it does not stand on it
     #[arg(long, value_name = "LENGTH", value_parser = metres)]
     lifted: Option<f64>,
@@ -58,12 +65,15 @@ fn run(args: Args) -> anyhow::Result<()> {
         view: args.view.unwrap_or_default(),
         up: args.up,
         lifted_m: args.lifted.unwrap_or(0.0),
+        keys: args.key,
+        apart_secs: args.apart,
     };
+    let next = if wanted.keys.is_empty() { "animate" } else { "inbetween" };
     let made = new(&wanted, &args.out)?;
     let mut lines = made.facts;
     lines.extend(made.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.push(format!(
-        "{}: look at the outlines in {DRAWING}; then `cargo xtask animate {0}`",
+        "{}: look at the outlines in {DRAWING}; then `cargo xtask {next} {0}`",
         args.out.display()
     ));
     print(&(lines.join("\n") + "\n"))
@@ -78,6 +88,22 @@ fn moment(text: &str) -> Result<(String, f64), String> {
         return Err(wanted());
     }
     Ok((clip.to_owned(), time))
+}
+
+fn key(text: &str) -> Result<Key, String> {
+    let wanted = || format!("{text:?} is not PHOTO@CLIP@SECONDS");
+    let (rest, time) = text.rsplit_once('@').ok_or_else(wanted)?;
+    let (path, clip) = rest.rsplit_once('@').ok_or_else(wanted)?;
+    Ok(Key {
+        path: path.into(),
+        moment: moment(&format!("{clip}@{time}"))?,
+    })
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.trim_end_matches('s').parse().ok();
+    let seconds = seconds.filter(|seconds: &f64| (0.01..=3600.0).contains(seconds));
+    seconds.ok_or_else(|| format!("{text:?} is no number of seconds from .01 to 3600"))
 }
 
 fn millimetres(text: &str) -> Result<f64, String> {

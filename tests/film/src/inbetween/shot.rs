@@ -27,9 +27,9 @@ use super::nodes::NodeRecords;
 /// What a shot's index is called in its folder.
 pub const SHOT_FILE: &str = "shot.json";
 /// What `format` has to say.
-const FORMAT: &str = "shadow-shot";
+pub const FORMAT: &str = "shadow-shot";
 /// The one version that is read.
-const VERSION: u64 = 1;
+pub const VERSION: u64 = 1;
 
 /// `shot.json`, version 1. What is not described here is as in `capture.json`.
 #[derive(Clone, Debug, Deserialize)]

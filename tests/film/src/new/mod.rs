@@ -3,6 +3,7 @@
 
 mod error;
 mod found;
+mod shot;
 mod table;
 mod view;
 mod written;
@@ -19,6 +20,7 @@ use glam::{DMat4, DVec3};
 use crate::photograph::{Photograph, focal_px};
 
 pub use error::NewError;
+pub use shot::Key;
 pub use view::{Side, View};
 
 /// File name of the drawing in the session's folder.
@@ -48,6 +50,10 @@ pub struct Wanted {
     pub up: DVec3,
     /// How far the toy's lowest points are above the table, in metres.
     pub lifted_m: f64,
+    /// Photographs of further prints, in the order of the film, which make a shot of the session.
+    pub keys: Vec<Key>,
+    /// Seconds of the film between two keys.
+    pub apart_secs: f64,
 }
 
 /// What was made.
@@ -63,6 +69,8 @@ pub struct Made {
 struct Given {
     plates: Vec<Photograph>,
     photograph: Photograph,
+    /// Of further prints.
+    keys: Vec<Photograph>,
     toy: Arc<Toy>,
     toy_bytes: Vec<u8>,
     pose: Pose,
@@ -99,8 +107,12 @@ fn read(wanted: &Wanted) -> anyhow::Result<Given> {
     }
     let photograph = photographs.pop().context("a photograph of the toy is needed")?;
     let plates = photographs;
-    for plate in &plates {
-        same_size(plate, &photograph)?;
+    let mut keys = Vec::new();
+    for key in &wanted.keys {
+        keys.push(Photograph::read(&key.path)?);
+    }
+    for other in plates.iter().chain(&keys) {
+        same_size(other, &photograph)?;
     }
     let stated_px = wanted
         .focal_35mm
@@ -120,8 +132,11 @@ fn read(wanted: &Wanted) -> anyhow::Result<Given> {
     };
     let bounds = toy.bounds_of_pose(&pose)?;
     let corners = [bounds.min, bounds.max].map(|corner| corner.as_dvec3());
+    for key in &wanted.keys {
+        toy.find_clip(&key.moment.0).with_context(|| key.path.display().to_string())?;
+    }
     let upright = upright(corners, wanted)?;
-    let facts = plates.iter().chain([&photograph]).flat_map(|photograph| {
+    let facts = plates.iter().chain([&photograph]).chain(&keys).flat_map(|photograph| {
         let name = photograph.path.display();
         photograph.notes.iter().map(move |note| format!("{name}: {note}"))
     });
@@ -136,6 +151,7 @@ fn read(wanted: &Wanted) -> anyhow::Result<Given> {
         facts: facts.collect(),
         plates,
         photograph,
+        keys,
         toy: toy.into(),
         toy_bytes,
         pose,

@@ -12,7 +12,8 @@ use desk::files::{Folder, SESSION_FILE};
 use desk::output::{make_folder, write_png, write_whole};
 
 use super::found::Found;
-use super::{Given, Wanted};
+use crate::inbetween::shot::Shot;
+use super::{Given, Wanted, shot};
 
 const TOY: &str = "toy.glb";
 const PHOTOGRAPH: &str = "photograph.png";
@@ -30,11 +31,18 @@ pub(super) fn write(given: &Given, found: &Found, wanted: &Wanted, out: &Path) -
         write_png(&out.join(plate_file(index)), &plate.image)?;
     }
     write_png(&out.join(PHOTOGRAPH), &given.photograph.image)?;
-    let index = Index::from(record(given, found, wanted));
+    let record = record(given, found, wanted);
+    if !wanted.keys.is_empty() {
+        shot::write(given, record.clone(), wanted, out)?;
+    }
+    let index = Index::from(record);
     let mut json = serde_json::to_vec_pretty(&index)?;
     json.push(b'\n');
     write_whole(&out.join(SESSION_FILE), &json)?;
     Capture::open(Folder::open(out)?)?.frame(0)?;
+    if !wanted.keys.is_empty() {
+        Shot::open(out)?;
+    }
     Ok(())
 }
 
