@@ -107,10 +107,12 @@ pub fn find_toy(
         for (receiver, world_from_table) in scene.receivers.iter_mut().zip(&one.world_from_tables) {
             receiver.world_from_plane = *world_from_table;
         }
-        if register_plates(&mut scene, input)
-            && let Some(refined) = Search::new(&scene, input)?.refine(&one.world_from_object)?
-        {
-            *one = refined;
+        let before = scene.plates.clone();
+        if register_plates(&mut scene, input) {
+            match Search::new(&scene, input)?.refine(&one.world_from_object)? {
+                Some(refined) => *one = refined,
+                None => scene.plates = before,
+            }
         }
     }
     Ok(ToySearch {

@@ -5,8 +5,9 @@ use std::io::{BufReader, Cursor};
 use std::path::{Path, PathBuf};
 
 use app_core::scene::Image;
+use app_core::scene::check::MAX_PICTURE_PIXELS;
 use app_core::session::tags::{exif_orientation, png_chunks};
-use app_scene::geometry::color::{linear_of_codes, srgb_from_linear};
+use app_scene::geometry::color::{code_of_linear, linear_of_codes};
 use exif::{In, Tag, Value};
 use image::codecs::{jpeg::JpegDecoder, png::PngDecoder};
 use image::imageops::FilterType;
@@ -15,8 +16,6 @@ use image::{DynamicImage, ImageDecoder, Limits, Rgb, Rgb32FImage};
 use moxcms::{ColorProfile, Layout, TransformOptions};
 use thiserror::Error;
 
-/// Pixels of the largest picture of a session.
-const MOST_PIXELS: u64 = 4096 * 3072;
 /// No file is read that is larger, and no more is allocated to decode it.
 const MOST_FILE_BYTES: u64 = 256 << 20;
 const MOST_DECODED_BYTES: u64 = 2 << 30;
@@ -26,6 +25,8 @@ const MOST_DECODED_BYTES: u64 = 2 << 30;
 const FILM_DIAGONAL_MM: f64 = 43.266_6;
 /// `cICP` colour primaries of Display P3. Source: ITU-T H.273, table 2.
 const DISPLAY_P3_PRIMARIES: u8 = 12;
+/// The transfer function of sRGB, which Display P3 has, too. Source: the same, table 3.
+const SRGB_TRANSFER: u8 = 13;
 
 /// A photograph that cannot be used.
 #[derive(Debug, Error)]
@@ -125,7 +126,7 @@ fn read(path: &Path) -> Result<Photograph, PhotographReason> {
         None => rgba8,
         Some([width, height]) => {
             notes.push(format!(
-                "its {width_px} x {height_px} pixels are more than the {MOST_PIXELS} of a session and are resampled to {width} x {height}"
+                "its {width_px} x {height_px} pixels are more than the {MAX_PICTURE_PIXELS} of a session and are resampled to {width} x {height}"
             ));
             resized(&rgba8, [width, height])
         }
@@ -181,15 +182,13 @@ fn profile_of(bytes: &[u8], profile: Option<&[u8]>) -> Result<Option<ColorProfil
     let Some(what) = desk::check::foreign_colours(bytes, profile) else {
         return Ok(None);
     };
-    if let Some(profile) = profile {
-        let read = ColorProfile::new_from_slice(profile);
-        return read
-            .map(Some)
-            .map_err(|error| PhotographReason::Profile(format!("{what}: {error}")));
-    }
+    // A PNG's `cICP` wins over its profile.
     let cicp = png_chunks(bytes).find(|(name, _)| name == b"cICP");
-    match cicp.and_then(|(_, data)| data.first().copied()) {
-        Some(DISPLAY_P3_PRIMARIES) => Ok(Some(ColorProfile::new_display_p3())),
+    match (cicp, profile) {
+        (Some((_, [DISPLAY_P3_PRIMARIES, SRGB_TRANSFER, ..])), _) => Ok(Some(ColorProfile::new_display_p3())),
+        (None, Some(profile)) => ColorProfile::new_from_slice(profile)
+            .map(Some)
+            .map_err(|error| PhotographReason::Profile(format!("{what}: {error}"))),
         _ => Err(PhotographReason::Profile(what)),
     }
 }
@@ -211,7 +210,7 @@ fn to_srgb(picture: &mut image::RgbaImage, profile: &ColorProfile) -> Result<Str
 fn smaller_px([width_px, height_px]: [u32; 2]) -> Option<[u32; 2]> {
     let n_pixels = u64::from(width_px) * u64::from(height_px);
     #[allow(clippy::cast_precision_loss, reason = "a ratio of pixels")]
-    let ratio = (MOST_PIXELS as f64 / n_pixels as f64).sqrt();
+    let ratio = (MAX_PICTURE_PIXELS as f64 / n_pixels as f64).sqrt();
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -230,18 +229,9 @@ fn resized(picture: &image::RgbaImage, [width, height]: [u32; 2]) -> image::Rgba
     });
     let light = image::imageops::resize(&light, width, height, FilterType::Lanczos3);
     image::RgbaImage::from_fn(width, height, |x, y| {
-        let [r, g, b] = light.get_pixel(x, y).0.map(code);
+        let [r, g, b] = light.get_pixel(x, y).0.map(code_of_linear);
         image::Rgba([r, g, b, u8::MAX])
     })
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a code of 8 bits"
-)]
-fn code(linear: f32) -> u8 {
-    (255.0 * srgb_from_linear(linear.clamp(0.0, 1.0))).round() as u8
 }
 
 /// The focal length that EXIF states, as on 35 mm film.

@@ -1,6 +1,6 @@
 //! Pictures made smaller, and sheets of them.
 
-use app_scene::geometry::color::{linear_of_codes, srgb_from_linear};
+use app_scene::geometry::color::{code_of_linear, linear_of_codes};
 use image::{Rgb, RgbImage};
 
 /// A picture of at most `side_px` along its longer side: each pixel is the mean light of a square of the larger one's.
@@ -25,21 +25,8 @@ pub fn shrunk(picture: &RgbImage, side_px: u32) -> RgbImage {
                 }
             }
         }
-        Rgb(sums.map(|sum| code(sum / n.max(1.0))))
+        Rgb(sums.map(|sum| code_of_linear(sum / n.max(1.0))))
     })
-}
-
-/// The code of a linear value.
-#[must_use]
-pub fn code(linear: f32) -> u8 {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "from 0 to 255"
-    )]
-    {
-        (255.0 * srgb_from_linear(linear.clamp(0.0, 1.0))).round() as u8
-    }
 }
 
 /// Pictures of one size side by side, row by row.

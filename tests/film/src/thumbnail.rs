@@ -2,11 +2,11 @@
 
 use app_core::scene::Pose;
 use app_core::toy::{Material, PosedMesh, Toy, ToyError, Wrap};
-use app_scene::geometry::color::linear_of_codes;
+use app_scene::geometry::color::{code_of_linear, linear_of_codes};
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use image::{Rgb, RgbImage};
 
-use crate::small::{code, shrunk};
+use crate::small::shrunk;
 
 /// Samples of a pixel along each side.
 const N_SAMPLES: u32 = 3;
@@ -119,7 +119,7 @@ impl Stand {
         let towards_light = Vec3::new(-0.4, 0.7, 0.6).normalize();
         let direct = normal.normalize_or_zero().dot(towards_light).max(0.0);
         let light = albedo * (AMBIENT + (1.0 - AMBIENT) * direct);
-        Rgb(light.to_array().map(code))
+        Rgb(light.to_array().map(code_of_linear))
     }
 
     fn texel(&self, toy: &Toy, material: &Material, uv: Vec2) -> Vec3 {

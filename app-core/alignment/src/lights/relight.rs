@@ -10,7 +10,7 @@ use crate::picture::{Level, Picture, Pyramid, UNKNOWN, places};
 use crate::raster::{Rasterizer, project};
 use crate::receivers::{SeenReceiver, receiver_at};
 use crate::shape::Shape;
-use app_scene::geometry::color::{linear_of_codes, srgb_from_linear};
+use app_scene::geometry::color::{code_of_linear, linear_of_codes};
 use app_scene::scene::{Camera, Image, Plate, Receiver};
 
 /// As far from the toy as the light is told, over the toy's radius.
@@ -100,7 +100,7 @@ impl Relight {
             };
             for (code, ratio) in texel.iter_mut().zip(ratio) {
                 let linear = linear_of_code[usize::from(*code)] * ratio.clamp(LEAST, MOST);
-                *code = code_of(linear);
+                *code = code_of_linear(linear);
             }
         }
         Plate {
@@ -112,11 +112,6 @@ impl Relight {
             }),
         }
     }
-}
-
-#[allow(clippy::cast_possible_truncation, reason = "a code")]
-fn code_of(linear: f32) -> u8 {
-    (255.0 * srgb_from_linear(linear.clamp(0.0, 1.0))).round() as u8
 }
 
 /// One picture over another.

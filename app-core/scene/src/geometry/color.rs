@@ -20,6 +20,17 @@ pub fn linear_from_srgb(encoded: f32) -> f32 {
     }
 }
 
+/// The code of 8 bits that is nearest to linear light; what is brighter than white is white.
+#[must_use]
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "from 0 to 255"
+)]
+pub fn code_of_linear(linear: f32) -> u8 {
+    (255.0 * srgb_from_linear(linear.clamp(0.0, 1.0))).round() as u8
+}
+
 /// How much more linear light there is for each unit of the encoded value, at a linear value in [0, 1]: the derivative of
 /// [`linear_from_srgb`].
 #[must_use]

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::geometry::color::{linear_of_codes, srgb_from_linear};
+use crate::geometry::color::{code_of_linear, linear_of_codes};
 use crate::scene::Image;
 
 /// Pixels a side of what is summed for one.
@@ -80,12 +80,6 @@ fn kept(was: [f32; 3], is: [f32; 3]) -> f32 {
     };
     let most = change(0).max(change(1)).max(change(2));
     (1.0 - most / ANOTHER_SURFACE).max(0.0)
-}
-
-fn code_of_linear(linear: f32) -> u8 {
-    #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
-    let code = (255.0 * srgb_from_linear(linear.clamp(0.0, 1.0))).round() as u8;
-    code
 }
 
 /// Pixels around a place and their weights: cubic convolution (Keys 1981, a = -1/2), the picture's border going on outside.

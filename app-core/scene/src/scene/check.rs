@@ -113,7 +113,7 @@ pub const RADIUS_M: RangeInclusive<f64> = 0.0..=1e9;
 pub const LIGHT_M: RangeInclusive<f64> = -1e9..=1e9;
 /// Pixels of one picture: a still of 4096 x 3072, larger than those of the cameras that track, which give at most
 /// 4032 x 3024. Maps of the whole picture take some 140 bytes a pixel.
-pub(crate) const MAX_PICTURE_PIXELS: u64 = 4096 * 3072;
+pub const MAX_PICTURE_PIXELS: u64 = 4096 * 3072;
 /// Width and height of a session's pictures, in pixels.
 pub const SIDE_PX: RangeInclusive<f64> = 1.0..=16384.0;
 /// Focal lengths, in pixels.

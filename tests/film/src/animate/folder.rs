@@ -9,10 +9,12 @@ use std::{fs, io};
 
 use anyhow::{Context, bail, ensure};
 use app_core::preset::Preset;
-use app_core::session::Files;
+use app_core::session::{Files, MAX_INDEX_BYTES};
+use desk::files::SESSION_FILE;
 use desk::output::{make_folder, remove_file, write_whole};
 use desk::stored::Stored;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::timeline::{FramePose, Timing};
 
@@ -89,13 +91,27 @@ impl Film {
     }
 }
 
-/// Sizes and checksums of a session's files.
+/// Sizes and checksums of a session's files, as far as a film is made of them.
 ///
 /// # Errors
 /// When one cannot be read.
 pub fn sources(session: &Stored) -> anyhow::Result<Vec<SourceFile>> {
-    let mut paths = session.paths()?;
+    let index = session
+        .read(SESSION_FILE, MAX_INDEX_BYTES)
+        .context(SESSION_FILE)?;
+    let index: Value = serde_json::from_slice(&index).context(SESSION_FILE)?;
+    let plates = index["backgrounds"].as_array().into_iter().flatten();
+    let of_plates = plates.map(|plate| &plate["image"]);
+    // Of the frames the first alone is animated.
+    let others = [
+        &index["toy"]["file"],
+        &index["frames"][0]["image"],
+        &index["probe"]["image"],
+    ];
+    let named = of_plates.chain(others).filter_map(Value::as_str);
+    let mut paths: Vec<String> = named.chain([SESSION_FILE]).map(str::to_owned).collect();
     paths.sort();
+    paths.dedup();
     let source = |path: String| {
         let bytes = session
             .read(&path, MAX_SESSION_FILE_BYTES)
@@ -168,9 +184,16 @@ impl FilmFolder {
     pub fn film_in(path: &Path) -> anyhow::Result<Option<Film>> {
         let path = path.join(FILM_FILE);
         match fs::read(&path) {
-            Ok(bytes) => Ok(Some(
-                serde_json::from_slice(&bytes).with_context(|| path.display().to_string())?,
-            )),
+            Ok(bytes) => {
+                let named = || path.display().to_string();
+                let film: Film = serde_json::from_slice(&bytes).with_context(named)?;
+                for frame in &film.frames {
+                    let is_name = Path::new(&frame.file).components().count() == 1
+                        && Path::new(&frame.file).file_name().is_some();
+                    ensure!(is_name, "{}: {:?} is no file of this folder", named(), frame.file);
+                }
+                Ok(Some(film))
+            }
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(error).with_context(|| path.display().to_string()),
         }
@@ -191,16 +214,29 @@ impl FilmFolder {
         let turn = File::create(&turn_path).with_context(|| turn_path.display().to_string())?;
         // One of several runs begins, the others find it done. Where there are no locks, they are to be begun one by one.
         let _ = turn.lock();
-        // A file that nobody can read any more is no film's.
-        let before = Self::film_in(&self.path).ok().flatten();
+        let before = Self::film_in(&self.path)?;
         // As it will be read.
         let bytes = serde_json::to_vec_pretty(film)?;
         let film: Film = serde_json::from_slice(&bytes)?;
         ensure!(
-            !self.is_shared || !is_forced && before.as_ref().is_none_or(|before| *before == film),
-            "{}: a run for some frames of a film leaves another film as it is; name another folder, or run without --frames first",
+            !self.is_shared || before.as_ref().is_none_or(|before| *before == film),
+            "{}: a run for some frames of a film leaves another film as it is; name another --out, or run without --frames first",
             self.path.display()
         );
+        if let Some(before) = before.as_ref().filter(|before| **before != film && !is_forced) {
+            let n_lost = before
+                .frames
+                .iter()
+                .filter(|frame| self.path.join(&frame.file).exists())
+                .count();
+            let is_kept = before.has_pictures_of(&film);
+            ensure!(
+                is_kept || n_lost == 0,
+                "{}: has {n_lost} pictures of another film ({}); name another --out, or say --force to have them removed",
+                self.path.display(),
+                before.clips
+            );
+        }
         let has_session = before.as_ref().is_some_and(|before| before.has_session_of(&film));
         let session = self.path.join(SESSION_FOLDER);
         if is_forced || !has_session || !session.exists() {

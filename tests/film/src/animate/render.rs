@@ -1,5 +1,6 @@
 //! Makes pictures of a film, in a process that ends before its driver has taken too much memory.
 
+use std::collections::BTreeSet;
 use std::io::{self, Read, Write};
 use std::ops::Range;
 use std::path::Path;
@@ -48,8 +49,14 @@ fn pose_at(toy: &Toy, moment: &Moment) -> anyhow::Result<Pose> {
     })
 }
 
-/// Makes those pictures of the film in `folder` with numbers in `range` that are not there, and writes the number of each to standard
-/// output. It may end before all are made. The process ends when standard input does, as it does with whoever began it.
+/// What the process that makes pictures writes of each, before its number: whether it was retargeted.
+pub(super) const RETARGETED: &str = "retargeted ";
+pub(super) const PASSED_THROUGH: &str = "passed through ";
+/// What it writes before a warning.
+pub(super) const WARNING: &str = "warning: ";
+
+/// Makes those pictures of the film in `folder` with numbers in `range` that are not there, and writes a line for each and for each new
+/// warning to standard output. It may end before all are made. The process ends when standard input does, as it does with whoever began it.
 ///
 /// # Errors
 /// When the film cannot be read, or a picture cannot be made or written.
@@ -75,6 +82,13 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     let scene = alignments.changed_scene(&scene, 0).unwrap_or(scene);
     let toy = scene.toy.clone();
     core.set_scene(with_film(scene, &film, input.world_from_shown)?, preset)?;
+    let mut warnings = Warnings::default();
+    let of_alignment = alignments
+        .of(0)
+        .into_iter()
+        .flat_map(|aligned| &aligned.alignment.warnings);
+    warnings.say(capture.warnings().iter().map(ToString::to_string))?;
+    warnings.say(of_alignment.map(ToString::to_string))?;
     let n_pictures = if core.is_software() {
         N_PICTURES_OF_PROCESS
     } else {
@@ -83,14 +97,39 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     for frame in missing.into_iter().take(n_pictures) {
         let input = input.clone().with_shown_pose(pose_of(&toy, &frame.pose)?);
         let failed = || frame.file.clone();
-        core.frame(&input).with_context(failed)?;
+        let report = core.frame(&input).with_context(failed)?;
         let picture = core.read_picture().with_context(failed)?;
         write_png(&folder.join(&frame.file), &through_lens(&capture, 0, picture)?)?;
-        let mut out = io::stdout().lock();
-        writeln!(out, "{}", frame.number)?;
-        out.flush()?;
+        warnings.say(report.warnings.iter().map(ToString::to_string))?;
+        let outcome = if report.region.is_some() {
+            RETARGETED
+        } else {
+            PASSED_THROUGH
+        };
+        say(&format!("{outcome}{}", frame.number))?;
     }
     Ok(())
+}
+
+fn say(line: &str) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    writeln!(out, "{line}")?;
+    out.flush()
+}
+
+/// Warnings that were said.
+#[derive(Default)]
+struct Warnings(BTreeSet<String>);
+
+impl Warnings {
+    fn say(&mut self, warnings: impl Iterator<Item = String>) -> io::Result<()> {
+        for warning in warnings {
+            if self.0.insert(warning.clone()) {
+                say(&format!("{WARNING}{warning}"))?;
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The scene that knows all that is going to be shown, so that no frame depends on those that were made before it.

@@ -1,5 +1,6 @@
 //! A film from its beginning to its end, or a part of it, by processes that make its pictures.
 
+use std::collections::BTreeSet;
 use std::io::{self, BufRead, BufReader, IsTerminal, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -24,7 +25,7 @@ use super::folder::{Film, FilmFolder, FilmFrame, sources};
 use super::frame_files::{FrameRange, NamePattern};
 use super::grammar::{ClipFacts, items};
 use super::outputs;
-use super::render::missing;
+use super::render::{PASSED_THROUGH, WARNING, missing};
 use super::timeline::{Timing, frames};
 
 /// What is asked for.
@@ -99,7 +100,7 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
     outputs::write_xsheet(folder.path(), &film, &clip_facts(&capture.scene().toy))?;
     let n_missing = missing(folder.path(), &film, &range).len();
     let start = Instant::now();
-    make(order, folder.path(), &film, &range)?;
+    let made = make(order, folder.path(), &film, &range)?;
     let secs = start.elapsed().as_secs_f64();
     let now = match n_missing {
         0 => "none had to be made".to_owned(),
@@ -108,7 +109,18 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
             n_missing as f64 / secs
         ),
     };
-    let mut said = format!(
+    let mut said: String = made
+        .warnings
+        .iter()
+        .map(|warning| format!("warning: {warning}\n"))
+        .collect();
+    if made.n_passed_through > 0 {
+        said += &format!(
+            "{} of {n_missing} frames passed through: they show the photograph as it is\n",
+            made.n_passed_through
+        );
+    }
+    said += &format!(
         "{} of {} frames are there, {now}: {}\n",
         film.frames.len() - missing(folder.path(), &film, &all).len(),
         film.frames.len(),
@@ -159,12 +171,21 @@ fn write_session(order: &Order, to: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// What the processes said.
+#[derive(Default)]
+struct Made {
+    warnings: BTreeSet<String>,
+    n_passed_through: usize,
+}
+
 /// Begins one process after the other until all pictures are there.
-fn make(order: &Order, folder: &Path, film: &Film, range: &Range<u32>) -> anyhow::Result<()> {
+fn make(order: &Order, folder: &Path, film: &Film, range: &Range<u32>) -> anyhow::Result<Made> {
+    let program = env::current_exe().context("this program's own path")?;
+    let mut made = Made::default();
     let mut n_missing = missing(folder, film, range).len();
     let progress = Progress::new(n_missing, order.is_quiet);
     while n_missing > 0 {
-        let mut command = Command::new(env::current_exe()?);
+        let mut command = Command::new(&program);
         command
             .arg("--render")
             .arg(folder)
@@ -172,10 +193,16 @@ fn make(order: &Order, folder: &Path, film: &Film, range: &Range<u32>) -> anyhow
         if let Some(adapter) = &order.adapter {
             command.args(["--adapter", adapter]);
         }
-        let mut process = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
+        let process = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
+        let mut process = process.with_context(|| program.display().to_string())?;
         let lines = process.stdout.take().map(BufReader::new);
         for line in lines.into_iter().flat_map(BufRead::lines) {
-            line?;
+            let line = line?;
+            if let Some(warning) = line.strip_prefix(WARNING) {
+                made.warnings.insert(warning.to_owned());
+                continue;
+            }
+            made.n_passed_through += usize::from(line.starts_with(PASSED_THROUGH));
             progress.next();
         }
         let status = process.wait()?;
@@ -191,7 +218,7 @@ fn make(order: &Order, folder: &Path, film: &Film, range: &Range<u32>) -> anyhow
         n_missing = n_left;
     }
     progress.0.finish_and_clear();
-    Ok(())
+    Ok(made)
 }
 
 /// How far a film is, with the time left: a bar on a terminal, a line now and then in a log.
@@ -223,7 +250,7 @@ impl Progress {
     }
 }
 
-/// Whether a film's picture can be read.
+/// Reads a film's picture.
 pub(crate) fn picture(folder: &Path, frame: &FilmFrame) -> anyhow::Result<image::RgbImage> {
     let path = folder.join(&frame.file);
     let named = || path.display().to_string();

@@ -214,13 +214,27 @@ pub fn frames(items: &[Item], clips: &[ClipFacts], timing: &Timing) -> Result<Ve
     )]
     let n_frames = n_frames as u32;
     let on = timing.on.max(1);
-    let shown = |frame: u32| pose_at(&segments, timing, from + f64::from(frame - frame % on));
-    let mut frames: Vec<FramePose> = (0..n_frames).filter_map(shown).collect();
-    if timing.end == End::PingPong && frames.len() > 2 {
-        let back: Vec<FramePose> = frames[1..frames.len() - 1].iter().rev().copied().collect();
-        frames.extend(back);
+    let n_poses = n_frames.div_ceil(on);
+    let shown = |pose: u32| {
+        // The last pose is the end's, even if it comes too late for its turn.
+        let is_last = is_end_shown && pose + 1 == n_poses;
+        let frame = if is_last { n_frames - 1 } else { pose * on };
+        pose_at(&segments, timing, from + f64::from(frame))
+    };
+    let mut poses: Vec<FramePose> = (0..n_poses).filter_map(shown).collect();
+    // There and back are mirrored pose by pose: each stays as long as the others.
+    if timing.end == End::PingPong && poses.len() > 2 {
+        let back: Vec<FramePose> = poses[1..poses.len() - 1].iter().rev().copied().collect();
+        poses.extend(back);
     }
-    Ok(frames)
+    let held = poses
+        .iter()
+        .flat_map(|pose| std::iter::repeat_n(*pose, on as usize));
+    Ok(if timing.end == End::PingPong {
+        held.collect()
+    } else {
+        held.take(n_frames as usize).collect()
+    })
 }
 
 fn segments(items: &[Item], clips: &[ClipFacts], timing: &Timing) -> Vec<Segment> {

@@ -66,8 +66,8 @@ struct Args {
     /// Names of the pictures, with a # for each digit of the number; without it the session's name and four digits
     #[arg(long, value_name = "NAME_####")]
     name: Option<NamePattern>,
-    /// Make again what is there
-    #[arg(long)]
+    /// Make again what is there, and remove another film's pictures
+    #[arg(long, conflicts_with = "frames")]
     force: bool,
     /// Folder of the film [default: target/film/ and the name of folder or recording]
     #[arg(long, value_name = "FILM")]

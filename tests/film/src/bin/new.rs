@@ -68,13 +68,21 @@ fn run(args: Args) -> anyhow::Result<()> {
         keys: args.key,
         apart_secs: args.apart,
     };
-    let next = if wanted.keys.is_empty() { "animate" } else { "inbetween" };
     let made = new(&wanted, &args.out)?;
     let mut lines = made.facts;
     lines.extend(made.warnings.iter().map(|warning| format!("warning: {warning}")));
+    let next = if wanted.keys.is_empty() {
+        format!(
+            "animate '{}' --clips {}",
+            args.out.display(),
+            made.clip.unwrap_or_else(|| "CLIP".to_owned())
+        )
+    } else {
+        format!("inbetween '{}'", args.out.display())
+    };
     lines.push(format!(
-        "{}: look at the outlines in {DRAWING}; then `cargo xtask {next} {0}`",
-        args.out.display()
+        "look at the outlines in {}; then `cargo xtask {next}`",
+        args.out.join(DRAWING).display()
     ));
     print(&(lines.join("\n") + "\n"))
 }

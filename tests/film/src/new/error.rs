@@ -53,15 +53,19 @@ pub enum NewError {
     },
     /// Several do.
     #[error(
-        "the toy looks alike from {} sides ({}), and neither outline nor colours say which it is: say --view {}",
-        sides.len(), words(sides), sides.iter().map(Side::to_string).collect::<Vec<_>>().join("|")
+        "the toy fits in several ways, and neither outline nor colours say in which: {}",
+        advice(sides)
     )]
     Ambiguous {
-        /// What is seen of it in each pose.
+        /// What is seen of it in these, each once.
         sides: Vec<Side>,
     },
 }
 
-fn words(sides: &[Side]) -> String {
-    sides.iter().map(Side::to_string).collect::<Vec<_>>().join(", ")
+fn advice(sides: &[Side]) -> String {
+    let names: Vec<String> = sides.iter().map(Side::to_string).collect();
+    match &names[..] {
+        [] | [_] => "photograph it from another side".to_owned(),
+        _ => format!("say --view {}", names.join("|")),
+    }
 }

@@ -29,6 +29,7 @@ pub(super) struct Found {
     alignment: Alignment,
     toy: FoundToy,
     turn_rad: f64,
+    height_m: f64,
 }
 
 /// Finds all by the photographs.
@@ -119,6 +120,7 @@ fn aligned(
     scene.world_from_object = input.world_from_object;
     Ok(Found {
         turn_rad: turn_rad(toy, given),
+        height_m: given.height_m,
         scene,
         input,
         alignment,
@@ -176,7 +178,7 @@ fn not_found(given: &Given, nearest_px: Option<f64>) -> NewError {
     NewError::NotFound {
         reached,
         advice: format!(
-            "{plate}Check that all is taken from one place, that the model is this toy in this pose (--pose CLIP@TIME), that it stands with its +Y up (--up), that nothing hides it, and the focal length (--focal-35mm); or say from where it is seen (--view)"
+            "{plate}Check that all is taken from one place, that the model is this toy in this pose (--pose CLIP@TIME), which of the model's axes points up (--up), that nothing hides it, and the focal length (--focal-35mm); or say from where it is seen (--view)"
         ),
     }
 }
@@ -187,7 +189,7 @@ impl Found {
         self.alignment.report.unexplained.unwrap_or(1.0)
     }
 
-    /// Moves toy and cameras to the height above the table that the shadow says, and the lights with it.
+    /// Moves toy and cameras to the height above the table that the shadow says, and aligns the lights there.
     fn lower_to_table(&mut self, given: &Given) -> anyhow::Result<()> {
         let Self { scene, input, .. } = self;
         if scene.lights.is_empty() || scene.plates.is_empty() {
@@ -229,12 +231,16 @@ impl Found {
         let toy = self.input.world_from_object.w_axis.truncate();
         let down_deg = (camera.y / camera.length()).clamp(-1.0, 1.0).asin().to_degrees();
         let mut facts = vec![format!(
+            "the toy is {:.1} cm high, as it stands",
+            100.0 * self.height_m
+        )];
+        facts.push(format!(
             "the toy is found: its {} is seen from {:.2} m, {down_deg:.0} degrees above the table; its outline is {:.2} px from the photograph's, its place known to {:.2} mm along the view",
             Side::of_turn(self.turn_rad),
             camera.distance(toy),
             self.pose().map_or(self.toy.outline_px, PoseAlignment::shown_px),
             1e3 * self.toy.deviation.depth_m,
-        )];
+        ));
         facts.extend(self.alignment.report.discovered.iter().enumerate().map(|(index, light)| {
             let away = light.distance_m.map_or("far away".to_owned(), |metres| format!("{metres:.2} m away"));
             format!(

@@ -63,6 +63,8 @@ pub struct Made {
     pub facts: Vec<String>,
     /// What may be wrong.
     pub warnings: Vec<String>,
+    /// The toy's first clip.
+    pub clip: Option<String>,
 }
 
 /// What is read before anything is searched.
@@ -77,6 +79,8 @@ struct Given {
     intrinsics: Intrinsics,
     /// The toy in its size and upright about the origin.
     upright: DMat4,
+    /// The toy's height as it stands.
+    height_m: f64,
     /// Corners of the model's box in that pose, in object space.
     corners: [DVec3; 2],
     facts: Vec<String>,
@@ -88,15 +92,25 @@ struct Given {
 /// When `out` is there already, a file cannot be read, or the toy is not found for sure: nothing is written then.
 pub fn new(wanted: &Wanted, out: &Path) -> anyhow::Result<Made> {
     anyhow::ensure!(!out.exists(), "{}: is there already", out.display());
+    let mut partial = out.file_name().context("--out: has no name")?.to_owned();
+    partial.push(".partial");
+    let partial = out.with_file_name(partial);
+    anyhow::ensure!(
+        !partial.exists(),
+        "{}: another run writes there, or was ended: remove it",
+        partial.display()
+    );
     let given = read(wanted)?;
     let found = found::find(&given, wanted)?;
-    written::write(&given, &found, wanted, out)?;
-    write_png(&out.join(DRAWING), &found.drawn(&given)?)?;
+    written::write(&given, &found, wanted, &partial)?;
+    write_png(&partial.join(DRAWING), &found.drawn(&given)?)?;
+    std::fs::rename(&partial, out).with_context(|| out.display().to_string())?;
     let mut facts = given.facts.clone();
     facts.extend(found.facts());
     Ok(Made {
         facts,
         warnings: found.warnings(&given),
+        clip: given.toy.clip_names().into_iter().next(),
     })
 }
 
@@ -133,13 +147,22 @@ fn read(wanted: &Wanted) -> anyhow::Result<Given> {
     let bounds = toy.bounds_of_pose(&pose)?;
     let corners = [bounds.min, bounds.max].map(|corner| corner.as_dvec3());
     for key in &wanted.keys {
-        toy.find_clip(&key.moment.0).with_context(|| key.path.display().to_string())?;
+        toy.find_clip(&key.moment.0)
+            .with_context(|| key.path.display().to_string())?;
     }
-    let upright = upright(corners, wanted)?;
-    let facts = plates.iter().chain([&photograph]).chain(&keys).flat_map(|photograph| {
-        let name = photograph.path.display();
-        photograph.notes.iter().map(move |note| format!("{name}: {note}"))
-    });
+    let (upright, height_m) = upright(corners, wanted)?;
+    if let (Pose::Clip { clip, time_secs }, Some((name, _))) = (&pose, &wanted.moment) {
+        let (end_secs, is_beyond) = toy.clamp_time(*clip, *time_secs)?;
+        anyhow::ensure!(!is_beyond, "--pose: the clip {name:?} ends at {end_secs:.3} s");
+    }
+    let facts = plates
+        .iter()
+        .chain([&photograph])
+        .chain(&keys)
+        .flat_map(|photograph| {
+            let name = photograph.path.display();
+            photograph.notes.iter().map(move |note| format!("{name}: {note}"))
+        });
     let image = &photograph.image;
     Ok(Given {
         intrinsics: Intrinsics {
@@ -156,6 +179,7 @@ fn read(wanted: &Wanted) -> anyhow::Result<Given> {
         toy_bytes,
         pose,
         upright,
+        height_m,
         corners,
     })
 }
@@ -185,8 +209,8 @@ fn read_toy(path: &Path) -> anyhow::Result<(Toy, Vec<u8>)> {
     Ok((Toy::from_glb(&name, &bytes)?, bytes))
 }
 
-/// Turns the model upright, and scales it to its height.
-fn upright([min, max]: [DVec3; 2], wanted: &Wanted) -> Result<DMat4, NewError> {
+/// Turns the model upright and scales it to its height, which is returned, too.
+fn upright([min, max]: [DVec3; 2], wanted: &Wanted) -> Result<(DMat4, f64), NewError> {
     let turn = DMat4::from_quat(glam::DQuat::from_rotation_arc(wanted.up, DVec3::Y));
     let heights = (0..8).map(|corner| {
         let pick = |axis: usize| {
@@ -208,7 +232,7 @@ fn upright([min, max]: [DVec3; 2], wanted: &Wanted) -> Result<DMat4, NewError> {
     if !(own_m.is_normal() && own_m > 0.0) {
         return Err(NewError::Flat);
     }
-    Ok(DMat4::from_scale(DVec3::splat(height_m / own_m)) * turn)
+    Ok((DMat4::from_scale(DVec3::splat(height_m / own_m)) * turn, height_m))
 }
 
 impl Given {

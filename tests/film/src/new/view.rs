@@ -43,7 +43,7 @@ pub struct View {
 }
 
 impl Side {
-    const ALL: [Self; 4] = [Self::Front, Self::Left, Self::Back, Self::Right];
+    pub(super) const ALL: [Self; 4] = [Self::Front, Self::Left, Self::Back, Self::Right];
 
     fn name(self) -> &'static str {
         match self {
