@@ -12,6 +12,7 @@ use film::photograph::{Photograph, PhotographReason};
 use glam::{DMat4, DVec3};
 use harness::temporary::Temporary;
 use image::codecs::jpeg::JpegEncoder;
+use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, Rgb, RgbImage};
 
 /// The lens of the bundled session as on 35 mm film: its picture has 640 x 360 px and a focal length of 576 px.
@@ -141,6 +142,41 @@ fn a_photograph_is_turned_upright_and_its_lens_is_read() {
     // 26 mm of a film's diagonal of 43.27 mm, over 71.55 px.
     let focal_px = read.focal_px.unwrap();
     assert!((focal_px - 43.0).abs() < 0.05, "{focal_px}");
+}
+
+#[test]
+fn colours_of_a_phone_are_brought_to_srgb() {
+    let folder = Temporary::new("new-p3");
+    let picture = RgbImage::from_pixel(4, 4, Rgb([180, 120, 100]));
+    let mut png = Vec::new();
+    PngEncoder::new(&mut png)
+        .write_image(&picture, 4, 4, ExtendedColorType::Rgb8)
+        .unwrap();
+    // Behind the header of 33 bytes: Display P3, sRGB's transfer function, full range; then the same with PQ in its place.
+    let read = |transfer: u8| {
+        let named = [&b"cICP"[..], &[12, transfer, 0, 1]].concat();
+        let chunk = [
+            &4_u32.to_be_bytes()[..],
+            &named,
+            &crc32fast::hash(&named).to_be_bytes(),
+        ]
+        .concat();
+        let path = folder.0.join(format!("{transfer}.png"));
+        fs::write(&path, [&png[..33], &chunk, &png[33..]].concat()).unwrap();
+        Photograph::read(&path)
+    };
+    let image = read(13).unwrap().image;
+    // By the primaries of both (SMPTE EG 432-1, IEC 61966-2-1), in 64 bits: 190.3, 116.6, 95.7.
+    let expected = [190, 117, 96];
+    let off = expected
+        .iter()
+        .zip(&image.rgba8)
+        .map(|(a, b): (&u8, &u8)| a.abs_diff(*b));
+    assert!(off.max() <= Some(1), "{:?}", &image.rgba8[..3]);
+    assert!(matches!(
+        read(16).unwrap_err().reason,
+        PhotographReason::Profile(_)
+    ));
 }
 
 #[test]
