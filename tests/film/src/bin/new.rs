@@ -68,7 +68,11 @@ fn run(args: Args) -> anyhow::Result<()> {
         keys: args.key,
         apart_secs: args.apart,
     };
-    let next = if wanted.keys.is_empty() { "animate" } else { "inbetween" };
+    let next = if wanted.keys.is_empty() {
+        "animate"
+    } else {
+        "inbetween"
+    };
     let made = new(&wanted, &args.out)?;
     let mut lines = made.facts;
     lines.extend(made.warnings.iter().map(|warning| format!("warning: {warning}")));

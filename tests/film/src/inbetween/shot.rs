@@ -138,6 +138,8 @@ pub enum ShotError {
 /// A shot that was opened: everything is checked, and its photographs are read when they are asked for.
 pub struct Shot {
     capture: Capture,
+    /// The folder that it was opened in.
+    folder: Option<PathBuf>,
     /// Poses that no clip holds, by the index of their key.
     node_poses: BTreeMap<usize, Pose>,
 }
@@ -182,10 +184,14 @@ impl Shot {
         }
         let text = fs::read(&file).map_err(|error| at_file(error.to_string()))?;
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let folder = Folder::open(folder.unwrap_or(Path::new(".")))?;
-        Self::read(&text, folder).map_err(|error| match error {
+        let folder = folder.unwrap_or(Path::new("."));
+        let shot = Self::read(&text, Folder::open(folder)?).map_err(|error| match error {
             ShotError::Index { reason, .. } => at_file(reason),
             error => error,
+        })?;
+        Ok(Self {
+            folder: Some(folder.to_owned()),
+            ..shot
         })
     }
 
@@ -205,7 +211,17 @@ impl Shot {
         let index = serde_json::to_vec(&Index::from(capture)).map_err(|error| at_file(error.to_string()))?;
         let capture = Capture::open(ShotFiles { files, index }).map_err(as_of_shot)?;
         let node_poses = node_poses(capture.scene(), &nodes)?;
-        Ok(Self { capture, node_poses })
+        Ok(Self {
+            capture,
+            folder: None,
+            node_poses,
+        })
+    }
+
+    /// The folder that it was opened in; none if its files come from elsewhere.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
     }
 
     /// The scene, in which the toy is as authored.

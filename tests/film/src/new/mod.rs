@@ -133,13 +133,18 @@ fn read(wanted: &Wanted) -> anyhow::Result<Given> {
     let bounds = toy.bounds_of_pose(&pose)?;
     let corners = [bounds.min, bounds.max].map(|corner| corner.as_dvec3());
     for key in &wanted.keys {
-        toy.find_clip(&key.moment.0).with_context(|| key.path.display().to_string())?;
+        toy.find_clip(&key.moment.0)
+            .with_context(|| key.path.display().to_string())?;
     }
     let upright = upright(corners, wanted)?;
-    let facts = plates.iter().chain([&photograph]).chain(&keys).flat_map(|photograph| {
-        let name = photograph.path.display();
-        photograph.notes.iter().map(move |note| format!("{name}: {note}"))
-    });
+    let facts = plates
+        .iter()
+        .chain([&photograph])
+        .chain(&keys)
+        .flat_map(|photograph| {
+            let name = photograph.path.display();
+            photograph.notes.iter().map(move |note| format!("{name}: {note}"))
+        });
     let image = &photograph.image;
     Ok(Given {
         intrinsics: Intrinsics {

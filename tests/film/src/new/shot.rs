@@ -24,12 +24,7 @@ fn key_file(index: usize) -> String {
 }
 
 /// Writes the pictures of the keys and `shot.json` into a session's folder, of whose record it takes all but frames and pose.
-pub(super) fn write(
-    given: &Given,
-    record: CaptureRecord,
-    wanted: &Wanted,
-    out: &Path,
-) -> anyhow::Result<()> {
+pub(super) fn write(given: &Given, record: CaptureRecord, wanted: &Wanted, out: &Path) -> anyhow::Result<()> {
     let key = |index: usize, image: &str, pose: &PoseRecord| {
         json!({
             "image": image,

@@ -12,8 +12,8 @@ use desk::files::{Folder, SESSION_FILE};
 use desk::output::{make_folder, write_png, write_whole};
 
 use super::found::Found;
-use crate::inbetween::shot::Shot;
 use super::{Given, Wanted, shot};
+use crate::inbetween::shot::Shot;
 
 const TOY: &str = "toy.glb";
 const PHOTOGRAPH: &str = "photograph.png";
