@@ -48,7 +48,7 @@ struct Args {
     /// Show keys as they were photographed, though camera, light and place of the toy jump there
     #[arg(long)]
     keep_keys: bool,
-    /// Write onion skins, too: each frame with the keys beside it shining through
+    /// Write onion skins into the folder onion, too: each frame with the keys beside it shining through
     #[arg(long)]
     onion: bool,
     /// Part of a graphics adapter's name [default: the fastest]

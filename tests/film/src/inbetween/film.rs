@@ -19,6 +19,8 @@ use super::stage::Figure;
 use super::timing::{Ease, Moment, Rate, moments};
 use crate::sheet::Cell;
 
+/// Folder of onion skins, below the output folder; each is called as its frame.
+const ONION_FOLDER: &str = "onion";
 /// Of the key before, the frame and the key after in an onion skin.
 const ONION_WEIGHTS: [f32; 3] = [0.25, 0.5, 0.25];
 
@@ -284,7 +286,7 @@ impl Maker<'_> {
                     .sum();
             }
         }
-        let file = format!("onion_{:04}.png", entry.number);
+        let file = format!("{ONION_FOLDER}/{}", entry.picture);
         self.output.write_png(&file, &sum.encoded()).map(drop)
     }
 }
