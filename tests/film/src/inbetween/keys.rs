@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use app_core::alignment::{AlignError, Aligner, Alignment};
+use app_core::alignment::{AlignError, Aligner, Alignment, AlignmentWarning};
 use app_core::frame::FrameInput;
 use app_core::scene::{Camera, Intrinsics, Light, Plate, Pose, Receiver, Scene};
 use glam::{DMat3, DMat4, DVec3};
@@ -344,7 +344,10 @@ impl Stage<'_> {
                 .with_exposure(1.0);
             alignment = aligned(&mut Aligner::new(of_print.clone()), &input, index)?;
         }
-        let warnings = alignment.warnings.iter().map(ToString::to_string).collect();
+        // A foot of a posed print may well be off the table.
+        let is_other = |warning: &&AlignmentWarning| !matches!(warning, AlignmentWarning::OffReceiver { .. });
+        let others = alignment.warnings.iter().filter(is_other);
+        let warnings = others.map(ToString::to_string).collect();
         let world_from_object = self.on_plane(key, &alignment.world_from_object)?;
         let input = alignment
             .applied_to(&input)
