@@ -15,6 +15,7 @@ fn shot() -> Value {
     let index = std::fs::read(format!("{SESSION}/capture.json")).unwrap();
     let mut index: Value = serde_json::from_slice(&index).unwrap();
     index["format"] = json!("shadow-shot");
+    index["lens"] = Value::Null;
     index["keys"] = json!([
         { "image": "truth_0000.png", "time": 0.0, "physical_pose": { "clip": "Look", "time": 0.6 } },
         { "image": "frame_0000.png", "time": 1.0, "nodes": { "head": { "rotation": [0.0, 0.0, 0.0, 1.0] } } },
@@ -66,6 +67,21 @@ fn a_bad_shot_is_refused_by_file_field_and_reason() {
             ["shot.json", "(keys[0].world_from_camera)", "plate"],
         ),
         ("/keys", json!([]), ["shot.json", "(keys)", "two or more"]),
+        (
+            "/keys/0",
+            json!({ "image": "truth_0000.png", "time": 0.0, "pose": { "clip": "Look", "time": 0.6 } }),
+            ["shot.json", "(keys[0].pose)", "unknown"],
+        ),
+        (
+            "/keys/0",
+            json!({ "image": "truth_0000.png", "time": 0.0, "physical_pose": { "time": 0.6 }, "nodes": {} }),
+            ["shot.json", "(keys[0])", "both"],
+        ),
+        (
+            "/lens",
+            json!({ "k1": -0.05 }),
+            ["shot.json", "(lens)", "distortion"],
+        ),
     ];
     for (path, value, parts) in cases {
         let said = refused(path, value);
@@ -98,6 +114,13 @@ fn frames_meet_their_keys_and_pictures_stay_as_long_as_they_are_held() {
         "{by_time:?}"
     );
     assert_eq!(at(Rate::Between(1), 2), [0.0, 0.0, 1.0, 1.0, 2.0]);
+    // A hold that does not go into the gap ends at the key.
+    assert_eq!(
+        at(Rate::Between(3), 3),
+        [0.0, 0.0, 0.0, 0.75, 1.0, 1.0, 1.0, 1.75, 2.0]
+    );
+    let held = at(Rate::PerSecond(4.0), 3);
+    assert_eq!([held[0], held[1], held[2], held[8]], [0.0, 0.0, 1.0, 2.0]);
     assert!(moments(&[0.0, 1e9], Rate::PerSecond(24.0), Ease::Linear, 1).is_err());
 }
 

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read, Write};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Component, Path, PathBuf};
 
 use app_core::scene::Image;
@@ -40,6 +40,7 @@ impl OutputFolder {
         folder
             .manifest
             .set_len(0)
+            .and_then(|()| (&folder.manifest).rewind())
             .map_err(|error| WriteError::new(&root.join(MANIFEST_FILE), error))?;
         Ok(folder)
     }
@@ -54,8 +55,9 @@ impl OutputFolder {
         let failed = |error| WriteError::new(&path, error);
         let options = OpenOptions::new()
             .read(true)
-            .append(true)
+            .write(true)
             .create(true)
+            .truncate(false)
             .open(&path);
         let manifest = options.map_err(failed)?;
         match manifest.try_lock() {
@@ -67,6 +69,8 @@ impl OutputFolder {
             Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(error)) => return Err(failed(error)),
         }
+        // Windows does not lock a file that is open to append alone.
+        (&manifest).seek(SeekFrom::End(0)).map_err(failed)?;
         Ok(Self {
             root: root.to_owned(),
             manifest,
@@ -109,8 +113,10 @@ impl OutputFolder {
     /// The checksums under which each file was written.
     fn written(&self) -> Result<HashMap<String, Vec<u32>>, WriteError> {
         let mut text = String::new();
-        (&self.manifest)
-            .read_to_string(&mut text)
+        let mut manifest = &self.manifest;
+        manifest
+            .rewind()
+            .and_then(|()| manifest.read_to_string(&mut text))
             .map_err(|error| WriteError::new(&self.root.join(MANIFEST_FILE), error))?;
         let mut written: HashMap<String, Vec<u32>> = HashMap::new();
         // A line that was cut off by a kill, or by a hand, lists nothing.
@@ -150,7 +156,10 @@ fn check(root: &Path, written: &HashMap<String, Vec<u32>>) -> Result<Vec<PathBuf
             }
             None if is_remnant(&file, written) => {}
             None => {
-                return refused("is not of an earlier run; move it away, or choose another folder");
+                return refused(
+                    "is not of an earlier run, or was written by an earlier version of this program: delete the folder, move the \
+                     file away, or choose another folder",
+                );
             }
         }
         present.push(path);

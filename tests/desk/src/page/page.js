@@ -17,6 +17,7 @@ function show() {
 function go(frame) {
   const n = data.frames.length;
   state.frame = (frame + n) % n;
+  if (playing) playing.passed_secs = starts_secs[state.frame];
   show();
 }
 
@@ -73,6 +74,7 @@ let playing = null;
 function play() {
   if (playing) cancelAnimationFrame(playing.request);
   playing = playing ? null : { passed_secs: starts_secs[state.frame], at_ms: performance.now() };
+  point(null);
   if (playing) tick(playing.at_ms);
   at("play").textContent = playing ? "Pause" : "Play";
   at("play").setAttribute("aria-pressed", Boolean(playing));

@@ -15,7 +15,7 @@ window.takeValues = (file, text) => {
       known.set(file, context.getImageData(0, 0, bitmap.width, bitmap.height));
       showValues();
     })
-    .catch(() => known.set(file, "none"));
+    .catch(() => { known.set(file, "none"); showValues(); });
 };
 
 /* The values of a file: "wait" until they are there, "none" if they never will be. */

@@ -1,6 +1,6 @@
 //! Makes the frames between key poses that were printed and photographed one by one.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
@@ -9,10 +9,13 @@ use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::wgpu;
 use clap::Parser;
-use desk::program::{exit_code, print};
+use desk::program::{exit_code, print, repository};
 use film::inbetween::shot::Shot;
 use film::inbetween::timing::{Ease, Rate};
 use film::inbetween::{CONTACT_FILE, Options, PictureNames, REPORT_FILE, SHEET_FILE, findings, make};
+
+/// Where results go that were given no place, below the top of the repository.
+const RESULTS: &str = "target/inbetween";
 
 /// Make the frames between key poses that were printed and photographed one by one. Prints that stand elsewhere, a nudged camera and
 /// light that wanders are found, undone and said.
@@ -21,12 +24,12 @@ use film::inbetween::{CONTACT_FILE, Options, PictureNames, REPORT_FILE, SHEET_FI
 struct Args {
     /// Folder of the shot, or its shot.json
     shot: PathBuf,
-    /// Folder for pictures, xsheet.csv, contact sheet and report
+    /// Folder for pictures, xsheet.csv, contact sheet and report [default: target/inbetween/ and the name of the shot's folder]
     #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    out: Option<PathBuf>,
     /// Number of frames between two keys
     #[arg(long, value_name = "N", default_value_t = 3, conflicts_with = "fps")]
-    frames: usize,
+    between: usize,
     /// Frames a second in place of it, by the times of the keys
     #[arg(long, value_name = "RATE", value_parser = parse_fps)]
     fps: Option<f64>,
@@ -48,7 +51,7 @@ struct Args {
     /// Show keys as they were photographed, though camera, light and place of the toy jump there
     #[arg(long)]
     keep_keys: bool,
-    /// Write onion skins, too: each frame with the keys beside it shining through
+    /// Write onion skins into the folder onion, too: each frame with the keys beside it shining through
     #[arg(long)]
     onion: bool,
     /// Part of a graphics adapter's name [default: the fastest]
@@ -64,6 +67,10 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {
+    let out = match &args.out {
+        Some(out) => out.clone(),
+        None => default_out(&args.shot)?,
+    };
     let shot = Shot::open(&args.shot).with_context(|| args.shot.display().to_string())?;
     let adapter = args
         .adapter
@@ -71,9 +78,9 @@ fn run(args: &Args) -> anyhow::Result<()> {
         .map_or(AdapterChoice::Fastest, AdapterChoice::Named);
     let core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
     let options = Options {
-        out: args.out.clone(),
+        out: out.clone(),
         preset: args.preset,
-        rate: args.fps.map_or(Rate::Between(args.frames), Rate::PerSecond),
+        rate: args.fps.map_or(Rate::Between(args.between), Rate::PerSecond),
         ease: args.ease,
         hold: usize::from(args.on),
         names: PictureNames {
@@ -97,9 +104,21 @@ fn run(args: &Args) -> anyhow::Result<()> {
     lines.push(format!(
         "{} pictures, {SHEET_FILE}, {CONTACT_FILE} and {REPORT_FILE} in {}\n",
         film.n_frames,
-        args.out.display()
+        out.display()
     ));
     print(&lines.join("\n"))
+}
+
+fn default_out(shot: &Path) -> anyhow::Result<PathBuf> {
+    // `.` and `..` have a name of their own only when they are followed.
+    let shot = shot.canonicalize().with_context(|| shot.display().to_string())?;
+    let folder = if shot.is_file() {
+        shot.parent()
+    } else {
+        Some(&*shot)
+    };
+    let name = folder.and_then(Path::file_name).unwrap_or("shot".as_ref());
+    Ok(repository().join(RESULTS).join(name))
 }
 
 fn parse_fps(text: &str) -> Result<f64, String> {

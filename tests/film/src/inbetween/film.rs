@@ -5,19 +5,22 @@ use std::path::PathBuf;
 use app_core::core::{Core, CoreError};
 use app_core::preset::Preset;
 use app_core::scene::{Image, Pose};
-use desk::output::{WriteError, make_folder, write_png};
+use desk::output::WriteError;
+use desk::output::folder::OutputFolder;
 use glam::DMat4;
 
 use super::InbetweenError;
 use super::blend::Mix;
 use super::keys::{Key, Keys};
 use super::light::LightPicture;
-use super::report::{FrameEntry, Report, check_folder, write_report};
+use super::report::{FrameEntry, Report, take_folder, write_report};
 use super::shot::Shot;
 use super::stage::Figure;
 use super::timing::{Ease, Moment, Rate, moments};
 use crate::sheet::Cell;
 
+/// Folder of onion skins, below the output folder; each is called as its frame.
+const ONION_FOLDER: &str = "onion";
 /// Of the key before, the frame and the key after in an onion skin.
 const ONION_WEIGHTS: [f32; 3] = [0.25, 0.5, 0.25];
 
@@ -41,7 +44,7 @@ impl PictureNames {
 /// What is to be made.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Folder for pictures and lists; made if it is missing.
+    /// Folder for pictures and lists; made if it is missing. What an earlier run wrote into it is removed.
     pub out: PathBuf,
     /// How much work a frame may cost.
     pub preset: Preset,
@@ -112,19 +115,19 @@ pub fn make(
     options: &Options,
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Film, InbetweenError> {
-    check_folder(&options.out)?;
+    let output = take_folder(&options.out, shot)?;
     let times: Vec<f64> = (0..shot.n_keys())
         .map(|index| shot.key(index).map(|key| key.time_secs))
         .collect::<Result<_, _>>()?;
     let moments = moments(&times, options.rate, options.ease, options.hold)?;
     let n_steps = shot.n_keys() + moments.len();
     let keys = Keys::find(shot, |index| progress(index, n_steps))?;
-    make_folder(&options.out)?;
     let mut maker = Maker {
         shot,
         keys: &keys,
         core,
         options,
+        output: &output,
         ready: Vec::new(),
         last: None,
     };
@@ -136,7 +139,7 @@ pub fn make(
         cells.push(Cell::new(&image, entry.is_key));
         report.frames.push(entry);
     }
-    write_report(&options.out, &report, &cells)?;
+    write_report(&output, &report, &cells)?;
     Ok(Film {
         n_frames: moments.len(),
         keys,
@@ -148,6 +151,7 @@ struct Maker<'a> {
     keys: &'a Keys,
     core: &'a Core,
     options: &'a Options,
+    output: &'a OutputFolder,
     /// The keys beside the latest frame.
     ready: Vec<Ready<'a>>,
     /// The latest moment with what was made of it, for frames that hold it.
@@ -166,7 +170,7 @@ impl Maker<'_> {
             picture: self.options.names.of(index),
             ..entry
         };
-        write_png(&self.options.out.join(&entry.picture), &image)?;
+        self.output.write_png(&entry.picture, &image)?;
         if self.options.has_onion {
             self.write_onion(&entry, moment, &image)?;
         }
@@ -282,9 +286,7 @@ impl Maker<'_> {
                     .sum();
             }
         }
-        write_png(
-            &self.options.out.join(format!("onion_{:04}.png", entry.number)),
-            &sum.encoded(),
-        )
+        let file = format!("{ONION_FOLDER}/{}", entry.picture);
+        self.output.write_png(&file, &sum.encoded()).map(drop)
     }
 }

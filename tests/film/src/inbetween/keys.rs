@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use app_core::alignment::{AlignError, Aligner, Alignment};
+use app_core::alignment::{AlignError, Aligner, Alignment, AlignmentWarning};
 use app_core::frame::FrameInput;
 use app_core::scene::{Camera, Intrinsics, Light, Plate, Pose, Receiver, Scene};
 use glam::{DMat3, DMat4, DVec3};
@@ -180,11 +180,26 @@ fn common_lights(scene: &Scene, keys: &[Sighted]) -> Arc<[Light]> {
             .unwrap_or(first)
             .clone();
     }
-    let light = |index: usize| {
-        let of_keys: Vec<Light> = lists.iter().map(|list| list[index]).collect();
-        median_light(&of_keys).unwrap_or(first[index])
+    // Each key sorts what it finds by strength: the same light is the one in about the same direction.
+    let toy = scene.world_from_object.w_axis.truncate();
+    let common = |light: &Light| {
+        let of_keys: Option<Vec<Light>> = lists.iter().map(|list| same_light(list, light, toy)).collect();
+        of_keys
+            .and_then(|of_keys| median_light(&of_keys))
+            .unwrap_or(*light)
     };
-    (0..first.len()).map(light).collect()
+    first.iter().map(common).collect()
+}
+
+/// Of a list, the light in the direction nearest to another's, as seen from a place.
+fn same_light(list: &[Light], light: &Light, place: DVec3) -> Option<Light> {
+    let wanted = light.direction_from(place)?;
+    let along = |light: &Light| {
+        light
+            .direction_from(place)
+            .map_or(f64::NEG_INFINITY, |direction| direction.dot(wanted))
+    };
+    list.iter().max_by(|a, b| along(a).total_cmp(&along(b))).copied()
 }
 
 /// None where they are of several kinds.
@@ -344,7 +359,10 @@ impl Stage<'_> {
                 .with_exposure(1.0);
             alignment = aligned(&mut Aligner::new(of_print.clone()), &input, index)?;
         }
-        let warnings = alignment.warnings.iter().map(ToString::to_string).collect();
+        // A foot of a posed print may well be off the table.
+        let is_other = |warning: &&AlignmentWarning| !matches!(warning, AlignmentWarning::OffReceiver { .. });
+        let others = alignment.warnings.iter().filter(is_other);
+        let warnings = others.map(ToString::to_string).collect();
         let world_from_object = self.on_plane(key, &alignment.world_from_object)?;
         let input = alignment
             .applied_to(&input)

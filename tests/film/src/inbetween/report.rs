@@ -1,11 +1,13 @@
 //! What is written beside the pictures: the exposure sheet, the report and the contact sheet.
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use app_core::core::Core;
 use desk::files::SESSION_FILE;
-use desk::output::{WriteError, remove_file, write_png, write_whole};
+use desk::output::WriteError;
+use desk::output::folder::OutputFolder;
 use serde::Serialize;
 
 use super::InbetweenError;
@@ -103,33 +105,47 @@ impl Report {
     }
 }
 
-/// Refuses a folder whose files are someone's photographs, and takes an earlier report away: one in the folder means that all pictures
-/// were written.
-pub(super) fn check_folder(folder: &Path) -> Result<(), InbetweenError> {
-    for file in [SHOT_FILE, SESSION_FILE] {
-        if folder.join(file).exists() {
-            return Err(InbetweenError::Out {
-                folder: folder.to_owned(),
-                reason: "holds a shot or a session, whose photographs could be overwritten",
-            });
-        }
+/// Takes the output folder, from which what an earlier run wrote is removed. One with a shot or a session in it is refused, though a
+/// program may have written that, too.
+pub(super) fn take_folder(folder: &Path, shot: &Shot) -> Result<OutputFolder, InbetweenError> {
+    let refused = |reason| {
+        Err(InbetweenError::Out {
+            folder: folder.to_owned(),
+            reason,
+        })
+    };
+    if shot.folder().is_some_and(|of_shot| is_within(of_shot, folder)) {
+        return refused("holds the shot itself; choose another folder for the film");
     }
-    Ok(remove_file(&folder.join(REPORT_FILE))?)
+    if [SHOT_FILE, SESSION_FILE]
+        .iter()
+        .any(|file| folder.join(file).exists())
+    {
+        return refused("holds a shot or a session; choose another folder for the film");
+    }
+    Ok(OutputFolder::take(folder)?)
+}
+
+/// Whether a folder is another one, or lies in it. One that is not there holds nothing.
+fn is_within(inner: &Path, outer: &Path) -> bool {
+    let real = |path: &Path| -> Option<PathBuf> { fs::canonicalize(path).ok() };
+    real(inner)
+        .zip(real(outer))
+        .is_some_and(|(inner, outer)| inner.starts_with(outer))
 }
 
 /// Writes all lists; the report last.
-pub(super) fn write_report(folder: &Path, report: &Report, cells: &[Cell]) -> Result<(), WriteError> {
-    write_whole(&folder.join(SHEET_FILE), exposure_sheet(report).as_bytes())?;
+pub(super) fn write_report(output: &OutputFolder, report: &Report, cells: &[Cell]) -> Result<(), WriteError> {
+    output.write(SHEET_FILE, exposure_sheet(report).as_bytes())?;
     if let Some(sheet) = contact_sheet(cells, COLUMNS) {
-        write_png(&folder.join(CONTACT_FILE), &sheet)?;
+        output.write_png(CONTACT_FILE, &sheet)?;
     }
-    let path = folder.join(REPORT_FILE);
     let mut json = serde_json::to_vec_pretty(report).map_err(|error| WriteError {
-        path: path.clone(),
+        path: output.root().join(REPORT_FILE),
         reason: error.to_string(),
     })?;
     json.push(b'\n');
-    write_whole(&path, &json)
+    output.write(REPORT_FILE, &json)
 }
 
 /// A line for each frame. Numbers of keys are counted from 0; what there is not is empty.

@@ -67,14 +67,14 @@ struct MarkedToyRecord {
 
 /// A print and its photograph.
 #[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct KeyRecord {
     /// Path of the photograph in the shot's folder.
     image: String,
     /// Seconds of the film.
     time: f64,
     /// Pose that the print was made in: a moment of a clip.
-    #[serde(default)]
-    physical_pose: PoseRecord,
+    physical_pose: Option<PoseRecord>,
     /// The same by its nodes, where no clip holds it.
     nodes: Option<NodeRecords>,
     /// The camera; without it, that of the first plate.
@@ -82,7 +82,6 @@ struct KeyRecord {
     intrinsics: Option<IntrinsicsRecord>,
     /// Where the print stands; without it, on the mark.
     world_from_object: Option<[f64; 16]>,
-    exposure: Option<f64>,
 }
 
 /// A shot that cannot be read.
@@ -103,6 +102,12 @@ pub enum ShotError {
     /// A value, the toy or a picture cannot be used.
     #[error(transparent)]
     Session(#[from] SessionError),
+    /// Photographs that are not as a pinhole sees them.
+    #[error(
+        "{SHOT_FILE} (lens): the film would be as a pinhole sees it, unlike the photographs; free all photographs of the lens's \
+         distortion in the program that develops them, and leave lens out"
+    )]
+    Lens,
     /// A single key has nothing between.
     #[error("{SHOT_FILE} (keys): {n_keys} given, but in-between frames need two or more")]
     TooFewKeys {
@@ -116,6 +121,12 @@ pub enum ShotError {
         index: usize,
         /// Its time.
         time_secs: f64,
+    },
+    /// A pose that is given twice.
+    #[error("{SHOT_FILE} (keys[{index}]): has both physical_pose and nodes; one of them tells the pose")]
+    TwoPoses {
+        /// The key, from 0.
+        index: usize,
     },
     /// A pose that the toy cannot take.
     #[error("{SHOT_FILE} (keys[{index}].nodes): {reason}")]
@@ -138,6 +149,8 @@ pub enum ShotError {
 /// A shot that was opened: everything is checked, and its photographs are read when they are asked for.
 pub struct Shot {
     capture: Capture,
+    /// The folder that it was opened in.
+    folder: Option<PathBuf>,
     /// Poses that no clip holds, by the index of their key.
     node_poses: BTreeMap<usize, Pose>,
 }
@@ -182,10 +195,14 @@ impl Shot {
         }
         let text = fs::read(&file).map_err(|error| at_file(error.to_string()))?;
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let folder = Folder::open(folder.unwrap_or(Path::new(".")))?;
-        Self::read(&text, folder).map_err(|error| match error {
+        let folder = folder.unwrap_or(Path::new("."));
+        let shot = Self::read(&text, Folder::open(folder)?).map_err(|error| match error {
             ShotError::Index { reason, .. } => at_file(reason),
             error => error,
+        })?;
+        Ok(Self {
+            folder: Some(folder.to_owned()),
+            ..shot
         })
     }
 
@@ -199,13 +216,26 @@ impl Shot {
             reason,
         };
         let record = parsed(text).map_err(at_file)?;
+        if record.lens.is_some() {
+            return Err(ShotError::Lens);
+        }
         check_keys(&record)?;
         let nodes: Vec<_> = record.keys.iter().map(|key| key.nodes.clone()).collect();
         let capture = capture_record(record)?;
         let index = serde_json::to_vec(&Index::from(capture)).map_err(|error| at_file(error.to_string()))?;
         let capture = Capture::open(ShotFiles { files, index }).map_err(as_of_shot)?;
         let node_poses = node_poses(capture.scene(), &nodes)?;
-        Ok(Self { capture, node_poses })
+        Ok(Self {
+            capture,
+            folder: None,
+            node_poses,
+        })
+    }
+
+    /// The folder that it was opened in; none if its files come from elsewhere.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
     }
 
     /// The scene, in which the toy is as authored.
@@ -290,6 +320,10 @@ fn check_keys(record: &ShotRecord) -> Result<(), ShotError> {
     if keys.len() < 2 {
         return Err(ShotError::TooFewKeys { n_keys: keys.len() });
     }
+    let is_twofold = |key: &KeyRecord| key.physical_pose.is_some() && key.nodes.is_some();
+    if let Some(index) = keys.iter().position(is_twofold) {
+        return Err(ShotError::TwoPoses { index });
+    }
     for (index, pair) in (1..).zip(keys.windows(2)) {
         if pair[1].time.partial_cmp(&pair[0].time) != Some(std::cmp::Ordering::Greater) {
             return Err(ShotError::TimeOrder {
@@ -311,9 +345,8 @@ fn capture_record(record: ShotRecord) -> Result<CaptureRecord, ShotError> {
             image: key.image.clone(),
             intrinsics: key.intrinsics,
             world_from_object: key.world_from_object,
-            exposure: key.exposure,
             world_from_camera: world_from_camera.ok_or(ShotError::NoCamera { index })?,
-            animation: key.physical_pose.clone(),
+            animation: key.physical_pose.clone().unwrap_or_default(),
             ..FrameRecord::default()
         })
     });
@@ -324,7 +357,7 @@ fn capture_record(record: ShotRecord) -> Result<CaptureRecord, ShotError> {
         height: record.height,
         encoding: Encoding::Srgb,
         intrinsics: record.intrinsics,
-        lens: record.lens,
+        lens: None,
         toy: ToyRecord {
             file: record.toy.file,
             world_from_object: record.toy.world_from_object,

@@ -69,7 +69,7 @@ const MOST_FRAMES: usize = 1 << 18;
 /// A frame this close to a key, in parts of the way, shows the key.
 const AT_KEY: f64 = 1e-6;
 
-/// The moments of a film whose keys are at `times_secs`, in their order. A picture stays for `hold` frames.
+/// The moments of a film whose keys are at `times_secs`, in their order. A picture stays for `hold` frames, or until the next key.
 ///
 /// # Errors
 /// When there would be too many.
@@ -89,7 +89,8 @@ pub fn moments(times_secs: &[f64], rate: Rate, ease: Ease, hold: usize) -> Resul
             let (Some(first), Some(last)) = (times_secs.first(), times_secs.last()) else {
                 return Ok(Vec::new());
             };
-            let n_steps = ((last - first) * fps + AT_KEY).floor();
+            // The last key is shown, though it lies between two frames.
+            let n_steps = ((last - first) * fps - AT_KEY).ceil().max(0.0);
             if !(0.0..MOST_FRAMES as f64).contains(&n_steps) {
                 return Err(too_many);
             }
@@ -112,9 +113,29 @@ pub fn moments(times_secs: &[f64], rate: Rate, ease: Ease, hold: usize) -> Resul
             time_secs: times_secs[left] + part * (next - times_secs[left]),
         }
     };
-    let hold = hold.max(1);
-    let held = (0..parts.len()).map(|frame| parts[frame / hold * hold]);
-    Ok(held.map(moment).collect())
+    Ok(held(&parts, hold.max(1)).into_iter().map(moment).collect())
+}
+
+/// Each part shown for `hold` frames. A key is always shown, from its own frame on; from there the frames are counted anew.
+fn held(parts: &[(usize, f64)], hold: usize) -> Vec<(usize, f64)> {
+    let last = parts.len().saturating_sub(1);
+    let mut shown = Vec::<(usize, f64)>::with_capacity(parts.len());
+    let mut n_held = 0;
+    for (frame, part) in parts.iter().enumerate() {
+        // With frames by time a key may lie between two frames: the first one after it stands for it.
+        let is_new_key = frame == 0 || frame == last || part.1 == 0.0 || part.0 != parts[frame - 1].0;
+        match shown.last() {
+            Some(before) if !is_new_key && n_held < hold => {
+                shown.push(*before);
+                n_held += 1;
+            }
+            _ => {
+                shown.push(*part);
+                n_held = 1;
+            }
+        }
+    }
+    shown
 }
 
 /// The key before a time, and the part of the time to the next.
