@@ -41,21 +41,20 @@ fn film(text: &str) -> Film {
     }
 }
 
-/// Begins a film; returns whether its session was made, and which of the first three pictures are there.
-fn begun(path: &Path, film: &Film) -> (bool, [bool; 3]) {
+/// Begins a film; returns whether its session was made.
+fn begin(path: &Path, film: &Film, is_forced: bool) -> anyhow::Result<bool> {
     let mut is_made = false;
-    let folder = FilmFolder::take(path, false).unwrap();
-    folder
-        .begin(film, false, |to| {
-            is_made = true;
-            Ok(fs::create_dir(to)?)
-        })
-        .unwrap();
-    assert_eq!(FilmFolder::film_in(path).unwrap().as_ref(), Some(film));
-    (
-        is_made,
-        [1, 2, 3].map(|number| path.join(format!("{number}.png")).exists()),
-    )
+    FilmFolder::take(path, false)?.begin(film, is_forced, |to| {
+        is_made = true;
+        Ok(fs::create_dir(to)?)
+    })?;
+    assert_eq!(FilmFolder::film_in(path)?.as_ref(), Some(film));
+    Ok(is_made)
+}
+
+/// Which of the first three pictures are there.
+fn pictures(path: &Path) -> [bool; 3] {
+    [1, 2, 3].map(|number| path.join(format!("{number}.png")).exists())
 }
 
 #[test]
@@ -64,26 +63,33 @@ fn pictures_stay_as_long_as_all_that_decides_on_them_does() {
     let path = &folder.0.join("film");
     let write = || [1, 3].map(|number| fs::write(path.join(format!("{number}.png")), "").unwrap());
     let first = film("Look");
-    assert_eq!(begun(path, &first), (true, [false; 3]));
+    assert!(begin(path, &first, false).unwrap());
     write();
-    assert_eq!(begun(path, &first), (false, [true, false, true]));
+    assert!(!begin(path, &first, false).unwrap());
+    assert_eq!(pictures(path), [true, false, true]);
     // Other frames beside them change the part of the picture that is worked on.
     let longer = film("Look,Step");
-    assert_eq!(begun(path, &longer), (false, [false; 3]));
-    write();
     let other_preset = Film {
         preset: "fast".to_owned(),
-        ..longer
+        ..longer.clone()
     };
-    assert_eq!(begun(path, &other_preset), (false, [false; 3]));
-    write();
+    let mut other_toy = other_preset.clone();
+    other_toy.sources[0].crc32 = 3;
+    for other in [longer, other_preset, other_toy] {
+        let refused = begin(path, &other, false).unwrap_err();
+        assert!(refused.to_string().contains("--force"), "{refused}");
+        assert_eq!(pictures(path), [true, false, true]);
+        assert!(begin(path, &other, true).unwrap());
+        assert_eq!(pictures(path), [false; 3]);
+        // Nothing is lost by another film, and so nothing to be asked for.
+        begin(path, &first, false).unwrap();
+        begin(path, &other, false).unwrap();
+        write();
+    }
     // Nobody knows what these show.
     fs::write(path.join("film.json"), "{").unwrap();
-    assert_eq!(begun(path, &other_preset), (true, [false; 3]));
-    write();
-    let mut other_toy = other_preset;
-    other_toy.sources[0].crc32 = 3;
-    assert_eq!(begun(path, &other_toy), (true, [false; 3]));
+    assert!(begin(path, &first, false).is_err());
+    assert_eq!(pictures(path), [true, false, true]);
 }
 
 #[test]
