@@ -1,7 +1,7 @@
 //! How a desktop program opens its session, and how it ends.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
@@ -19,6 +19,24 @@ const SOFTWARE_DRIVER: &str =
 pub fn repository() -> &'static Path {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     package.ancestors().nth(2).unwrap_or(package)
+}
+
+/// The folder below the repository that a session's results go to: `results`, and in it the name of the session's folder or recording.
+///
+/// # Errors
+/// When there is no such session.
+pub fn results_of(session: &Path, results: &str) -> anyhow::Result<PathBuf> {
+    // `.` and `..` have a name of their own only when they are followed.
+    let session = session
+        .canonicalize()
+        .with_context(|| session.display().to_string())?;
+    let name = if session.is_file() {
+        session.file_stem()
+    } else {
+        session.file_name()
+    };
+    let results = repository().join(results);
+    Ok(results.join(name.unwrap_or("session".as_ref())))
 }
 
 /// Opens a folder or a recording, and says on standard error what is lost of it.

@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 pub mod animate;
+pub mod ease;
 pub mod inbetween;
 pub mod length;
 pub mod new;

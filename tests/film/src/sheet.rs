@@ -1,9 +1,7 @@
 //! A contact sheet: many pictures on one, each small.
 
 use app_core::scene::Image;
-use app_scene::geometry::color::linear_of_codes;
-
-use crate::inbetween::light::code_of_linear;
+use app_scene::geometry::color::{code_of_linear, linear_of_codes};
 
 /// Width of a picture on a sheet.
 const CELL_PX: u32 = 320;

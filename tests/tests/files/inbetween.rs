@@ -1,10 +1,11 @@
 //! In-between frames: what a shot may hold, when frames are shown, and what a photograph keeps when it is moved.
 
 use app_core::session::Folder;
+use film::ease::Ease;
 use film::inbetween::light::LightPicture;
 use film::inbetween::resample::resampled;
 use film::inbetween::shot::Shot;
-use film::inbetween::timing::{Ease, Rate, moments};
+use film::inbetween::timing::{Rate, moments};
 use glam::{DMat3, DVec2};
 use serde_json::{Value, json};
 

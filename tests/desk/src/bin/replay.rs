@@ -15,7 +15,7 @@ use desk::frames::Frames;
 use desk::opened;
 use desk::opened::Opened;
 use desk::page::PAGE_FILE;
-use desk::program::{exit_code, print, repository};
+use desk::program::{exit_code, print, results_of};
 use desk::progress::{Progress, Quiet, on_stderr};
 use desk::replay::{Options, REPORT_FILE, replay};
 use desk::report::{FrameEntry, Report};
@@ -72,7 +72,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let folder = args.session.as_deref().unwrap_or(Path::new(BUNDLED_SESSION));
     let out = match &args.out {
         Some(out) => out.clone(),
-        None => default_out(folder)?,
+        None => results_of(folder, RESULTS)?,
     };
     let opened = opened::open(folder, args.ratio.lens(), args.lights);
     let Opened { capture, lens } = opened.with_context(|| folder.display().to_string())?;
@@ -107,20 +107,6 @@ fn run(args: &Args) -> anyhow::Result<()> {
         }
         _ => Ok(()),
     }
-}
-
-fn default_out(session: &Path) -> anyhow::Result<PathBuf> {
-    // `.` and `..` have a name of their own only when they are followed.
-    let session = session
-        .canonicalize()
-        .with_context(|| session.display().to_string())?;
-    let results = repository().join(RESULTS);
-    let name = if session.is_file() {
-        session.file_stem()
-    } else {
-        session.file_name()
-    };
-    Ok(results.join(name.unwrap_or("session".as_ref())))
 }
 
 fn without_repeats(presets: &[Preset]) -> Vec<Preset> {

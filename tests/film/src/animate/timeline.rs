@@ -4,38 +4,13 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::grammar::{ClipFacts, Item};
+use crate::ease::Ease;
 
 /// Most frames of a film: more than an hour at 24 a second.
 pub const MAX_FRAMES: u32 = 100_000;
 
 /// Parts of a frame that rounding may add to a sum of lengths.
 const ROUNDING_FRAMES: f64 = 1e-6;
-
-/// How a clip speeds up and slows down over its length.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
-#[serde(rename_all = "kebab-case")]
-pub enum Ease {
-    /// Not at all.
-    #[default]
-    Linear,
-    /// It speeds up.
-    In,
-    /// It slows down.
-    Out,
-    /// It speeds up and slows down.
-    InOut,
-}
-
-impl Ease {
-    fn of(self, share: f64) -> f64 {
-        match self {
-            Self::Linear => share,
-            Self::In => share * share,
-            Self::Out => share * (2.0 - share),
-            Self::InOut => smooth(share),
-        }
-    }
-}
 
 /// How a film ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -316,18 +291,13 @@ fn pose_at(segments: &[Segment], timing: &Timing, at: f64) -> Option<FramePose> 
         reached
     };
     let n_blend = f64::from(timing.n_blend_frames).min(segment.length);
-    let share = smooth(((passed + 1.0) / (n_blend + 1.0)).min(1.0));
+    let share = Ease::InOut.way(((passed + 1.0) / (n_blend + 1.0)).min(1.0));
     Some(FramePose {
-        moment: played.at(timing.ease.of(reached)),
+        moment: played.at(timing.ease.way(reached)),
         after: segment
             .after
             .filter(|_| share < 1.0)
             .map(|from| Blend { from, share }),
         is_held: false,
     })
-}
-
-/// Goes from 0 to 1 with a slope of 0 at both.
-fn smooth(share: f64) -> f64 {
-    share * share * (3.0 - 2.0 * share)
 }

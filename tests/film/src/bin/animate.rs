@@ -8,12 +8,13 @@ use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use clap::Parser;
 use desk::files::BUNDLED_SESSION;
-use desk::program::{exit_code, print, repository};
+use desk::program::{exit_code, print, results_of};
 use film::animate::folder::FilmFolder;
 use film::animate::frame_files::{FrameRange, NamePattern};
 use film::animate::render::render;
 use film::animate::run::{Order, run};
-use film::animate::timeline::{Ease, End, Timing};
+use film::animate::timeline::{End, Timing};
+use film::ease::Ease;
 
 /// Where films go that were given no place, below the top of the repository.
 const RESULTS: &str = "target/film";
@@ -129,7 +130,7 @@ fn order(args: Args) -> anyhow::Result<Order> {
     Ok(Order {
         out: match args.out {
             Some(out) => out,
-            None => default_out(&session)?,
+            None => results_of(&session, RESULTS)?,
         },
         session,
         clips: args.clips.context("--clips is missing")?,
@@ -156,21 +157,6 @@ fn order(args: Args) -> anyhow::Result<Order> {
         adapter: args.adapter,
         is_quiet: args.quiet,
     })
-}
-
-fn default_out(session: &Path) -> anyhow::Result<PathBuf> {
-    // `.` and `..` have a name of their own only when they are followed.
-    let session = session
-        .canonicalize()
-        .with_context(|| session.display().to_string())?;
-    let name = if session.is_file() {
-        session.file_stem()
-    } else {
-        session.file_name()
-    };
-    Ok(repository()
-        .join(RESULTS)
-        .join(name.unwrap_or("session".as_ref())))
 }
 
 fn parse_fps(text: &str) -> Result<f64, String> {

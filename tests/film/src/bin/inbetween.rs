@@ -10,8 +10,9 @@ use app_core::preset::Preset;
 use app_core::wgpu;
 use clap::Parser;
 use desk::program::{exit_code, print, repository};
+use film::ease::Ease;
 use film::inbetween::shot::Shot;
-use film::inbetween::timing::{Ease, Rate};
+use film::inbetween::timing::Rate;
 use film::inbetween::{CONTACT_FILE, Options, PictureNames, REPORT_FILE, SHEET_FILE, findings, make};
 
 /// Where results go that were given no place, below the top of the repository.

@@ -16,7 +16,8 @@ use super::light::LightPicture;
 use super::report::{FrameEntry, Report, take_folder, write_report};
 use super::shot::Shot;
 use super::stage::Figure;
-use super::timing::{Ease, Moment, Rate, moments};
+use super::timing::{Moment, Rate, moments};
+use crate::ease::Ease;
 use crate::sheet::Cell;
 
 /// Folder of onion skins, below the output folder; each is called as its frame.

@@ -1,7 +1,7 @@
 //! Pictures in linear light, and the sums over squares that level and detail are told apart by.
 
 use app_core::scene::Image;
-use app_scene::geometry::color::{linear_of_codes, srgb_from_linear};
+use app_scene::geometry::color::{code_of_linear, linear_of_codes};
 
 /// A picture in linear light, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,18 +44,6 @@ impl LightPicture {
             rgba8,
         }
     }
-}
-
-/// The nearest code of a light.
-#[must_use]
-pub fn code_of_linear(light: f32) -> u8 {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "of a value from 0 to 255, and 0 for what is no number"
-    )]
-    let code = (255.0 * srgb_from_linear(light.clamp(0.0, 1.0))).round() as u8;
-    code
 }
 
 /// Values of each pixel, averaged over squares of `2 * reach_px + 1` three times, which is close to a Gaussian whose deviation is

@@ -2,32 +2,7 @@
 
 use std::fmt;
 
-/// How the way from key to key is gone.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum Ease {
-    /// Evenly.
-    #[default]
-    Linear,
-    /// Slow at first.
-    In,
-    /// Slow at the end.
-    Out,
-    /// Slow at both ends.
-    InOut,
-}
-
-impl Ease {
-    /// The part of the way at a part of the time, both from 0 to 1.
-    #[must_use]
-    pub fn way(self, time: f64) -> f64 {
-        match self {
-            Self::Linear => time,
-            Self::In => time * time,
-            Self::Out => time * (2.0 - time),
-            Self::InOut => time * time * (3.0 - 2.0 * time),
-        }
-    }
-}
+use crate::ease::Ease;
 
 /// How many frames there are.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,8 @@
 //! Which pose each frame shows.
 
 use film::animate::grammar::items;
-use film::animate::timeline::{Ease, End, FramePose, Timing, frames};
+use film::animate::timeline::{End, FramePose, Timing, frames};
+use film::ease::Ease;
 
 use super::clips;
 
