@@ -13,6 +13,7 @@ const FIRST_CHARACTER: u32 = 0x100;
 pub(crate) fn write(output: &OutputFolder, file: &str, png: &[u8]) -> Result<(), WriteError> {
     let characters = png.iter().map(|byte| FIRST_CHARACTER + u32::from(*byte));
     let text: String = characters.filter_map(char::from_u32).collect();
-    let script = format!("takeValues(\"{file}\", \"{text}\");\n");
+    let name = serde_json::Value::from(file);
+    let script = format!("takeValues({name}, \"{text}\");\n");
     output.write(&format!("{VALUES_FOLDER}/{file}.js"), script.as_bytes())
 }

@@ -37,6 +37,9 @@ pub struct Film {
     pub sources: Vec<SourceFile>,
     /// Whether camera, pose and lights are the session's, without a look at its pictures.
     pub is_as_given: bool,
+    /// Whether each frame shows the session's photograph of its time, in place of the first one.
+    #[serde(default)]
+    pub is_moving: bool,
     /// How much work a frame may cost.
     pub preset: String,
     /// The text of the clips.
@@ -65,6 +68,9 @@ pub struct FilmFrame {
     pub number: u32,
     /// Its picture.
     pub file: String,
+    /// Index of the session's frame whose photograph it is made of.
+    #[serde(default)]
+    pub photograph: usize,
     /// What it shows.
     pub pose: FramePose,
 }
@@ -80,35 +86,37 @@ impl Film {
 
     /// Whether both are made from the same session in the same way.
     fn has_session_of(&self, other: &Self) -> bool {
-        let of = |film: &Self| (film.version.clone(), film.sources.clone(), film.is_as_given);
+        let of = |film: &Self| {
+            let how = (film.is_as_given, film.is_moving);
+            (film.version.clone(), film.sources.clone(), how)
+        };
         of(self) == of(other)
     }
 
     /// Whether two films with equal frames have equal pictures. All poses decide on the part of the picture that is worked on.
     fn has_pictures_of(&self, other: &Self) -> bool {
-        let poses = |film: &Self| -> Vec<FramePose> { film.frames.iter().map(|frame| frame.pose).collect() };
-        self.has_session_of(other) && self.preset == other.preset && poses(self) == poses(other)
+        let shown = |film: &Self| -> Vec<(usize, FramePose)> {
+            let frames = film.frames.iter();
+            frames.map(|frame| (frame.photograph, frame.pose)).collect()
+        };
+        self.has_session_of(other) && self.preset == other.preset && shown(self) == shown(other)
     }
 }
 
-/// Sizes and checksums of a session's files, as far as a film is made of them.
+/// Sizes and checksums of a session's files, as far as a film is made of them: with the photographs of all frames if the film is a
+/// moving one, else with that of the first.
 ///
 /// # Errors
 /// When one cannot be read.
-pub fn sources(session: &Stored) -> anyhow::Result<Vec<SourceFile>> {
-    let index = session
-        .read(SESSION_FILE, MAX_INDEX_BYTES)
-        .context(SESSION_FILE)?;
-    let index: Value = serde_json::from_slice(&index).context(SESSION_FILE)?;
+pub fn sources(session: &Stored, is_moving: bool) -> anyhow::Result<Vec<SourceFile>> {
+    let index = index_of(session)?;
     let plates = index["backgrounds"].as_array().into_iter().flatten();
     let of_plates = plates.map(|plate| &plate["image"]);
-    // Of the frames the first alone is animated.
-    let others = [
-        &index["toy"]["file"],
-        &index["frames"][0]["image"],
-        &index["probe"]["image"],
-    ];
-    let named = of_plates.chain(others).filter_map(Value::as_str);
+    let frames = index["frames"].as_array().into_iter().flatten();
+    let n_frames = if is_moving { usize::MAX } else { 1 };
+    let of_frames = frames.map(|frame| &frame["image"]).take(n_frames);
+    let others = [&index["toy"]["file"], &index["probe"]["image"]];
+    let named = of_plates.chain(of_frames).chain(others).filter_map(Value::as_str);
     let mut paths: Vec<String> = named.chain([SESSION_FILE]).map(str::to_owned).collect();
     paths.sort();
     paths.dedup();
@@ -123,6 +131,15 @@ pub fn sources(session: &Stored) -> anyhow::Result<Vec<SourceFile>> {
         })
     };
     paths.into_iter().map(source).collect()
+}
+
+/// Reads a session's index.
+///
+/// # Errors
+/// When it cannot be read, or is none.
+pub fn index_of(session: &Stored) -> anyhow::Result<Value> {
+    let index = session.read(SESSION_FILE, MAX_INDEX_BYTES);
+    serde_json::from_slice(&index.context(SESSION_FILE)?).context(SESSION_FILE)
 }
 
 /// A folder that one film is being made in.
@@ -140,8 +157,9 @@ impl FilmFolder {
     /// When it has other files, or another run works in it.
     pub fn take(path: &Path, is_shared: bool) -> anyhow::Result<Self> {
         make_folder(path)?;
-        let is_film = [FILM_FILE, LOCK_FILE].iter().any(|file| path.join(file).exists());
+        // In this order: another run that takes the same new folder in between makes the lock's file before any other.
         let is_empty = fs::read_dir(path)?.next().is_none();
+        let is_film = [FILM_FILE, LOCK_FILE].iter().any(|file| path.join(file).exists());
         ensure!(
             is_film || is_empty,
             "{}: has files that are no film's; name another folder",

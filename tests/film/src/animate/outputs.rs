@@ -42,10 +42,15 @@ pub fn write_xsheet(folder: &Path, film: &Film, clips: &[ClipFacts]) -> anyhow::
         format!("\"{}\"", name.replace('"', "\"\""))
     };
     let mut text =
-        "frame,file,time_secs,clip,clip_time_secs,is_held,blend_from_clip,blend_from_time_secs,blend_share\n"
+        "frame,file,time_secs,photograph,clip,clip_time_secs,is_held,blend_from_clip,blend_from_time_secs,blend_share\n"
             .to_owned();
     for (index, frame) in film.frames.iter().enumerate() {
-        let FilmFrame { number, file, pose } = frame;
+        let FilmFrame {
+            number,
+            file,
+            photograph,
+            pose,
+        } = frame;
         let time_secs = index as f64 / film.timing.fps;
         let clip = quoted(pose.moment.clip);
         let blend = pose.after.map_or_else(
@@ -57,7 +62,7 @@ pub fn write_xsheet(folder: &Path, film: &Film, clips: &[ClipFacts]) -> anyhow::
         );
         writeln!(
             text,
-            "{number},{file},{time_secs:.6},{clip},{:.6},{},{blend}",
+            "{number},{file},{time_secs:.6},{photograph},{clip},{:.6},{},{blend}",
             pose.moment.time_secs,
             u8::from(pose.is_held)
         )?;

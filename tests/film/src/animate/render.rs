@@ -9,8 +9,10 @@ use std::thread;
 
 use anyhow::{Context, ensure};
 use app_core::core::Core;
+use app_core::frame::FrameInput;
 use app_core::gpu::AdapterChoice;
 use app_core::grain::Grain;
+use app_core::preset::Preset;
 use app_core::scene::{Pose, Scene, Shown};
 use app_core::session::{Capture, Session};
 use app_core::toy::Toy;
@@ -25,6 +27,10 @@ use super::timeline::{FramePose, Moment};
 
 /// Pictures that one process makes on a software driver: Mesa 22.3 keeps some MiB of each until the process ends.
 const N_PICTURES_OF_PROCESS: usize = 50;
+
+/// Photographs before its own that the first frame of a process of a moving film is made after: the core learns of a place from each, so
+/// that no step is seen where the next process goes on.
+const N_LEARNED: usize = 12;
 
 /// The pose of a frame.
 ///
@@ -65,26 +71,27 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     let film = FilmFolder::film_in(folder)?.context("there is no film.json")?;
     let missing = missing(folder, &film, range);
     let capture = Capture::open(Stored::open(folder.join(SESSION_FOLDER))?)?;
-    let frame = capture.frame(0)?;
-    // Each process aligns the photograph for itself, and so in the same way: no file holds all that is found.
-    let mut alignments = if film.is_as_given {
+    // Each process aligns the photograph for itself, and so in the same way: no file holds all that is found. Those of a moving film
+    // were aligned when the session was copied.
+    let mut alignments = if film.is_as_given || film.is_moving {
         Alignments::none()
     } else {
         Alignments::new(capture.scene(), Asked::default())
     };
-    alignments.align(capture.scene(), 0, &frame)?;
     let preset = film.preset()?;
-    let input = alignments.input(0, &frame, preset);
-    let grain = Grain::of(capture.scene(), input.image.rgba(), &input.camera);
-    let input = input.with_grain(grain);
+    let Some(first) = missing.first() else {
+        return Ok(());
+    };
+    let mut photograph = first.photograph.saturating_sub(N_LEARNED);
+    let mut input = photographed(&capture, &mut alignments, photograph, preset)?;
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), adapter))?;
     let scene = alignments.scene(capture.scene());
-    let scene = alignments.changed_scene(&scene, 0).unwrap_or(scene);
+    let scene = alignments.changed_scene(&scene, photograph).unwrap_or(scene);
     let toy = scene.toy.clone();
     core.set_scene(with_film(scene, &film, input.world_from_shown)?, preset)?;
     let mut warnings = Warnings::default();
     let of_alignment = alignments
-        .of(0)
+        .of(photograph)
         .into_iter()
         .flat_map(|aligned| &aligned.alignment.warnings);
     warnings.say(capture.warnings().iter().map(ToString::to_string))?;
@@ -94,12 +101,25 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     } else {
         usize::MAX
     };
+    let first_pose = pose_of(&toy, &first.pose)?;
+    while photograph < first.photograph {
+        core.frame(&input.with_shown_pose(first_pose.clone()))?;
+        photograph += 1;
+        input = photographed(&capture, &mut alignments, photograph, preset)?;
+    }
     for frame in missing.into_iter().take(n_pictures) {
+        if frame.photograph != photograph {
+            photograph = frame.photograph;
+            input = photographed(&capture, &mut alignments, photograph, preset)?;
+        }
         let input = input.clone().with_shown_pose(pose_of(&toy, &frame.pose)?);
         let failed = || frame.file.clone();
         let report = core.frame(&input).with_context(failed)?;
         let picture = core.read_picture().with_context(failed)?;
-        write_png(&folder.join(&frame.file), &through_lens(&capture, 0, picture)?)?;
+        write_png(
+            &folder.join(&frame.file),
+            &through_lens(&capture, photograph, picture)?,
+        )?;
         warnings.say(report.warnings.iter().map(ToString::to_string))?;
         let outcome = if report.region.is_some() {
             RETARGETED
@@ -109,6 +129,20 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
         say(&format!("{outcome}{}", frame.number))?;
     }
     Ok(())
+}
+
+/// A photograph of the session as the core is given it.
+fn photographed(
+    capture: &Capture,
+    alignments: &mut Alignments,
+    index: usize,
+    preset: Preset,
+) -> anyhow::Result<FrameInput> {
+    let frame = capture.frame(index)?;
+    alignments.align(capture.scene(), index, &frame)?;
+    let input = alignments.input(index, &frame, preset);
+    let grain = Grain::of(capture.scene(), input.image.rgba(), &input.camera);
+    Ok(input.with_grain(grain))
 }
 
 fn say(line: &str) -> io::Result<()> {

@@ -10,23 +10,23 @@ use std::{env, fs};
 
 use anyhow::{Context, ensure};
 use app_core::preset::Preset;
-use app_core::session::Files;
-use app_core::session::{Capture, MAX_INDEX_BYTES, Session};
+use app_core::session::{Capture, Session};
 use app_core::toy::Toy;
+use desk::alignment::{Alignments, Asked};
+use desk::check::aligned_session;
 use desk::convert;
 use desk::files::SESSION_FILE;
 use desk::output::write_whole;
 use desk::program::open_session;
 use desk::stored::Stored;
 use indicatif::{ProgressBar, ProgressStyle};
-use serde_json::Value;
 
-use super::folder::{Film, FilmFolder, FilmFrame, sources};
+use super::folder::{Film, FilmFolder, FilmFrame, index_of, sources};
 use super::frame_files::{FrameRange, NamePattern};
 use super::grammar::{ClipFacts, items};
 use super::outputs;
 use super::render::{PASSED_THROUGH, WARNING, missing};
-use super::timeline::{Timing, frames};
+use super::timeline::{ROUNDING_SECS, Timing, frames, photograph_at};
 
 /// What is asked for.
 pub struct Order {
@@ -42,6 +42,8 @@ pub struct Order {
     pub preset: Preset,
     /// Whether camera, pose and lights are the session's.
     pub is_as_given: bool,
+    /// Whether each frame shows the photograph of its time.
+    pub is_moving: bool,
     /// Number of the first frame.
     pub start: u32,
     /// Names of pictures; those of the session where there is none.
@@ -96,7 +98,11 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
             let _ = writeln!(io::stderr(), "{line}");
         }
     };
-    folder.begin(&film, order.is_forced, |to| write_session(order, to))?;
+    let mut warnings = BTreeSet::new();
+    folder.begin(&film, order.is_forced, |to| {
+        warnings = write_session(order, to)?;
+        Ok(())
+    })?;
     outputs::write_xsheet(folder.path(), &film, &clip_facts(&capture.scene().toy))?;
     let n_missing = missing(folder.path(), &film, &range).len();
     let start = Instant::now();
@@ -109,9 +115,8 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
             n_missing as f64 / secs
         ),
     };
-    let mut said: String = made
-        .warnings
-        .iter()
+    let mut said: String = warnings
+        .union(&made.warnings)
         .map(|warning| format!("warning: {warning}\n"))
         .collect();
     if made.n_passed_through > 0 {
@@ -126,6 +131,7 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
         film.frames.len(),
         order.out.display()
     );
+    said += &said_of_photographs(order, &film)?;
     if !is_part && !order.is_without_preview {
         say("writing previews");
         said += &outputs::write_previews(folder.path(), &film)?;
@@ -140,12 +146,19 @@ fn planned(order: &Order, capture: &Capture) -> anyhow::Result<Film> {
     let poses = frames(&items, &clips, &order.timing)?;
     let name = order.name.clone();
     let name = name.unwrap_or_else(|| NamePattern::of_session(&scene.name));
+    let session = Stored::open(&order.session)?;
+    let times_secs = if order.is_moving {
+        photograph_times(&session)?
+    } else {
+        vec![0.0]
+    };
     let numbered = (order.start..).zip(poses);
     Ok(Film {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         name: scene.name.clone(),
-        sources: sources(&Stored::open(&order.session)?)?,
+        sources: sources(&session, order.is_moving)?,
         is_as_given: order.is_as_given,
+        is_moving: order.is_moving,
         preset: order.preset.name().to_owned(),
         clips: order.clips.clone(),
         timing: order.timing,
@@ -153,22 +166,69 @@ fn planned(order: &Order, capture: &Capture) -> anyhow::Result<Film> {
             .map(|(number, pose)| FilmFrame {
                 number,
                 file: name.file(number),
+                photograph: photograph_at(&times_secs, f64::from(number - order.start) / order.timing.fps),
                 pose,
             })
             .collect(),
     })
 }
 
-/// A copy of the session with its first frame alone: what is made later is made of that.
-fn write_session(order: &Order, to: &Path) -> anyhow::Result<()> {
-    convert::write(&Stored::open(&order.session)?, None, to)?;
-    let index = Stored::open(to)?.read(SESSION_FILE, MAX_INDEX_BYTES)?;
-    let mut index: Value = serde_json::from_slice(&index)?;
+/// When each photograph of a session was taken, in seconds from the first.
+fn photograph_times(session: &Stored) -> anyhow::Result<Vec<f64>> {
+    let index = index_of(session)?;
+    let frames = index["frames"].as_array().into_iter().flatten();
+    let times: Vec<f64> = frames.filter_map(|frame| frame["time"].as_f64()).collect();
+    let first = times.first().copied().unwrap_or_default();
+    ensure!(
+        times.is_sorted(),
+        "{SESSION_FILE}: frames[].time: a moving film needs photographs in the order of their times"
+    );
+    Ok(times.into_iter().map(|time| time - first).collect())
+}
+
+/// What becomes of a session's other photographs.
+fn said_of_photographs(order: &Order, film: &Film) -> anyhow::Result<String> {
+    let session = Stored::open(&order.session)?;
+    let index = index_of(&session)?;
+    let frames = index["frames"].as_array().into_iter().flatten();
+    let photographs: BTreeSet<&str> = frames.filter_map(|frame| frame["image"].as_str()).collect();
+    if !order.is_moving {
+        return Ok(match photographs.len() {
+            0 | 1 => String::new(),
+            n => format!("the first of {n} photographs is animated; --moving shows each at its time\n"),
+        });
+    }
+    let end_secs = photograph_times(&session)?.last().copied().unwrap_or_default();
+    let film_secs = (film.frames.len() as f64 - 1.0) / film.timing.fps;
+    Ok(if film_secs > end_secs + ROUNDING_SECS {
+        format!("the photographs end at {end_secs:.2} s: the last one stays to the film's end\n")
+    } else {
+        String::new()
+    })
+}
+
+/// A copy of the session: what is made later is made of that. Of a film of one photograph it has the first frame alone; each process
+/// aligns that for itself. All photographs of a moving film are aligned here, one after the other. Returns what there is to warn of.
+fn write_session(order: &Order, to: &Path) -> anyhow::Result<BTreeSet<String>> {
+    let session = Stored::open(&order.session)?;
+    if order.is_moving && !order.is_as_given {
+        let capture = Capture::open(open_session(&order.session)?)?;
+        let alignments = Alignments::find(&capture, 0..capture.n_frames(), Asked::default())?;
+        aligned_session::write(&session, to, &alignments)?;
+        let aligned = (0..capture.n_frames()).filter_map(|frame| alignments.of(frame));
+        let warnings = aligned.flat_map(|aligned| &aligned.alignment.warnings);
+        return Ok(warnings.map(ToString::to_string).collect());
+    }
+    convert::write(&session, None, to)?;
+    if order.is_moving {
+        return Ok(BTreeSet::new());
+    }
+    let mut index = index_of(&Stored::open(to)?)?;
     if let Some(frames) = index["frames"].as_array_mut() {
         frames.truncate(1);
     }
     write_whole(&to.join(SESSION_FILE), format!("{index:#}\n").as_bytes())?;
-    Ok(())
+    Ok(BTreeSet::new())
 }
 
 /// What the processes said.

@@ -12,6 +12,9 @@ pub const MAX_FRAMES: u32 = 100_000;
 /// Parts of a frame that rounding may add to a sum of lengths.
 const ROUNDING_FRAMES: f64 = 1e-6;
 
+/// A photograph that was taken so little after a frame's time is that of the frame.
+pub const ROUNDING_SECS: f64 = 1e-4;
+
 /// How a film ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -210,6 +213,14 @@ pub fn frames(items: &[Item], clips: &[ClipFacts], timing: &Timing) -> Result<Ve
     } else {
         held.take(n_frames as usize).collect()
     })
+}
+
+/// Index of the latest photograph that had been taken by a time of the film; both times are from the first photograph. The last one
+/// stays to the film's end.
+#[must_use]
+pub fn photograph_at(times_secs: &[f64], film_secs: f64) -> usize {
+    let n_taken = times_secs.partition_point(|time| *time <= film_secs + ROUNDING_SECS);
+    n_taken.saturating_sub(1)
 }
 
 fn segments(items: &[Item], clips: &[ClipFacts], timing: &Timing) -> Vec<Segment> {

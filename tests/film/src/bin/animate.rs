@@ -24,7 +24,7 @@ const RESULTS: &str = "target/film";
 #[derive(Parser)]
 #[command(name = "animate", bin_name = "cargo xtask animate")]
 struct Args {
-    /// Folder of the session, or a recording; its first frame's photograph is animated [default: the bundled one]
+    /// Folder of the session, or a recording; its first photograph is animated, or with --moving all of them [default: the bundled one]
     session: Option<PathBuf>,
     /// What to play, such as 'Look,Step*2@0.5x,hold:12': clips one after the other, with how often and how fast, and frames to hold a
     /// pose; `clips` lists a toy's
@@ -76,6 +76,9 @@ struct Args {
     /// Take camera, pose and lights as recorded, without aligning them by the photograph
     #[arg(long)]
     as_given: bool,
+    /// Show each photograph at its time, as the camera of a recording has moved
+    #[arg(long)]
+    moving: bool,
     /// Make the pictures alone
     #[arg(long)]
     no_preview: bool,
@@ -149,6 +152,7 @@ fn order(args: Args) -> anyhow::Result<Order> {
         },
         preset: args.preset,
         is_as_given: args.as_given,
+        is_moving: args.moving,
         start: args.start,
         name: args.name,
         frames: args.frames,

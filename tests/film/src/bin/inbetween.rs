@@ -9,6 +9,7 @@ use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
 use app_core::wgpu;
 use clap::Parser;
+use desk::page::PAGE_FILE;
 use desk::program::{exit_code, print, repository};
 use film::ease::Ease;
 use film::inbetween::shot::Shot;
@@ -103,7 +104,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     eprintln!();
     let mut lines = findings(&film.keys);
     lines.push(format!(
-        "{} pictures, {SHEET_FILE}, {CONTACT_FILE} and {REPORT_FILE} in {}\n",
+        "{} pictures, {SHEET_FILE}, {CONTACT_FILE}, {REPORT_FILE} and {PAGE_FILE}, which compares them with the keys, in {}\n",
         film.n_frames,
         out.display()
     ));

@@ -7,12 +7,14 @@ use app_core::preset::Preset;
 use app_core::scene::{Image, Pose};
 use desk::output::WriteError;
 use desk::output::folder::OutputFolder;
+use desk::page::film::write_picture;
 use glam::DMat4;
 
 use super::InbetweenError;
 use super::blend::Mix;
 use super::keys::{Key, Keys};
 use super::light::LightPicture;
+use super::page::write_page;
 use super::report::{FrameEntry, Report, take_folder, write_report};
 use super::shot::Shot;
 use super::stage::Figure;
@@ -21,7 +23,7 @@ use crate::ease::Ease;
 use crate::sheet::Cell;
 
 /// Folder of onion skins, below the output folder; each is called as its frame.
-const ONION_FOLDER: &str = "onion";
+pub(super) const ONION_FOLDER: &str = "onion";
 /// Of the key before, the frame and the key after in an onion skin.
 const ONION_WEIGHTS: [f32; 3] = [0.25, 0.5, 0.25];
 
@@ -141,6 +143,7 @@ pub fn make(
         report.frames.push(entry);
     }
     write_report(&output, &report, &cells)?;
+    write_page(&output, &report, &keys, options.has_onion)?;
     Ok(Film {
         n_frames: moments.len(),
         keys,
@@ -171,7 +174,7 @@ impl Maker<'_> {
             picture: self.options.names.of(index),
             ..entry
         };
-        self.output.write_png(&entry.picture, &image)?;
+        write_picture(self.output, &entry.picture, &image)?;
         if self.options.has_onion {
             self.write_onion(&entry, moment, &image)?;
         }
@@ -288,6 +291,6 @@ impl Maker<'_> {
             }
         }
         let file = format!("{ONION_FOLDER}/{}", entry.picture);
-        self.output.write_png(&file, &sum.encoded()).map(drop)
+        write_picture(self.output, &file, &sum.encoded())
     }
 }

@@ -9,6 +9,7 @@ mod film;
 mod keys;
 pub mod light;
 mod nodes;
+mod page;
 mod placement;
 pub mod raster;
 mod report;

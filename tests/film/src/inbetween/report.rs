@@ -74,7 +74,7 @@ impl From<Off> for OffEntry {
 /// The whole film.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Report {
-    shot: String,
+    pub(super) shot: String,
     adapter: String,
     warnings: Vec<String>,
     findings: Vec<String>,

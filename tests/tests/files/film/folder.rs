@@ -2,6 +2,8 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::Barrier;
+use std::thread;
 
 use film::animate::folder::{Film, FilmFolder, FilmFrame, SourceFile};
 use film::animate::grammar::items;
@@ -27,6 +29,7 @@ fn film(text: &str) -> Film {
             crc32: 2,
         }],
         is_as_given: false,
+        is_moving: false,
         preset: "best".to_owned(),
         clips: text.to_owned(),
         timing,
@@ -35,6 +38,7 @@ fn film(text: &str) -> Film {
             .map(|(number, pose)| FilmFrame {
                 number,
                 file: format!("{number}.png"),
+                photograph: 0,
                 pose,
             })
             .collect(),
@@ -107,4 +111,21 @@ fn a_folder_of_others_or_in_use_is_refused() {
         .unwrap();
     let other = one.begin(&film("Step"), false, |_| Ok(()));
     assert!(other.unwrap_err().to_string().contains("another film"));
+}
+
+#[test]
+fn several_runs_may_take_a_new_folder_at_the_same_moment() {
+    let top = Temporary::new("film-taken-at-once");
+    for round in 0..200 {
+        let path = top.0.join(round.to_string());
+        let start = Barrier::new(4);
+        thread::scope(|scope| {
+            let take = || {
+                start.wait();
+                FilmFolder::take(&path, true).map(drop)
+            };
+            let runs = [0; 4].map(|_| scope.spawn(take));
+            runs.into_iter().for_each(|run| run.join().unwrap().unwrap());
+        });
+    }
 }

@@ -1,7 +1,7 @@
 //! Which pose each frame shows.
 
 use film::animate::grammar::items;
-use film::animate::timeline::{End, FramePose, Timing, frames};
+use film::animate::timeline::{End, FramePose, Timing, frames, photograph_at};
 use film::ease::Ease;
 
 use super::clips;
@@ -121,4 +121,13 @@ fn a_film_without_frames_or_with_too_many_is_refused() {
     };
     assert!(refused("Look", &late).contains("last 1.000 s"));
     assert!(refused("Look*10000@0.01x", &timing()).contains("at most 100000"));
+}
+
+#[test]
+fn a_moving_film_shows_the_photograph_that_had_been_taken_and_the_last_one_to_its_end() {
+    // At 30 a second, rounded as recorders do, and with one that was dropped.
+    let times_secs = [0.0, 0.033333, 0.1, 0.133333];
+    let shown = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(|frame| photograph_at(&times_secs, frame / 30.0));
+    assert_eq!(shown, [0, 1, 1, 2, 3, 3]);
+    assert_eq!(photograph_at(&times_secs, 0.02), 0);
 }
