@@ -16,6 +16,8 @@ use crate::stage::Stage;
 const LEAST_CONDITIONING: f64 = 0.75;
 /// What the lights give of the plate's radiance, below which no real shadow is there: its edge would hardly show.
 const LEAST_DIRECT_FRACTION: f32 = 0.03;
+/// Blackest and whitest: no paint throws back less than a hundredth of the light, or more than all but that.
+const POSSIBLE_BOUNCE: [f32; 2] = [0.01, 0.99];
 /// Pixels of real shadow below which its strength is uncertain: with up to 18 of them a direct fraction was off by 0.06 to
 /// 0.16, with 35 and more by at most 0.06.
 const FEWEST_PIXELS: f64 = 25.0;
@@ -124,7 +126,11 @@ impl Core {
             .iter()
             .filter(|(_, known)| *known < LEAST_CONDITIONING);
         let lights: Vec<usize> = unknown.map(|(light, _)| *light).collect();
-        Ok((!lights.is_empty()).then_some(Warning::LightsUnderConstrained { lights }))
+        Ok(if lights.is_empty() {
+            bounce_at_limit(fit)
+        } else {
+            Some(Warning::LightsUnderConstrained { lights })
+        })
     }
 
     /// How far each light's intensity is seen rather than assumed, with its index in the list that it was given in; without
@@ -161,6 +167,20 @@ fn ambient_strength(fit: &Fit) -> f32 {
     let [r, g, b, _] = fit.receivers[0].bounce;
     // The bounce is at most 1, but for rounding.
     (1.0 - (r + g + b) / 3.0).max(0.0)
+}
+
+/// That the bounce on the receiver which the toy stands on is none that a toy can have, in most channels.
+fn bounce_at_limit(fit: &Fit) -> Option<Warning> {
+    let [red, green, blue, _] = fit.receivers[0].bounce;
+    let n_where = |is_held: fn(f32) -> bool| {
+        [red, green, blue]
+            .into_iter()
+            .filter(|bounce| is_held(*bounce))
+            .count()
+    };
+    let is_black = n_where(|bounce| bounce < POSSIBLE_BOUNCE[0]) >= 2;
+    let is_white = n_where(|bounce| bounce > POSSIBLE_BOUNCE[1]) >= 2;
+    (is_black || is_white).then_some(Warning::BounceAtLimit { is_black })
 }
 
 /// What all lights give of the plate's radiance, on the receiver and in the channel where it is most.

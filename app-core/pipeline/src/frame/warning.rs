@@ -60,6 +60,12 @@ pub enum Warning {
         /// Pixels that show it, each as far as it is hidden from a light.
         n_pixels: f64,
     },
+    /// The light that the toy throws back is estimated beyond what a toy can do, in two channels or more: the picture's levels are not
+    /// those of light, or something nearby changes it that is not in the scene.
+    BounceAtLimit {
+        /// Whether the toy would have to throw back nothing; else all of it.
+        is_black: bool,
+    },
     /// The pictures do not show what they should.
     Mismatch(Mismatch),
     /// Intensities of some lights are under-constrained, and a prior decides: their shadow falls together with that of others, or
@@ -174,6 +180,12 @@ impl fmt::Display for Warning {
             Self::SmallShadow { n_pixels } => write!(
                 f,
                 "the real shadow is seen on {n_pixels:.0} pixels alone: the strength of the new one is uncertain; show more of it, from higher up or from closer by"
+            ),
+            Self::BounceAtLimit { is_black: true } => f.write_str(
+                "the table beside the toy is darker than beside a black one: a tone curve or HDR of the camera, or a light that is not listed; the new shadow may be too dark",
+            ),
+            Self::BounceAtLimit { is_black: false } => f.write_str(
+                "the table beside the toy is brighter than beside a white one: a bright thing nearby, or gloss; the new shadow may be too light",
             ),
             Self::LightsUnderConstrained { lights } => write!(
                 f,

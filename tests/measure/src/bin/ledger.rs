@@ -4,10 +4,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
+use app_core::alignment::Observer;
 use app_core::frame::FrameInput;
+use app_core::grain::Grain;
 use app_core::preset::Preset;
-use app_core::scene::Pose;
+use app_core::scene::{Pose, Scene};
 use app_core::session::{Capture, Session};
+use app_core::sharpness::Sharpness;
 use clap::Parser;
 use desk::files::BUNDLED_SESSION;
 use desk::program::{exit_code, open_session, print};
@@ -57,18 +60,42 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let size_px = args.size.unwrap_or(own_px);
     let scene = sized_scene(session.scene(), size_px);
     let first = first_moved(&session)?.context("no frame shows another pose than the physical one")?;
-    let input = sized_input(&first, size_px);
+    let input = observed(&scene, &sized_input(&first, size_px))?;
     let [width, height] = size_px;
     let mut text = String::new();
     for &preset in &args.presets {
         let counted = count(&scene, (preset, &[]), &input)?;
         text.push_str(&format!(
-            "{} {preset} {width} x {height}\n{}",
+            "{} {preset} {width} x {height}{}\n{}",
             scene.name,
+            in_words(&input),
             ledgers(&counted)
         ));
     }
     print(&text)
+}
+
+/// A frame with what its picture shows beside toy and table, as every program gives it to the core: that costs, too.
+fn observed(scene: &Scene, input: &FrameInput) -> anyhow::Result<FrameInput> {
+    let observed = Observer::default().observed(scene, input)?;
+    let grain = Grain::of(scene, observed.image.rgba(), &observed.camera);
+    Ok(observed.with_grain(grain))
+}
+
+/// What of that is in a picture.
+fn in_words(input: &FrameInput) -> String {
+    let parts = [
+        (input.things.is_some(), "other things"),
+        (input.sharpness != Sharpness::SHARP, "softness"),
+        (input.grain.is_some(), "grain"),
+    ];
+    let parts = parts.into_iter().filter(|(is_there, _)| *is_there);
+    let parts: Vec<&str> = parts.map(|(_, part)| part).collect();
+    if parts.is_empty() {
+        String::new()
+    } else {
+        format!(", with {}", parts.join(" and "))
+    }
 }
 
 fn draw_scaling(folder: &Path) -> anyhow::Result<()> {

@@ -102,6 +102,15 @@ fn brighter([r, g, b, a]: [u8; 4]) -> [u8; 4] {
     ]
 }
 
+/// As cameras do that make pictures brilliant: what is dark becomes darker, what is bright becomes brighter.
+fn with_contrast([r, g, b, a]: [u8; 4]) -> [u8; 4] {
+    let curved = |code: u8| {
+        let x = f64::from(code) / 255.0;
+        (255.0 * x * x * (3.0 - 2.0 * x)).round() as u8
+    };
+    [curved(r), curved(g), curved(b), a]
+}
+
 const fn bulb(position_in_world: DVec3) -> Light {
     Light::Sphere {
         position_in_world,
@@ -154,6 +163,9 @@ fn broken_input_is_told_by_its_cause() {
         Case::new("picture with red and blue swapped", &["RedAndBlueSwapped"])
             .with_picture(changed(&picture, |_, pixel| swapped(pixel))),
         Case::new("another white balance", &[]).with_picture(changed(&picture, |_, pixel| brighter(pixel))),
+        Case::new("the tone curve of a phone", &["BounceAtLimit"])
+            .with_plate(with_contrast)
+            .with_picture(changed(&picture, |_, pixel| with_contrast(pixel))),
         Case::new("black plate", &["PlateUnreadable"]).with_plate(|_| [0, 0, 0, 255]),
         Case::new("white plate", &["PlateUnreadable"]).with_plate(|_| [255; 4]),
         Case::new("black shadow", &["ShadowUnreadable"]).with_picture(black_shadow),
