@@ -141,7 +141,9 @@ fn light_per_code(light: f64) -> f64 {
 }
 
 impl Noise {
-    fn variance(&self, light: f64) -> f64 {
+    /// Of a channel at a light.
+    #[must_use]
+    pub fn variance(&self, light: f64) -> f64 {
         f64::from(self.floor) + f64::from(self.per_light) * light
     }
 }

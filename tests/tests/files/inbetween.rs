@@ -1,12 +1,15 @@
 //! In-between frames: what a shot may hold, when frames are shown, and what a photograph keeps when it is moved.
 
+use app_core::grain::{Grain, Noise};
 use app_core::session::Folder;
 use film::ease::Ease;
+use film::inbetween::blend::{FrameGrain, Mix};
 use film::inbetween::light::LightPicture;
 use film::inbetween::resample::resampled;
 use film::inbetween::shot::Shot;
 use film::inbetween::timing::{Rate, moments};
 use glam::{DMat3, DVec2};
+use reference::grain::grain_at;
 use serde_json::{Value, json};
 
 const SESSION: &str = "sessions/llama";
@@ -157,4 +160,55 @@ fn a_moved_photograph_keeps_its_detail() {
     let moved = resampled(&still, &DMat3::from_translation(DVec2::new(0.5, -0.25)));
     let error = difference(&moved, &wave(0.5));
     assert!(error < 0.01 * 0.3, "{error}");
+}
+
+#[test]
+fn a_blend_of_two_grainy_photographs_is_as_grainy_at_every_share() {
+    const SIDE: i32 = 64;
+    const LIGHT: f32 = 0.3;
+    let noise = Noise {
+        floor: 1e-4,
+        per_light: 1e-3,
+    };
+    let grain = Grain {
+        frame: noise,
+        plate: noise,
+        beside: 0.3,
+        channels: 0.2,
+    };
+    let variance = noise.variance(f64::from(LIGHT));
+    let grainy = |number: u32| {
+        let pixels = (0..SIDE * SIDE).map(|k| grain_at([k % SIDE, k / SIDE], number, 0.3, 0.2));
+        LightPicture {
+            width_px: SIDE as usize,
+            height_px: SIDE as usize,
+            rgb: pixels
+                .map(|noise| noise.map(|noise| LIGHT + (variance.sqrt() * noise) as f32))
+                .collect(),
+        }
+    };
+    let [left, right] = [1001, 1002].map(grainy);
+    let n_pixels = (SIDE * SIDE) as usize;
+    let (seen, shadow) = (vec![None; n_pixels], vec![true; n_pixels]);
+    let deviation_ratio = |share: f32, grain: Option<FrameGrain>| {
+        let mix = Mix {
+            pictures: [&left, &right],
+            share,
+            seen: [&seen, &seen],
+            covered: &vec![false; n_pixels],
+            touched: &shadow,
+            grain,
+        };
+        let pixels = mix.blended(None).rgb;
+        let squares = pixels
+            .iter()
+            .flatten()
+            .map(|light| f64::from(light - LIGHT).powi(2));
+        (squares.sum::<f64>() / (3 * n_pixels) as f64 / variance).sqrt()
+    };
+    for share in [0.0, 0.25, 0.5, 0.9] {
+        let ratio = deviation_ratio(share, Some(FrameGrain { grain, frame: 7 }));
+        assert!((0.95..1.05).contains(&ratio), "{share}: {ratio}");
+    }
+    assert!(deviation_ratio(0.5, None) < 0.75);
 }

@@ -1,5 +1,8 @@
 //! One picture of two: what the keys before and after a moment make of it, in linear light.
 
+use app_core::grain::Grain;
+use reference::grain::grain_at;
+
 use super::light::{LightPicture, smoothed};
 use super::stage::seen_weight;
 
@@ -46,6 +49,15 @@ pub struct Reference {
     pub touched: Option<Vec<bool>>,
 }
 
+/// The grain of the photographs, which a mean of two has less of.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameGrain {
+    /// As it was measured.
+    pub grain: Grain,
+    /// The frame, whose noise is its own.
+    pub frame: u32,
+}
+
 /// What a picture is made of.
 pub struct Mix<'a> {
     /// The moment, as it is made from the key before it and from that after it.
@@ -58,8 +70,8 @@ pub struct Mix<'a> {
     pub covered: &'a [bool],
     /// Pixels of the toy and its shadows.
     pub touched: &'a [bool],
-    /// Whether the photographs have hardly any grain.
-    pub is_clean: bool,
+    /// None where the photographs have hardly any.
+    pub grain: Option<FrameGrain>,
 }
 
 impl Mix<'_> {
@@ -73,9 +85,42 @@ impl Mix<'_> {
             .map(|((left, right), weight)| mixed(left, right, *weight))
             .collect();
         let blend = LightPicture { rgb, ..*left };
-        match reference {
+        let blend = match reference {
             Some(reference) => self.with_table(blend, reference),
             None => blend,
+        };
+        match &self.grain {
+            Some(grain) => self.with_grain(blend, grain, &weights),
+            None => blend,
+        }
+    }
+
+    /// The blend with the noise that it lacks on toy and shadows: means of two photographs with independent noise have
+    /// `w^2 + (1 - w)^2` of its variance. The table beside them shows one photograph, or none that needs it.
+    fn with_grain(&self, blend: LightPicture, of_frame: &FrameGrain, weights: &[f32]) -> LightPicture {
+        let FrameGrain { grain, frame } = *of_frame;
+        let [beside, channels] = [grain.beside, grain.channels].map(f64::from);
+        let clear = TABLE.clear(self.touched, blend.width_px);
+        let side = |pixel: usize| i32::try_from(pixel).unwrap_or(i32::MAX);
+        let pixels = blend.rgb.iter().zip(weights).zip(&clear).enumerate();
+        let rgb = pixels.map(|(index, ((pixel, weight), [clear]))| {
+            let missing = f64::from(2.0 * weight * (1.0 - weight) * (1.0 - clear));
+            if missing <= 0.0 {
+                return *pixel;
+            }
+            let at = [side(index % blend.width_px), side(index / blend.width_px)];
+            let noise = grain_at(at, frame, beside, channels);
+            [0, 1, 2].map(|channel| {
+                let light = f64::from(pixel[channel]);
+                let deviation = (missing * grain.frame.variance(light.max(0.0))).sqrt();
+                #[allow(clippy::cast_possible_truncation, reason = "of the range of light")]
+                let grained = (light + deviation * noise[channel]) as f32;
+                grained
+            })
+        });
+        LightPicture {
+            rgb: rgb.collect(),
+            ..blend
         }
     }
 
@@ -89,7 +134,7 @@ impl Mix<'_> {
             pixels.map(is_covered).collect()
         };
         let table = &reference.picture;
-        let blend = if self.is_clean {
+        let blend = if self.grain.is_none() {
             SHADOW.shown(blend, table, &with_own(self.covered), |pixel| self.touched[pixel])
         } else {
             // The plate's grain, as dark as a shadow, is less than that of a photograph there.

@@ -11,7 +11,7 @@ use desk::page::film::write_picture;
 use glam::DMat4;
 
 use super::InbetweenError;
-use super::blend::Mix;
+use super::blend::{FrameGrain, Mix};
 use super::keys::{Key, Keys};
 use super::light::LightPicture;
 use super::page::write_page;
@@ -167,7 +167,7 @@ impl Maker<'_> {
         let held = self.last.take().filter(|(last, ..)| last == moment);
         let (entry, image) = match held {
             Some((_, entry, image)) => (entry, image),
-            None => self.made(moment)?,
+            None => self.made(index, moment)?,
         };
         let entry = FrameEntry {
             number: self.options.names.first + index,
@@ -182,7 +182,7 @@ impl Maker<'_> {
         Ok((entry, image))
     }
 
-    fn made(&mut self, moment: &Moment) -> Result<(FrameEntry, Image), InbetweenError> {
+    fn made(&mut self, index: usize, moment: &Moment) -> Result<(FrameEntry, Image), InbetweenError> {
         let keys = self.keys;
         let is_key = moment.share == 0.0;
         let right = if is_key { moment.left } else { moment.left + 1 };
@@ -203,9 +203,13 @@ impl Maker<'_> {
             seen: [&seen[0], &seen[1]],
             covered: &figure.covered(),
             touched: &touched,
-            is_clean: [moment.left, right]
+            grain: [moment.left, right]
                 .iter()
-                .all(|key| keys.keys[*key].input.grain.is_none()),
+                .find_map(|key| keys.keys[*key].input.grain)
+                .map(|grain| FrameGrain {
+                    grain,
+                    frame: u32::try_from(index).unwrap_or(u32::MAX),
+                }),
         };
         let image = if is_key && self.options.keeps_keys {
             self.shot.key(moment.left)?.image.as_ref().clone()
