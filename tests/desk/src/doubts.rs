@@ -73,7 +73,7 @@ fn distance(scene: &Scene, frame: &SessionFrame) -> Option<String> {
         .filter(|(_, factor)| (CAMERA_M[0]..=CAMERA_M[1]).contains(&(factor * camera_m)))
         .min_by(|a, b| far(a.1).total_cmp(&far(b.1)));
     let way_out = unit.map_or(String::new(), |(name, factor)| {
-        format!(": if it is given in {name}, multiply its last column by {factor}, and so that of plates, receivers and lights")
+        format!(": if it is given in {name}, multiply its last column by {factor}, and in plates as well")
     });
     Some(format!(
         "the camera is {} m from the toy, which is {} m from corner to corner, and lengths are in metres{way_out}",

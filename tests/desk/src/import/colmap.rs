@@ -12,13 +12,16 @@ use super::values::{OPENCV_FROM_CAMERA, number, ordered, pose, without_picture};
 use super::{Imported, ImportedFrame};
 
 /// Where a model lies below the folder that is given.
-const FOLDERS: [&str; 6] = [
+const FOLDERS: [&str; 9] = [
     "",
     "sparse/0/",
     "sparse/",
     "colmap/sparse/0/",
     "dense/sparse/",
     "dense/0/sparse/",
+    "distorted/sparse/0/",
+    "colmap_sparse/0/",
+    "colmap_text/",
 ];
 /// Where the pictures lie.
 const PICTURES: [&str; 4] = ["images", "input", "dense/images", "dense/0/images"];

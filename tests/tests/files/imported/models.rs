@@ -5,6 +5,7 @@ use app_core::toy::{Pose, Toy};
 use desk::import::{Format, Imported, Lens, glb_of_ply, parse};
 use glam::{DMat3, DMat4, DQuat, DVec2, DVec3};
 use measure::glb::chunks;
+use measure::random::Random;
 
 use crate::imported::small::{Small, grey, lacking};
 
@@ -311,4 +312,55 @@ fn a_quaternion_of_colmap_begins_with_its_real_part() {
         .recorded_from_camera
         .transform_vector3(DVec3::NEG_Z);
     assert!(looks.distance(turned) < 1e-12, "{looks} {turned}");
+}
+
+/// Files with bytes changed, cut or doubled by chance: nothing panics, and what is taken is finite.
+#[test]
+fn whatever_is_in_a_model_is_answered() {
+    let [cameras, images] = binary();
+    let mesh = ply("binary_little_endian");
+    let [camera, truth] = scene("");
+    let texts = [(Format::Colmap, CAMERAS, IMAGES), (Format::Bop, &camera, &truth)];
+    let texts =
+        texts.map(|(format, first, second)| (format, first.as_bytes().to_vec(), second.as_bytes().to_vec()));
+    let there = THERE.map(str::to_owned);
+    let mut random = Random::new(44);
+    let mut n_taken = 0;
+    for _ in 0..1500 {
+        let mut check = |format, files: [&[u8]; 2]| {
+            let changed = files.map(|file| changed(file, &mut random));
+            let imported = parse(format, changed.each_ref().map(Vec::as_slice), &there);
+            for frame in imported.into_iter().flat_map(|imported| imported.frames) {
+                assert!(frame.recorded_from_camera.is_finite());
+                assert!(frame.intrinsics.iter().all(|number| number.is_finite()));
+                n_taken += 1;
+            }
+        };
+        check(Format::Colmap, [&cameras, &images]);
+        for (format, first, second) in &texts {
+            check(*format, [first, second]);
+        }
+        if let Ok(glb) = glb_of_ply(&changed(&mesh, &mut random), &|_| None) {
+            let _ = Toy::from_glb("changed.glb", &glb);
+            n_taken += 1;
+        }
+    }
+    assert!(n_taken > 500, "{n_taken}");
+}
+
+/// A file with up to two changes.
+fn changed(file: &[u8], random: &mut Random) -> Vec<u8> {
+    let mut bytes = file.to_vec();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below n")]
+    let mut below = |n: usize| (random.uniform() * n as f64) as usize;
+    for _ in 0..below(3) {
+        let at = below(bytes.len());
+        match below(4) {
+            0 => bytes[at] ^= 1 << below(8),
+            1 => bytes[at] = [0, 0xff, b'9', b'-'][below(4)],
+            2 => bytes.truncate(at + 1),
+            _ => bytes.insert(at, b'7'),
+        }
+    }
+    bytes
 }
