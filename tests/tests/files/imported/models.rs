@@ -284,10 +284,9 @@ fn a_mesh_is_the_same_however_it_is_written() {
         assert_eq!(bounds.max.to_array(), [10.0, 25.0, 10.0], "{format}");
         // Codes are sRGB, the file's colours linear.
         let (tree, bin) = chunks(&glb);
-        let view = &tree["bufferViews"][tree["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]
-            .as_u64()
-            .unwrap() as usize];
-        let at = view["byteOffset"].as_u64().unwrap() as usize;
+        let number = |value: &serde_json::Value| usize::try_from(value.as_u64().unwrap()).unwrap();
+        let colors = &tree["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"];
+        let at = number(&tree["bufferViews"][number(colors)]["byteOffset"]);
         let red = f32::from_le_bytes(bin[at..at + 4].try_into().unwrap());
         assert!((red - 0.5029).abs() < 1e-3, "{red}");
         let cut = glb_of_ply(&file[..file.len() - 3], &|_| None);
