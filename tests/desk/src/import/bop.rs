@@ -10,10 +10,10 @@ use glam::{DMat4, DVec3};
 use serde::Deserialize;
 
 use super::error::{ImportError, ImportReason};
+use super::imported::{Imported, ImportedFrame};
 use super::lens::Lens;
 use super::paths::Known;
 use super::values::{OPENCV_FROM_CAMERA, numbers, ordered, pose_of_rows, without_picture};
-use super::{Imported, ImportedFrame};
 
 pub(super) const CAMERA_FILE: &str = "scene_camera.json";
 pub(super) const TRUTH_FILE: &str = "scene_gt.json";

@@ -6,10 +6,10 @@
 use std::collections::HashMap;
 
 use super::error::{ImportError, ImportReason};
+use super::imported::{Imported, ImportedFrame};
 use super::lens::Lens;
 use super::paths::{Known, Taken};
 use super::values::{OPENCV_FROM_CAMERA, number, ordered, pose, without_picture};
-use super::{Imported, ImportedFrame};
 
 /// Where a model lies below the folder that is given.
 const FOLDERS: [&str; 9] = [

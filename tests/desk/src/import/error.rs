@@ -33,7 +33,7 @@ pub enum ImportReason {
     #[error("missing")]
     Missing,
     /// It is not a number, or not a finite one.
-    #[error("{0:?} is not a finite number of at most {max:e}", max = super::MAX_NUMBER)]
+    #[error("{0:?} is not a finite number of at most {max:e}", max = super::imported::MAX_NUMBER)]
     NotANumber(String),
     /// A time that no clock shows.
     #[error("{0} is no time in seconds: it must be from -1e10 to 1e10")]

@@ -3,8 +3,9 @@
 use app_core::session::Files;
 
 use super::error::{ImportError, ImportReason};
+use super::imported::{Imported, MAX_TEXT_BYTES};
 use super::paths::Known;
-use super::{Imported, MAX_TEXT_BYTES, bop, colmap, nerfstudio, record3d, stray_scanner};
+use super::{bop, colmap, nerfstudio, record3d, stray_scanner};
 
 /// Which program wrote it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

@@ -7,10 +7,10 @@ use glam::{DMat4, DVec3, DVec4};
 use serde::Deserialize;
 
 use super::error::{ImportError, ImportReason};
+use super::imported::{Imported, ImportedFrame};
 use super::lens::Lens;
 use super::paths::{Known, Taken};
 use super::values::{number, ordered, time_s, without_picture};
-use super::{Imported, ImportedFrame};
 
 #[derive(Deserialize)]
 struct Transforms {

@@ -8,8 +8,8 @@ use app_core::session::record::LensRecord;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageReader, Limits};
 
-use super::Imported;
 use super::error::{ImportError, ImportReason};
+use super::imported::Imported;
 use super::lens::Lens;
 
 /// No picture and no toy of a session is larger.

@@ -6,10 +6,10 @@
 use serde::Deserialize;
 
 use super::error::{ImportError, ImportReason};
+use super::imported::{Imported, ImportedFrame};
 use super::lens::Lens;
 use super::paths::Known;
 use super::values::{number, ordered, pose, time_s as time, without_picture};
-use super::{Imported, ImportedFrame};
 
 /// Folders that pictures may be in.
 const FOLDERS: [&str; 3] = ["rgbd/", "rgb/", ""];

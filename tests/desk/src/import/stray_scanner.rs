@@ -7,10 +7,10 @@
 use glam::DVec3;
 
 use super::error::{ImportError, ImportReason};
+use super::imported::{Imported, ImportedFrame};
 use super::lens::Lens;
 use super::paths::Known;
 use super::values::{OPENCV_FROM_CAMERA, number, ordered, pose, time_s, without_picture};
-use super::{Imported, ImportedFrame};
 
 pub(super) const ODOMETRY_FILE: &str = "odometry.csv";
 pub(super) const MATRIX_FILE: &str = "camera_matrix.csv";

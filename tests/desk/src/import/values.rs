@@ -3,8 +3,8 @@
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
 use super::error::{ImportError, ImportReason};
+use super::imported::{ImportedFrame, MAX_FRAMES, MAX_NUMBER};
 use super::paths::natural;
-use super::{ImportedFrame, MAX_FRAMES, MAX_NUMBER};
 
 /// No clock shows more, seconds either way.
 const MAX_TIME_S: f64 = 1e10;

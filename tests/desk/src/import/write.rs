@@ -11,9 +11,9 @@ use app_core::session::record::{
 use glam::{DMat4, DQuat, DVec3};
 use serde::de::DeserializeOwned;
 
+use super::imported::{Imported, ImportedFrame};
 use super::pictures::{Fitted, fit};
 use super::ply::glb_of_ply_file;
-use super::{Imported, ImportedFrame};
 use crate::files::{Folder, SESSION_FILE};
 use crate::output::{make_folder, write_whole};
 
