@@ -25,7 +25,9 @@ pub const PICTURE: &[u8] = include_bytes!("../fuzz/seeds/picture/good.png");
 pub const RECORDING: &[u8] = include_bytes!("../fuzz/seeds/recording/good.mcap");
 
 /// Pictures beside the texts that are imported.
-const IMPORTED: [&str; 6] = [
+const IMPORTED: [&str; 8] = [
+    "images/1.png",
+    "rgb/000002.png",
     "images/a.png",
     "images/b.jpg",
     "rgbd/0.jpg",
@@ -74,21 +76,41 @@ pub fn picture(bytes: &[u8]) {
     session(INDEX, TOY, bytes);
 }
 
-/// Reads what another program tells of its frames: a byte for the format, the first text, and after a zero the second.
+/// Reads what another program tells of its frames: a byte for the format, the first file, and after a zero the second. Binary files of
+/// COLMAP are cut in the middle, since they have zeros themselves; a mesh is one file.
 ///
 /// # Panics
 /// Where what is accepted is not finite.
 pub fn import(bytes: &[u8]) {
-    let Some((format, texts)) = bytes.split_first() else {
+    const FORMATS: [Format; 5] = [
+        Format::Nerfstudio,
+        Format::Record3d,
+        Format::StrayScanner,
+        Format::Colmap,
+        Format::Bop,
+    ];
+    let Some((format, files)) = bytes.split_first() else {
         return;
     };
-    let Ok(texts) = std::str::from_utf8(texts) else {
-        return;
-    };
-    let (first, second) = texts.split_once('\0').unwrap_or((texts, ""));
-    let format = [Format::Nerfstudio, Format::Record3d, Format::StrayScanner][usize::from(*format) % 3];
     let paths = IMPORTED.map(str::to_owned);
-    let imported = import::parse(format, [first, second], &paths);
+    let format = usize::from(*format) % (FORMATS.len() + 2);
+    let imported = match FORMATS.get(format) {
+        Some(format) => {
+            let end = files.iter().position(|byte| *byte == 0).unwrap_or(files.len());
+            let (first, second) = files.split_at(end);
+            import::parse(*format, [first, second.get(1..).unwrap_or_default()], &paths)
+        }
+        None if format == FORMATS.len() => {
+            let (first, second) = files.split_at(files.len() / 2);
+            import::parse(Format::Colmap, [first, second], &paths)
+        }
+        None => {
+            if let Ok(glb) = import::glb_of_ply(files, &|_| None) {
+                toy(&glb);
+            }
+            return;
+        }
+    };
     for frame in imported.into_iter().flat_map(|imported| imported.frames) {
         assert!(frame.recorded_from_camera.is_finite());
         assert!(frame.intrinsics.iter().all(|number| number.is_finite()));

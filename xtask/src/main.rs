@@ -32,7 +32,7 @@ const PROGRAMS: [Program; 16] = [
     Program::new("check", "desk", "Say what is wrong with a session, and draw what it predicts over its first frame"),
     Program::new("align", "desk", "Write a session anew with cameras, pose and lights aligned by its pictures"),
     Program::new("convert", "desk", "Make a recording of a session's folder, or a folder of a recording"),
-    Program::new("import", "desk", "Make a session of a recording of nerfstudio, Record3D or Stray Scanner"),
+    Program::new("import", "desk", "Make a session of a recording of nerfstudio, Record3D or Stray Scanner, of a model of COLMAP or of a scene of BOP"),
     Program::new("new", "film", "Make a session of photographs, found by the toy that they show"),
     Program::new("clips", "film", "List the clips of a toy, with thumbnails"),
     Program::new("animate", "film", "Make a film of a photograph: clips of the toy become numbered pictures").on_device(),

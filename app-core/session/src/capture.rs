@@ -13,6 +13,8 @@ mod schema;
 mod uncertainty;
 mod written;
 
+use std::collections::HashSet;
+use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DMat4;
@@ -22,7 +24,7 @@ use self::field::{LENS, WHOLE_FILE, at, frame_field, in_index, read_named};
 use self::record::{CaptureRecord, FORMAT, Header, VERSION};
 use super::error::{PictureError, SessionError, SessionErrorKind};
 use super::files::{Files, INDEX_FILE, MAX_INDEX_BYTES};
-use super::picture::{PictureSize, decode_mask, decode_photo};
+use super::picture::{PictureSize, check_head, decode_mask, decode_photo};
 use super::tags::exif_orientation;
 use super::{GroundTruth, Session, SessionFrame, SessionWarning, Truth};
 use app_scene::lens::{Distortion, Lens};
@@ -164,6 +166,26 @@ impl Session for Capture {
             world_from_shown: frame.world_from_shown,
             warnings: frame.warnings.iter().cloned().chain(turned).collect(),
         })
+    }
+
+    fn check_pictures(&self, frames: Range<usize>) -> Result<(), SessionError> {
+        let mut known = HashSet::new();
+        for index in frames {
+            let frame = self.frame_at(index)?;
+            let truth = frame.truth.as_ref();
+            let pictures = [
+                (Some(&frame.picture), ".image", false),
+                (truth.map(|files| &files.picture), ".truth", false),
+                (truth.map(|files| &files.mask), ".mask", true),
+            ];
+            for (path, field, is_mask) in pictures {
+                if let Some(path) = path.filter(|path| known.insert((path.as_str(), is_mask))) {
+                    let check = |bytes: &[u8], size| check_head(bytes, size, is_mask);
+                    self.store.read(path, &frame_field(index, field), check)?;
+                }
+            }
+        }
+        Ok(())
     }
 
     fn photograph(&self, index: usize) -> Result<Arc<Image>, SessionError> {

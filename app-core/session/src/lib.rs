@@ -16,6 +16,7 @@ mod picture;
 pub mod recording;
 pub mod tags;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DMat4;
@@ -52,6 +53,15 @@ pub trait Session {
     /// # Errors
     /// When there is no such frame, or its picture cannot be read.
     fn frame(&self, index: usize) -> Result<SessionFrame, SessionError>;
+
+    /// Looks at the picture files of `frames`, but at no pixel: whether each is there, of a kind that is read and of the session's size.
+    /// What takes long is not begun before.
+    ///
+    /// # Errors
+    /// When there are no such frames, or a picture of one cannot be read.
+    fn check_pictures(&self, _frames: Range<usize>) -> Result<(), SessionError> {
+        Ok(())
+    }
 
     /// The photograph of the frame `index` as its camera gave it, distortion and all: [`SessionFrame::image`] where the session has no lens.
     ///

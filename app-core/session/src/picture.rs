@@ -3,7 +3,7 @@
 use std::io::Cursor;
 
 use image::codecs::{jpeg::JpegDecoder, png::PngDecoder};
-use image::{DynamicImage, ImageDecoder, Limits};
+use image::{ColorType, DynamicImage, ImageDecoder, Limits};
 
 use super::error::PictureError;
 use super::tags::{JPEG_MAGIC, PNG_MAGIC};
@@ -47,6 +47,30 @@ pub(super) fn decode_mask(bytes: &[u8], size: PictureSize) -> Result<Image, Pict
     }
 }
 
+/// Looks at kind and size of a photograph or a mask, and at a JPEG's end, but decodes no pixel.
+pub(super) fn check_head(bytes: &[u8], size: PictureSize, is_mask: bool) -> Result<(), PictureError> {
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(size.max_file_bytes());
+    let kind = if bytes.starts_with(PNG_MAGIC) {
+        let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits)?;
+        check_size(&decoder, size)?;
+        decoder.color_type()
+    } else if bytes.starts_with(JPEG_MAGIC) {
+        let decoder = JpegDecoder::new(Cursor::new(bytes))?;
+        if !jpeg_has_end(bytes) {
+            return Err(PictureError::Truncated);
+        }
+        check_size(&decoder, size)?;
+        decoder.color_type()
+    } else {
+        return Err(PictureError::Format);
+    };
+    if is_mask && kind != ColorType::Rgba8 {
+        return Err(PictureError::NotAMask);
+    }
+    Ok(())
+}
+
 fn with_size(rgba8: Vec<u8>, size: PictureSize) -> Image {
     Image {
         width_px: size.width_px,
@@ -74,6 +98,11 @@ fn decode(bytes: &[u8], size: PictureSize) -> Result<DynamicImage, PictureError>
 
 /// Compares the size in the header before a pixel is decoded or room for it is made.
 fn decode_sized(decoder: impl ImageDecoder, size: PictureSize) -> Result<DynamicImage, PictureError> {
+    check_size(&decoder, size)?;
+    Ok(DynamicImage::from_decoder(decoder)?)
+}
+
+fn check_size(decoder: &impl ImageDecoder, size: PictureSize) -> Result<(), PictureError> {
     let (width_px, height_px) = decoder.dimensions();
     if (width_px, height_px) != (size.width_px, size.height_px) {
         return Err(PictureError::Size {
@@ -83,7 +112,7 @@ fn decode_sized(decoder: impl ImageDecoder, size: PictureSize) -> Result<Dynamic
             expected_height_px: size.height_px,
         });
     }
-    Ok(DynamicImage::from_decoder(decoder)?)
+    Ok(())
 }
 
 /// Walks a JPEG's segments to its end marker. Previews in its metadata have ends of their own, so

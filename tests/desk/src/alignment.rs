@@ -265,6 +265,7 @@ impl Alignments {
     }
 
     fn aligning(mut self, session: &dyn Session, frames: Range<usize>) -> Result<Self, ReplayError> {
+        session.check_pictures(frames.clone())?;
         for index in frames {
             self.align(session.scene(), index, &session.frame(index)?)?;
         }

@@ -35,6 +35,7 @@ pub fn open(path: &Path, lens: Source, lights: Lights) -> anyhow::Result<Opened>
 
 fn with_found_lens(path: &Path, lights: Lights) -> anyhow::Result<Opened> {
     let bent = Capture::open_with_lens(open_session(path)?, None)?;
+    bent.check_pictures(0..bent.n_frames())?;
     let found = find(&bent, lights)?;
     let capture = match found.outcome {
         RatioOutcome::Corrected => Capture::open_with_lens(Stored::open(path)?, Some(found.distortion))?,

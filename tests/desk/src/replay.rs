@@ -5,35 +5,36 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use app_core::alignment::{AlignError, LensAlignment};
-use app_core::camera_frame::PlaneError;
+use app_core::alignment::LensAlignment;
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
 use app_core::governor::QualityStep;
 use app_core::grain::Grain;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Scene};
-use app_core::session::{GroundTruth, Session, SessionError, SessionFrame, Truth};
+use app_core::session::{GroundTruth, Session, SessionFrame, Truth};
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::readback::Map;
-use thiserror::Error;
 
 use crate::alignment::{Alignments, Asked, Lights, Ratio};
+use crate::doubts;
 use crate::false_color;
 use crate::false_color::{ERROR, describe};
 use crate::files::SESSION_FILE;
-use crate::frames::{Frames, NoSuchFrames};
+use crate::frames::Frames;
 use crate::lens::{map_through_lens, through_lens};
 use crate::lights_drawn::write_lights;
 use crate::metrics::flicker::Follower;
-use crate::metrics::{SizeError, floor, score};
+use crate::metrics::{floor, score};
 use crate::output::WriteError;
 use crate::output::folder::OutputFolder;
 use crate::page::pictures::Pictures;
 use crate::page::{MAPS_FOLDER, Page, folder_of, values};
 use crate::progress::Progress;
 use crate::report::{AlignmentEntry, FitEntry, FrameEntry, MapEntry, Mean, Report};
+
+pub use crate::replay_error::ReplayError;
 
 /// File name of the report in the output folder.
 pub const REPORT_FILE: &str = "report.json";
@@ -86,57 +87,6 @@ impl Options {
     }
 }
 
-/// A replay that did not come to its end.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum ReplayError {
-    /// The session, or one of its frames, cannot be read.
-    #[error(transparent)]
-    Session(#[from] SessionError),
-    /// The core cannot take the session.
-    #[error(transparent)]
-    Core(#[from] CoreError),
-    /// The core cannot make a frame.
-    #[error("frame {index}: {reason}")]
-    Frame {
-        /// The frame, from 0.
-        index: usize,
-        /// What the core said.
-        reason: CoreError,
-    },
-    /// A frame cannot be aligned.
-    #[error("aligning frame {index}: {reason}")]
-    Align {
-        /// The frame, from 0.
-        index: usize,
-        /// What is wrong with it.
-        reason: Box<AlignError>,
-    },
-    /// A frame cannot be had as planes.
-    #[error(transparent)]
-    Planes(#[from] PlaneError),
-    /// A picture does not fit its truth.
-    #[error("scoring frame {index}: {reason}")]
-    Score {
-        /// The frame, from 0.
-        index: usize,
-        /// What differs.
-        reason: SizeError,
-    },
-    /// A picture or the report cannot be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// Frames that the session does not have.
-    #[error(transparent)]
-    NoSuchFrames(#[from] NoSuchFrames),
-    /// An output folder whose files are someone's photographs.
-    #[error("{}: holds a session, whose camera frames would be overwritten", folder.display())]
-    OutIsSession {
-        /// The folder.
-        folder: PathBuf,
-    },
-}
-
 /// File name of the picture of frame `index`.
 #[must_use]
 pub fn picture_file(index: usize) -> String {
@@ -161,11 +111,11 @@ pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments
 /// Each frame is read once, aligned, and made with one preset after the other. Only if a number is looked for that holds for the
 /// whole session, all frames are aligned before the first is made.
 ///
-/// What an earlier run left in the output folder is removed first, so that a report there means that all frames were
-/// written, and no old one lies beside them.
+/// The files of all pictures are looked at before the first frame. What an earlier run left in the output folder is removed, so that
+/// no old report lies beside new frames.
 ///
 /// # Errors
-/// When a frame cannot be read, made or written; those before it stay. When the output folder holds files that no run
+/// When a frame cannot be read, made or written; those before it stay, with a report that says why it ended. When the output folder holds files that no run
 /// wrote, or another run writes into it.
 pub fn replay(
     session: &dyn Session,
@@ -174,6 +124,7 @@ pub fn replay(
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Result<Vec<Report>, ReplayError> {
+    session.check_pictures(options.frames.within(session.n_frames())?)?;
     let mut alignments = match options.asked() {
         Some(asked) if asked.ratio == Ratio::Given => {
             Alignments::new(session.scene(), asked).with_lens(options.lens)
@@ -200,19 +151,50 @@ pub fn replay_aligned(
     let mut others: Vec<Core> = others.map(|_| core.beside()).collect();
     let runs = options.presets.iter().zip(iter::once(core).chain(&mut others));
     let output = options.out.as_deref().map(take).transpose()?;
-    let mut runs = runs
+    let runs = runs
         .map(|(preset, core)| Run::new(*preset, core, options, output.as_ref()))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut page = output.as_ref().map(Page::new);
     let presets: Vec<&str> = options.presets.iter().map(|preset| preset.name()).collect();
     let title = format!("{} with {}", session.scene().name, presets.join(", "));
     progress.start(&title, indices.len() * runs.len());
-    for index in indices {
+    let mut replay = Replay {
+        session,
+        truth,
+        runs,
+        page: output.as_ref().map(Page::new),
+    };
+    for (n_frames, index) in indices.enumerate() {
+        if let Err(reason) = replay.frame(index, alignments, progress) {
+            return Err(replay.ended(n_frames, reason, alignments));
+        }
+    }
+    let reports = replay.reports(None, alignments)?;
+    progress.finish();
+    Ok(reports)
+}
+
+/// All presets, and the page of their pictures.
+struct Replay<'a> {
+    session: &'a dyn Session,
+    truth: Option<&'a dyn GroundTruth>,
+    runs: Vec<Run<'a>>,
+    page: Option<Page>,
+}
+
+impl Replay<'_> {
+    /// Makes a frame with each preset.
+    fn frame(
+        &mut self,
+        index: usize,
+        alignments: &mut Alignments,
+        progress: &mut dyn Progress,
+    ) -> Result<(), ReplayError> {
+        let session = self.session;
         let frame = session.frame(index)?;
         alignments.align(session.scene(), index, &frame)?;
         let recorded = FrameInput::from(&frame);
         let photograph = session.photograph(index)?;
-        let truth = truth.map(|truth| truth.truth(index)).transpose()?.flatten();
+        let truth = self.truth.map(|truth| truth.truth(index)).transpose()?.flatten();
         let failed = |reason| ReplayError::Score { index, reason };
         let floor = truth.as_ref().map(|truth| floor(&photograph, truth));
         let shot = Shot {
@@ -224,22 +206,42 @@ pub fn replay_aligned(
             frame,
             truth,
         };
-        for run in &mut runs {
-            let entry = run.frame(&shot)?;
+        let entries = self.runs.iter_mut().map(|run| run.frame(&shot));
+        let entries = entries.collect::<Result<Vec<_>, _>>()?;
+        if let Some(page) = &mut self.page {
+            page.add(index, photograph, shot.truth)?;
+        }
+        for (run, entry) in self.runs.iter_mut().zip(entries) {
             progress.frame(run.preset, &entry);
             run.frames.push(entry);
         }
-        if let Some(page) = &mut page {
-            page.add(index, photograph, shot.truth)?;
+        Ok(())
+    }
+
+    /// The reports, which are written with the page.
+    fn reports(self, ended: Option<String>, alignments: &Alignments) -> Result<Vec<Report>, ReplayError> {
+        let runs = self.runs.into_iter();
+        let reports = runs.map(|run| run.report(self.session, ended.as_deref(), alignments));
+        let reports = reports.collect::<Result<Vec<_>, _>>()?;
+        if let Some(page) = self.page {
+            page.write(self.session.scene(), &reports)?;
+        }
+        Ok(reports)
+    }
+
+    /// Writes what was made of the frames before, if that can be had.
+    fn ended(self, n_frames: usize, reason: ReplayError, alignments: &Alignments) -> ReplayError {
+        if n_frames == 0 || self.page.is_none() {
+            return reason;
+        }
+        match self.reports(Some(reason.to_string()), alignments) {
+            Ok(_) => ReplayError::Ended {
+                n_frames,
+                reason: Box::new(reason),
+            },
+            Err(_) => reason,
         }
     }
-    let reports = runs.into_iter().map(|run| run.report(session, alignments));
-    let reports = reports.collect::<Result<Vec<_>, _>>()?;
-    if let Some(page) = page {
-        page.write(session.scene(), &reports)?;
-    }
-    progress.finish();
-    Ok(reports)
 }
 
 /// A frame that all presets are shown.
@@ -368,7 +370,8 @@ impl<'a> Run<'a> {
         let picture = self.core.read_picture().map_err(failed)?;
         let wall = start.elapsed();
         let times = self.core.read_pass_times().map_err(failed)?;
-        let warnings = shot.frame.warnings.iter();
+        let warnings = shot.frame.warnings.iter().map(ToString::to_string);
+        let doubts = doubts::of_frame(shot.session.scene(), shot.index, &shot.frame);
         let entry = FrameEntry {
             index: shot.index,
             time_secs: shot.frame.time_secs,
@@ -379,7 +382,7 @@ impl<'a> Run<'a> {
             cpu_ms: ms(cpu),
             wall_ms: ms(wall),
             pass_times: times,
-            session_warnings: warnings.map(ToString::to_string).collect(),
+            session_warnings: warnings.chain(doubts).collect(),
             report,
             alignment: shot.alignments.of(shot.index).map(AlignmentEntry::from),
             sharpness: input.sharpness.into(),
@@ -411,7 +414,12 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    fn report(self, session: &dyn Session, alignments: &Alignments) -> Result<Report, ReplayError> {
+    fn report(
+        self,
+        session: &dyn Session,
+        ended: Option<&str>,
+        alignments: &Alignments,
+    ) -> Result<Report, ReplayError> {
         let scene = session.scene();
         let fit = self.core.read_fit()?;
         let report = Report {
@@ -420,7 +428,8 @@ impl<'a> Run<'a> {
             adapter: self.core.adapter_name(),
             is_software: self.core.is_software(),
             size_px: [scene.width_px, scene.height_px],
-            warnings: warnings_of(session, self.core)?,
+            warnings: warnings_of(session, self.core, ended)?,
+            ended: ended.map(str::to_owned),
             lens: alignments.lens().copied(),
             mean: Mean::of(&self.frames),
             mean_of_moving: Mean::of_moving(&self.frames),
@@ -457,9 +466,14 @@ fn write_maps(
     Ok(entries)
 }
 
-fn warnings_of(session: &dyn Session, core: &Core) -> Result<Vec<String>, CoreError> {
+fn warnings_of(session: &dyn Session, core: &Core, ended: Option<&str>) -> Result<Vec<String>, CoreError> {
+    let ended = ended.map(|reason| format!("the replay ended before its last frame: {reason}"));
     let of_session = session.warnings().iter().map(ToString::to_string);
-    Ok(of_session
+    let of_values = doubts::of_scene(session.scene());
+    Ok(ended
+        .into_iter()
+        .chain(of_session)
+        .chain(of_values)
         .chain(core.read_fit_warnings()?.iter().map(ToString::to_string))
         .collect())
 }

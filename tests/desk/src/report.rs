@@ -27,6 +27,8 @@ pub struct Report {
     pub size_px: [u32; 2],
     /// What was odd about the session as a whole.
     pub warnings: Vec<String>,
+    /// Why there are not all frames that were asked for; none if there are.
+    pub ended: Option<String>,
     /// The lens that photographs were freed of; none where nobody asked for it.
     pub lens: Option<LensAlignment>,
     /// Means over frames.

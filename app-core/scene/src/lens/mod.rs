@@ -13,6 +13,8 @@ use serde::Serialize;
 
 use crate::scene::{FieldError, Image, Intrinsics};
 
+pub use resample::resampled;
+
 /// Coefficients of any real lens, and far more.
 pub const COEFFICIENT: RangeInclusive<f64> = -10.0..=10.0;
 /// A lens must go outwards as far beyond the farthest corner, in parts of its distance from the principal point.
@@ -127,7 +129,7 @@ impl Lens {
 
     /// What a pinhole would have seen, of the photograph's size and intrinsics. Beside the photograph its border goes on.
     pub fn to_pinhole(self, photograph: &Image) -> Image {
-        resample::resampled(photograph, |at_px| {
+        resampled(photograph, |at_px| {
             self.distortion.distorted(&self.intrinsics, at_px)
         })
     }

@@ -16,8 +16,8 @@ fn places(image: &Image) -> impl Iterator<Item = DVec2> {
     (0..height).flat_map(move |y| (0..width).map(move |x| DVec2::new(f64::from(x), f64::from(y)) + 0.5))
 }
 
-/// The picture with each pixel as it is at `from`, in pixels of the same picture.
-pub(super) fn resampled(image: &Image, from: impl Fn(DVec2) -> DVec2) -> Image {
+/// The picture with each pixel as it is at `from`, in pixels of the same picture. Beside it its border goes on.
+pub fn resampled(image: &Image, from: impl Fn(DVec2) -> DVec2) -> Image {
     let linear = linear_of_codes();
     let mut rgba8 = Vec::with_capacity(image.rgba8.len());
     for at_px in places(image) {

@@ -45,6 +45,21 @@ pub enum FieldError {
         /// Largest allowed.
         max: f64,
     },
+    /// A time that is too early, too late or not a number.
+    #[error(
+        "{} s is not from {} s to {} s: times are in seconds",
+        Number(*secs),
+        Number(*min_secs),
+        Number(*max_secs)
+    )]
+    Time {
+        /// The time as written.
+        secs: f64,
+        /// Earliest allowed.
+        min_secs: f64,
+        /// Latest allowed.
+        max_secs: f64,
+    },
     /// A list that needs an entry.
     #[error("the list is empty, but needs at least one entry")]
     Empty,
@@ -164,6 +179,15 @@ pub fn number(value: f64, range: &RangeInclusive<f64>) -> Result<f64, FieldError
             max: *range.end(),
         })
     }
+}
+
+/// A time within a range of seconds, ends included.
+pub fn time_secs(secs: f64, range: &RangeInclusive<f64>) -> Result<f64, FieldError> {
+    number(secs, range).map_err(|_| FieldError::Time {
+        secs,
+        min_secs: *range.start(),
+        max_secs: *range.end(),
+    })
 }
 
 /// The size of a picture.

@@ -129,7 +129,7 @@ fn pose(
     warnings: &mut Vec<SessionWarning>,
 ) -> Result<Pose, SessionError> {
     let time_field = format!("{field}.time");
-    let asked_secs = at(&time_field, check::number(record.time, &check::CLIP_TIME_SECS))?;
+    let asked_secs = at(&time_field, check::time_secs(record.time, &check::CLIP_TIME_SECS))?;
     let Some(name) = &record.clip else {
         return Ok(Pose::Authored);
     };
@@ -179,7 +179,7 @@ fn frame_from_record(
     Ok(Frame {
         time_secs: at(
             &format!("{field}.time"),
-            check::number(record.time, &check::TIME_SECS),
+            check::time_secs(record.time, &check::TIME_SECS),
         )?,
         picture: record.image.clone(),
         camera: camera(

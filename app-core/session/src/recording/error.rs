@@ -72,6 +72,9 @@ pub enum RecordingError {
     /// The first bytes are others, and nothing of a recording follows them.
     #[error("not an MCAP recording")]
     NotMcap,
+    /// Recordings that were merged: which pictures belong to which cannot be known.
+    #[error("two recordings of sessions were merged into it: give them one by one, as they were before")]
+    TwoSessions,
     /// No chunk that is whole has a session in it.
     #[error("no session is in it{}", first_of(losses))]
     NoSession {
@@ -121,7 +124,9 @@ pub enum Loss {
         n_chunks: u32,
     },
     /// Files that were written and are not there.
-    #[error("{n_files} of {n_written} attached files are lost")]
+    #[error(
+        "{n_files} of {n_written} attached files are lost: a program that wrote the recording anew may have left them out, as `mcap filter` does without --include-attachments"
+    )]
     Files {
         /// How many are missing.
         n_files: u32,
@@ -134,6 +139,9 @@ pub enum Loss {
         /// How many there are.
         n_frames: u32,
     },
+    /// Messages outside of chunks, all of which have one checksum.
+    #[error("bytes were changed somewhere in the recording: the checksum of all its data is another")]
+    Changed,
     /// Messages beyond what a reader keeps.
     #[error("{n_messages} messages are left out: more than {max_bytes} bytes of them")]
     TooMany {
@@ -161,15 +169,26 @@ pub enum Damage {
     #[error("the first bytes are not those of MCAP")]
     Magic,
     /// Compressed, which no recording of ours is.
-    #[error("the chunk is compressed, which is not supported: write it anew without compression")]
+    #[error(
+        "the chunk is compressed, which apps do not read: write it anew without compression, as `cargo xtask convert` does"
+    )]
     Compressed,
+    /// Compressed, and something else than what was compressed comes out.
+    #[error("what is compressed in the chunk cannot be had again")]
+    Inflate,
+    /// Chunks that hold so much more than they take that no recording's do.
+    #[error("the compressed chunks hold more than {max_bytes} bytes")]
+    Inflated {
+        /// The limit, for all chunks of the file.
+        max_bytes: u64,
+    },
     /// More than a reader takes at once.
     #[error("the chunk is larger than {max_bytes} bytes")]
     TooLarge {
         /// The limit.
         max_bytes: u64,
     },
-    /// A message that stands alone, where nothing guards its bytes.
+    /// A message that stands alone in a recording of chunks, where nothing guards its bytes.
     #[error("a message outside of a chunk has no checksum")]
     Unguarded,
 }

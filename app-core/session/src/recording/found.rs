@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::error::Loss;
+use super::inflate::Compression;
 use super::message::{FrameMessage, NamedPicture, SessionMessage};
 use super::topics::Topic;
 use super::viewer::image_file;
@@ -13,11 +14,45 @@ use crate::MAX_INDEX_BYTES;
 /// Texts of notes that are kept, bytes.
 const MAX_NOTE_BYTES: u64 = 64 << 20;
 
-/// Bytes of the file.
+/// A chunk whose records are compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Packed {
+    pub(super) compression: Compression,
+    /// Bytes of the file.
+    pub(super) at: u64,
+    pub(super) n_stored_bytes: u64,
+    /// What comes out.
+    pub(super) n_record_bytes: u64,
+}
+
+/// Bytes of the file, or of the records of a chunk that is compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Span {
+    pub(super) packed: Option<Packed>,
     pub(super) at: u64,
     pub(super) n_bytes: u64,
+}
+
+/// Where records begin: in the file, or in a chunk that is compressed.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Home {
+    At(u64),
+    Packed(Packed),
+}
+
+impl Home {
+    fn span(self, within: Range<usize>) -> Span {
+        let n_bytes = within.len() as u64;
+        let (packed, records_at) = match self {
+            Self::At(at) => (None, at),
+            Self::Packed(packed) => (Some(packed), 0),
+        };
+        Span {
+            packed,
+            at: records_at + within.start as u64,
+            n_bytes,
+        }
+    }
 }
 
 /// A frame as it was recorded.
@@ -47,7 +82,12 @@ pub(super) struct Found {
     /// The last chunk's session; none before the first.
     pub(super) session: Option<SessionMessage>,
     pub(super) frames: Vec<FoundFrame>,
+    /// By their numbers, once all are found.
     pub(super) pictures: BTreeMap<u32, Span>,
+    /// Sequence number and place, in the order they are found.
+    numbered: Vec<(u32, Span)>,
+    /// Whether a chunk of a session is there more than once.
+    pub(super) has_two_sessions: bool,
     pub(super) files: BTreeMap<String, Span>,
     pub(super) notes: Vec<Note>,
     pub(super) losses: Vec<Loss>,
@@ -72,9 +112,9 @@ struct Message<'a> {
 }
 
 impl Found {
-    /// Takes a whole chunk's records, which begin at byte `records_at`. None where they are no records; then nothing of
+    /// Takes a whole chunk's records, which begin at `home`. None where they are no records; then nothing of
     /// the chunk is taken.
-    pub(super) fn chunk(&mut self, records_at: u64, records: &[u8]) -> Option<()> {
+    pub(super) fn chunk(&mut self, home: Home, records: &[u8]) -> Option<()> {
         let mut messages = Vec::new();
         let mut rest = Rest(records);
         while !rest.0.is_empty() {
@@ -89,7 +129,7 @@ impl Found {
         // Of texts that are not what they should be nothing is taken, either: their chunk is not ours.
         let read = messages.iter().map(Read::new).collect::<Option<Vec<_>>>()?;
         for (message, read) in messages.iter().zip(read) {
-            self.take(records_at, message, read);
+            self.take(home, message, read);
         }
         Some(())
     }
@@ -124,18 +164,15 @@ impl Found {
         }))
     }
 
-    fn take(&mut self, records_at: u64, message: &Message, read: Read) {
+    fn take(&mut self, home: Home, message: &Message, read: Read) {
         match read {
             Read::Session(session) => {
-                self.chunks.insert(session.chunk);
+                self.has_two_sessions |= !self.chunks.insert(session.chunk);
                 self.session = Some(*session);
             }
             Read::Image(file) => {
-                let span = Span {
-                    at: records_at + (message.at + file.start) as u64,
-                    n_bytes: file.len() as u64,
-                };
-                self.pictures.insert(message.sequence, span);
+                let file = message.at + file.start..message.at + file.end;
+                self.numbered.push((message.sequence, home.span(file)));
             }
             Read::Frame(frame) => {
                 self.n_frame_bytes += frame.entry.len() as u64;
@@ -158,6 +195,22 @@ impl Found {
                 }
             }
             Read::Other => {}
+        }
+    }
+
+    /// Whether a channel was announced.
+    pub(super) fn has_channel(&self, id: u16) -> bool {
+        self.channels.contains_key(&id)
+    }
+
+    /// Numbers the pictures: by their sequence numbers, or by their order where a program that wrote the recording anew did
+    /// not keep those.
+    pub(super) fn number_pictures(&mut self) {
+        let numbered = std::mem::take(&mut self.numbered);
+        self.pictures = numbered.iter().copied().collect();
+        if self.pictures.len() < numbered.len() {
+            let spans = numbered.into_iter().map(|(_, span)| span);
+            self.pictures = (0..).zip(spans).collect();
         }
     }
 

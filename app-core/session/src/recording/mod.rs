@@ -10,6 +10,7 @@ mod codec;
 mod entry;
 mod error;
 mod found;
+mod inflate;
 mod job;
 mod message;
 mod protobuf;

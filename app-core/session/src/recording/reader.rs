@@ -1,11 +1,13 @@
 //! A recording as the files of a session.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Mutex, PoisonError};
 
 use serde_json::value::RawValue;
 
 use super::error::{Loss, RecordingError};
-use super::found::{Found, Note, Span};
+use super::found::{Found, Note, Packed, Span};
+use super::inflate::inflate;
 use super::scan::scan;
 use super::source::Source;
 use crate::{FileError, Files, INDEX_FILE, MAX_INDEX_BYTES, check_path};
@@ -22,6 +24,8 @@ pub struct Recording {
     device: BTreeMap<String, String>,
     notes: Vec<Note>,
     losses: Vec<Loss>,
+    /// Where the last chunk lies that was read and is compressed, and its records: its pictures are read one after another.
+    unpacked: Mutex<Option<(u64, Vec<u8>)>>,
 }
 
 impl Recording {
@@ -31,6 +35,10 @@ impl Recording {
     /// When it cannot be read, is no MCAP file, or no chunk of it is whole and has a session in it.
     pub fn open(source: impl Source + 'static) -> Result<Self, RecordingError> {
         let mut found = scan(&source)?;
+        if found.has_two_sessions {
+            return Err(RecordingError::TwoSessions);
+        }
+        found.number_pictures();
         found.tell_losses();
         let Some(session) = found.session.take() else {
             return Err(RecordingError::NoSession { losses: found.losses });
@@ -53,7 +61,31 @@ impl Recording {
             device: session.device,
             notes: found.notes,
             losses: found.losses,
+            unpacked: Mutex::new(None),
         })
+    }
+
+    /// Bytes of a chunk that is compressed.
+    fn unpacked(&self, packed: &Packed, span: &Span) -> Result<Vec<u8>, FileError> {
+        let failed = |reason: String| FileError::Io(reason);
+        let mut last = self.unpacked.lock().unwrap_or_else(PoisonError::into_inner);
+        let records = match last.take() {
+            Some((at, records)) if at == packed.at => records,
+            _ => {
+                let mut stored = vec![0; usize::try_from(packed.n_stored_bytes).unwrap_or(0)];
+                self.source
+                    .read_at(packed.at, &mut stored)
+                    .map_err(|error| failed(error.to_string()))?;
+                inflate(packed.compression, &stored, packed.n_record_bytes)
+                    .map_err(|damage| failed(damage.to_string()))?
+            }
+        };
+        let end = span.at.saturating_add(span.n_bytes);
+        let range =
+            usize::try_from(span.at).unwrap_or(usize::MAX)..usize::try_from(end).unwrap_or(usize::MAX);
+        let bytes = records.get(range).map(<[u8]>::to_vec);
+        *last = Some((packed.at, records));
+        bytes.ok_or_else(|| failed("the recording was changed while it was read".to_owned()))
     }
 
     /// Paths of all files, relative to the session; those that a session may not use are left out.
@@ -102,6 +134,9 @@ impl Files for Recording {
         let span = self.spans.get(path).ok_or(FileError::Missing)?;
         if span.n_bytes > max_bytes {
             return Err(FileError::TooLarge { max_bytes });
+        }
+        if let Some(packed) = &span.packed {
+            return self.unpacked(packed, span);
         }
         let n_bytes = usize::try_from(span.n_bytes).map_err(|_| FileError::TooLarge { max_bytes })?;
         let mut bytes = vec![0; n_bytes];

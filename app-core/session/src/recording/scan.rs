@@ -6,22 +6,28 @@
 
 use super::chunk::{CHUNK_HEAD_BYTES, MAX_CHUNK_BYTES};
 use super::error::{Damage, Loss, RecordingError};
-use super::found::{Found, Span};
+use super::found::{Found, Home, Packed, Span};
+use super::inflate::{Compression, inflate};
 use super::source::Source;
 use super::wire::{
-    ATTACHMENT, CHUNK, DATA_END, FOOTER, HEAD_BYTES, HEAD_LEN, HEADER, MAGIC, MESSAGE, MESSAGE_INDEX,
-    METADATA, Rest, parse_head,
+    ATTACHMENT, CHANNEL, CHUNK, DATA_END, FOOTER, HEAD_BYTES, HEAD_LEN, HEADER, MAGIC, MESSAGE,
+    MESSAGE_INDEX, METADATA, Rest, SCHEMA, parse_head,
 };
 
 /// Bytes that are read at once where nothing larger is wanted.
 const WINDOW_BYTES: u64 = 64 << 10;
 /// No attached file has a longer path and media type.
 const MAX_NAME_BYTES: u64 = 4096;
+/// No compression that the format has is called by more.
+const MAX_COMPRESSION_BYTES: u64 = 4;
 /// Bytes of an attached file's body before its path: two times.
 const TIMES_BYTES: u64 = 16;
 const CHECKSUM_BYTES: u64 = 4;
 /// How often the file's size may be read for chunks and files that only seem to be some, where it is damaged.
 const MAX_TRIALS: u64 = 4;
+/// Bytes that may come out of compressed chunks in all, for each byte of the file, and once besides. Pictures do not get
+/// smaller, and texts to a tenth.
+const MAX_INFLATION: u64 = 100;
 /// Losses that are told one by one.
 const MAX_LOSSES: usize = 1000;
 
@@ -33,6 +39,9 @@ pub(super) fn scan(source: &dyn Source) -> Result<Found, RecordingError> {
         at: 0,
         trusted: 0,
         trials_left: source.n_bytes().saturating_mul(MAX_TRIALS),
+        inflation_left: max_inflated(source.n_bytes()),
+        has_chunk: false,
+        is_loose: false,
         has_data_end: false,
         has_footer: false,
         buffer: Vec::new(),
@@ -40,6 +49,13 @@ pub(super) fn scan(source: &dyn Source) -> Result<Found, RecordingError> {
     };
     scan.run()?;
     Ok(scan.found)
+}
+
+/// Bytes that may come out of the compressed chunks of a file.
+fn max_inflated(n_bytes: u64) -> u64 {
+    n_bytes
+        .saturating_mul(MAX_INFLATION)
+        .saturating_add(MAX_CHUNK_BYTES)
 }
 
 struct Scan<'a> {
@@ -50,11 +66,23 @@ struct Scan<'a> {
     trusted: u64,
     /// Bytes.
     trials_left: u64,
+    /// Bytes.
+    inflation_left: u64,
+    has_chunk: bool,
+    /// Whether messages stand outside of chunks, as some programs write them: all of them do then.
+    is_loose: bool,
     has_data_end: bool,
     has_footer: bool,
     /// Of a chunk, used again.
     buffer: Vec<u8>,
     found: Found,
+}
+
+/// What a chunk's first bytes say.
+struct ChunkHead {
+    home: Home,
+    n_record_bytes: u64,
+    checksum: u32,
 }
 
 /// Why a record is not taken.
@@ -148,11 +176,19 @@ impl Scan<'_> {
                 self.file(body_at, n_bytes)?;
                 self.trusted = end;
             }
+            SCHEMA if !self.has_data_end => {
+                self.schema(body_at, n_bytes)?;
+                self.trusted = end;
+            }
+            CHANNEL | MESSAGE if self.is_loose && !self.has_data_end => {
+                self.loose(n_bytes)?;
+                self.trusted = end;
+            }
             MESSAGE => return Err(Damage::Unguarded.into()),
             MESSAGE_INDEX => self.index(body_at, n_bytes)?,
             METADATA => {}
             HEADER if self.at == MAGIC.len() as u64 => {}
-            DATA_END => self.has_data_end = true,
+            DATA_END => self.data_end(body_at, n_bytes)?,
             FOOTER if self.has_data_end => self.has_footer = true,
             // The summary tells nothing that chunks do not.
             _ if self.has_data_end => {}
@@ -172,55 +208,142 @@ impl Scan<'_> {
         Ok(if is_index { Ok(()) } else { Err(Damage::Kind) }?)
     }
 
-    /// Size of a chunk's records, after a look at its first bytes.
-    fn chunk_head(&self, body_at: u64, n_bytes: u64) -> Result<(u64, u32), Bad> {
-        let head = self.head_bytes(body_at, CHUNK_HEAD_BYTES).map_err(Bad::Io)?;
+    /// What a chunk's first bytes say of it, if they can be those of one.
+    fn chunk_head(&self, body_at: u64, n_bytes: u64) -> Result<ChunkHead, Bad> {
+        let head = self
+            .head_bytes(body_at, CHUNK_HEAD_BYTES + MAX_COMPRESSION_BYTES)
+            .map_err(Bad::Io)?;
         let mut rest = Rest(&head);
         let _times = rest.take(TIMES_BYTES).ok_or(Damage::Length)?;
-        let n_uncompressed = rest.u64().ok_or(Damage::Length)?;
-        let checksum = rest.u32().ok_or(Damage::Length)?;
-        let n_name_bytes = rest.u32().ok_or(Damage::Length)?;
-        if n_name_bytes != 0 {
-            let name = rest.take(3);
-            let is_known = matches!((n_name_bytes, name), (3, Some(b"lz4")) | (4, Some(b"zst")));
-            return Err(if is_known {
-                Damage::Compressed
-            } else {
-                Damage::Length
-            }
-            .into());
-        }
         let n_record_bytes = rest.u64().ok_or(Damage::Length)?;
-        let is_whole = n_record_bytes.checked_add(CHUNK_HEAD_BYTES) == Some(n_bytes);
-        if n_uncompressed != n_record_bytes || !is_whole {
+        let checksum = rest.u32().ok_or(Damage::Length)?;
+        let n_name_bytes = u64::from(rest.u32().ok_or(Damage::Length)?);
+        let name = rest.take(n_name_bytes).ok_or(Damage::Length)?;
+        let n_stored_bytes = rest.u64().ok_or(Damage::Length)?;
+        let at = CHUNK_HEAD_BYTES + n_name_bytes;
+        if n_stored_bytes.checked_add(at) != Some(n_bytes) {
             return Err(Damage::Length.into());
         }
-        Ok((n_record_bytes, checksum))
+        let max_bytes = MAX_CHUNK_BYTES;
+        let home = if name.is_empty() {
+            if n_record_bytes != n_stored_bytes {
+                return Err(Damage::Length.into());
+            }
+            Home::At(body_at + at)
+        } else {
+            Home::Packed(Packed {
+                compression: Compression::named(name).ok_or(Damage::Length)?,
+                at: body_at + at,
+                n_stored_bytes,
+                n_record_bytes,
+            })
+        };
+        if n_record_bytes > max_bytes || n_stored_bytes > max_bytes {
+            return Err(Damage::TooLarge { max_bytes }.into());
+        }
+        Ok(ChunkHead {
+            home,
+            n_record_bytes,
+            checksum,
+        })
     }
 
     fn chunk(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
-        self.check_chunk(body_at, n_bytes)?;
-        let is_taken = self.found.chunk(body_at + CHUNK_HEAD_BYTES, &self.buffer);
+        let home = self.check_chunk(body_at, n_bytes)?;
+        self.has_chunk = true;
+        let is_taken = self.found.chunk(home, &self.buffer);
         Ok(is_taken.ok_or(Damage::Length)?)
     }
 
     /// Fills the buffer with a chunk's records, and compares their checksum.
-    fn check_chunk(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
-        let (n_record_bytes, checksum) = self.chunk_head(body_at, n_bytes)?;
-        let max_bytes = MAX_CHUNK_BYTES;
-        if n_record_bytes > max_bytes {
-            return Err(Damage::TooLarge { max_bytes }.into());
+    fn check_chunk(&mut self, body_at: u64, n_bytes: u64) -> Result<Home, Bad> {
+        let head = self.chunk_head(body_at, n_bytes)?;
+        match head.home {
+            Home::At(at) => self.fill_buffer(at, head.n_record_bytes)?,
+            Home::Packed(packed) => self.unpack(packed)?,
         }
-        #[expect(clippy::cast_possible_truncation, reason = "at most a chunk")]
-        self.buffer.resize(n_record_bytes as usize, 0);
-        self.source
-            .read_at(body_at + CHUNK_HEAD_BYTES, &mut self.buffer)?;
         // Nought stands for no checksum.
-        if checksum == 0 || crc32fast::hash(&self.buffer) == checksum {
-            Ok(())
+        if head.checksum == 0 || crc32fast::hash(&self.buffer) == head.checksum {
+            Ok(head.home)
         } else {
             Err(Damage::Checksum.into())
         }
+    }
+
+    /// At most a chunk.
+    fn fill_buffer(&mut self, at: u64, n_bytes: u64) -> Result<(), Bad> {
+        #[expect(clippy::cast_possible_truncation, reason = "at most a chunk")]
+        self.buffer.resize(n_bytes as usize, 0);
+        Ok(self.source.read_at(at, &mut self.buffer)?)
+    }
+
+    fn unpack(&mut self, packed: Packed) -> Result<(), Bad> {
+        if packed.n_record_bytes > self.inflation_left {
+            let max_bytes = max_inflated(self.n_bytes);
+            return Err(Damage::Inflated { max_bytes }.into());
+        }
+        self.inflation_left -= packed.n_record_bytes;
+        self.fill_buffer(packed.at, packed.n_stored_bytes)?;
+        self.buffer = inflate(packed.compression, &self.buffer, packed.n_record_bytes)?;
+        Ok(())
+    }
+
+    /// A schema outside of chunks, before the first of them: messages stand there, too, if it is whole.
+    fn schema(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
+        if self.has_chunk || n_bytes > WINDOW_BYTES {
+            return Err(Damage::Kind.into());
+        }
+        let body = self.head_bytes(body_at, n_bytes).map_err(Bad::Io)?;
+        let mut rest = Rest(&body);
+        let is_whole = rest.u16().is_some_and(|id| id != 0)
+            && rest.text().is_some()
+            && rest.text().is_some()
+            && rest.u32().and_then(|n| rest.take(n.into())).is_some()
+            && rest.0.is_empty();
+        self.is_loose |= is_whole;
+        Ok(if is_whole { Ok(()) } else { Err(Damage::Kind) }?)
+    }
+
+    /// Takes the channel or the message at the place of the scan, outside of chunks.
+    fn loose(&mut self, n_body_bytes: u64) -> Result<(), Bad> {
+        let max_bytes = MAX_CHUNK_BYTES;
+        if n_body_bytes > max_bytes {
+            return Err(Damage::TooLarge { max_bytes }.into());
+        }
+        self.fill_buffer(self.at, HEAD_BYTES + n_body_bytes)?;
+        let mut rest = Rest(&self.buffer);
+        let (opcode, body) = rest.record().ok_or(Damage::Length)?;
+        let channel = Rest(body).u16().ok_or(Damage::Length)?;
+        if opcode == MESSAGE && !self.found.has_channel(channel) {
+            return Err(Damage::Kind.into());
+        }
+        let is_taken = self.found.chunk(Home::At(self.at), &self.buffer);
+        Ok(is_taken.ok_or(Damage::Length)?)
+    }
+
+    /// Compares the checksum of all data, which is the only one of messages outside of chunks.
+    fn data_end(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
+        let body = self
+            .head_bytes(body_at, n_bytes.min(CHECKSUM_BYTES))
+            .map_err(Bad::Io)?;
+        let checksum = Rest(&body).u32().unwrap_or(0);
+        self.has_data_end = true;
+        if self.is_loose && checksum != 0 && checksum != self.checksum_of(0, self.at)? {
+            self.lose(Loss::Changed);
+        }
+        Ok(())
+    }
+
+    /// Checksum of bytes of the file, a window at a time.
+    fn checksum_of(&self, from: u64, to: u64) -> Result<u32, Bad> {
+        let mut hasher = crc32fast::Hasher::new();
+        let mut at = from;
+        while at < to {
+            let window = self.head_bytes(at, WINDOW_BYTES.min(to - at)).map_err(Bad::Io)?;
+            hasher.update(&window);
+            at += window.len() as u64;
+        }
+        Ok(hasher.finalize())
     }
 
     /// Path of an attached file and place of its bytes, after a look at its first ones.
@@ -239,6 +362,7 @@ impl Scan<'_> {
             return Err(Damage::Length.into());
         }
         let span = Span {
+            packed: None,
             at: body_at + n_head_bytes,
             n_bytes: n_data_bytes,
         };
@@ -255,17 +379,10 @@ impl Scan<'_> {
     fn check_file(&self, body_at: u64, n_bytes: u64) -> Result<(String, Span), Bad> {
         let (path, span) = self.file_head(body_at, n_bytes)?;
         let end = span.at + span.n_bytes;
-        let mut hasher = crc32fast::Hasher::new();
-        let mut at = body_at;
-        while at < end {
-            let window = self.head_bytes(at, WINDOW_BYTES.min(end - at)).map_err(Bad::Io)?;
-            hasher.update(&window);
-            at += window.len() as u64;
-        }
         let mut checksum = [0; size_of::<u32>()];
         self.source.read_at(end, &mut checksum)?;
         let checksum = u32::from_le_bytes(checksum);
-        if checksum != 0 && checksum != hasher.finalize() {
+        if checksum != 0 && checksum != self.checksum_of(body_at, end)? {
             return Err(Damage::Checksum.into());
         }
         Ok((path, span))
@@ -331,7 +448,7 @@ impl Scan<'_> {
         }
         self.trials_left -= n_bytes;
         let tried = match opcode {
-            CHUNK => self.check_chunk(body_at, n_bytes),
+            CHUNK => self.check_chunk(body_at, n_bytes).map(|_| ()),
             _ => self.check_file(body_at, n_bytes).map(|_| ()),
         };
         match tried {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use app_core::session::Session;
 use clap::Parser;
 use desk::files::Folder;
-use desk::import::{Format, Lacking, read, write};
+use desk::import::{Format, Lacking, Written, read, write};
 use desk::program::exit_code;
 
 /// Make a session of another program's recording. What its format does not tell is asked for by name. Video is taken as
@@ -30,9 +30,13 @@ fn main() -> ExitCode {
 
 fn run(args: &Args) -> anyhow::Result<()> {
     let folder = Folder::open(&args.recording)?;
-    let imported = read(args.format, &folder, &folder.paths()?)?;
-    let name = args.recording.file_name().unwrap_or_default().to_string_lossy();
-    let capture = write(&name, &folder, &imported, &args.lacking, &args.out)?;
+    let imported = read(args.format, &folder, &folder.paths()?, args.lacking.object)?;
+    let recording = args.recording.canonicalize()?;
+    let name = recording.file_name().unwrap_or_default().to_string_lossy();
+    let Written { capture, notes } = write(&name, &folder, &imported, &args.lacking, &args.out)?;
+    for note in notes {
+        println!("note: {note}");
+    }
     println!(
         "{}: {} frames, {} plates",
         args.out.display(),

@@ -6,10 +6,10 @@ use app_scene::geometry::bounds::Bounds;
 use glam::{DMat4, DVec2, DVec3, UVec2};
 
 use super::pixel;
+use crate::doubts;
 
-/// Sizes of a toy and distances to it that are no mistake, in metres.
+/// Sizes of a toy that are no mistake, in metres.
 const TOY_M: [f64; 2] = [0.005, 3.0];
-const CAMERA_M: [f64; 2] = [0.03, 30.0];
 
 /// What a session does without, and what is made of it.
 pub(super) fn without(scene: &Scene) -> Vec<String> {
@@ -30,12 +30,12 @@ pub(super) fn without(scene: &Scene) -> Vec<String> {
 
 /// Of the session as a whole.
 pub(super) fn wrong(scene: &Scene) -> Vec<String> {
-    let mut wrong = Vec::new();
+    let mut wrong = doubts::of_scene(scene);
     if let Some(corners) = corners(scene, &scene.world_from_object) {
         let toy_m = corners[0].distance(corners[7]);
         if !(TOY_M[0]..=TOY_M[1]).contains(&toy_m) {
             wrong.push(format!(
-                "toy.world_from_object: the toy is {toy_m:.3} m from corner to corner: lengths are in metres, and the matrix holds the scale of the model"
+                "toy.world_from_object: the toy is {toy_m:.3} m from corner to corner: lengths are in metres, and the matrix holds the scale of the model, such as 0.001 for one in millimetres"
             ));
         }
     }
@@ -54,15 +54,8 @@ pub(super) fn wrong_of_frame(scene: &Scene, index: usize, frame: &SessionFrame) 
     let Some(corners) = corners(scene, &frame.world_from_object) else {
         return vec![format!("frames[{index}]: the toy cannot be posed")];
     };
-    let mut wrong = Vec::new();
+    let mut wrong = doubts::of_frame(scene, index, frame);
     let camera = &frame.camera;
-    let centre = 0.5 * (corners[0] + corners[7]);
-    let camera_m = camera.world_from_camera.w_axis.truncate().distance(centre);
-    if !(CAMERA_M[0]..=CAMERA_M[1]).contains(&camera_m) {
-        wrong.push(format!(
-            "frames[{index}].world_from_camera: the camera is {camera_m:.3} m from the toy: lengths are in metres"
-        ));
-    }
     let size_px = UVec2::new(scene.width_px, scene.height_px).as_dvec2();
     let before_camera: Vec<DVec2> = corners
         .iter()

@@ -1,5 +1,6 @@
 //! What is wrong with what is imported: always the file, the field and the reason.
 
+use app_core::scene::FieldError;
 use app_core::session::FileError;
 use thiserror::Error;
 
@@ -32,8 +33,11 @@ pub enum ImportReason {
     #[error("missing")]
     Missing,
     /// It is not a number, or not a finite one.
-    #[error("{0:?} is not a finite number")]
+    #[error("{0:?} is not a finite number of at most {max:e}", max = super::imported::MAX_NUMBER)]
     NotANumber(String),
+    /// A time that no clock shows.
+    #[error("{0} is no time in seconds: it must be from -1e10 to 1e10")]
+    NotATime(f64),
     /// A list of another length.
     #[error("{n} numbers, {expected} are needed")]
     Length {
@@ -45,20 +49,116 @@ pub enum ImportReason {
     /// Four numbers near nought.
     #[error("the quaternion has no direction")]
     NoRotation,
+    /// Nine numbers that are no rotation.
+    #[error("the matrix is no rotation")]
+    NotARotation,
     /// A camera of another kind.
     #[error(
-        "{0:?}: only pinholes with the radial terms k1 and k2 can be taken; undistort the pictures first"
+        "{0:?}: that camera model cannot be taken: undistort the pictures first, as `colmap image_undistorter` or `ns-process-data` do"
     )]
     Lens(String),
+    /// A lens with which no picture can be undistorted.
+    #[error("the lens {lens}: {reason}; undistort the pictures first")]
+    Folds {
+        /// Its coefficients.
+        lens: String,
+        /// Why.
+        reason: FieldError,
+    },
     /// No frame has both a pose and a picture.
-    #[error("no frame with a pose has a picture")]
-    NoFrames,
+    #[error("no frame with a pose has a picture{}", looked_for(first))]
+    NoFrames {
+        /// The first picture that is named; none if the format does not name any.
+        first: Option<String>,
+    },
     /// More than are taken.
     #[error("more than {0} frames")]
     TooMany(usize),
+    /// Two frames whose paths lead to one picture.
+    #[error(
+        "this picture is found at {0:?}, as another frame's is: the folder must hold both, as deep as the paths say"
+    )]
+    Twice(String),
+    /// Pictures that may be counted from 0 or from 1.
+    #[error(
+        "the pictures are numbered from {} to {}, the frames from 0 to {last_frame}: which picture is the first frame's cannot be known; extract all frames, and number them from 0, as by `ffmpeg -start_number 0`",
+        numbers[0],
+        numbers[1]
+    )]
+    Numbering {
+        /// First and last.
+        numbers: [u64; 2],
+        /// Of the index.
+        last_frame: u64,
+    },
     /// Neither PNG nor JPEG, or damaged.
     #[error("neither a PNG nor a JPEG whose size can be read")]
     NotAPicture,
+    /// A picture of another size than the others.
+    #[error(
+        "it is {} x {} px, but {first} is {} x {} px: all pictures of a session have one size",
+        size_px[0],
+        size_px[1],
+        first_px[0],
+        first_px[1]
+    )]
+    Sizes {
+        /// Its size.
+        size_px: [u32; 2],
+        /// The first picture.
+        first: String,
+        /// And its size.
+        first_px: [u32; 2],
+    },
+    /// A picture that is no smaller version of what the intrinsics are of.
+    #[error(
+        "it is {} x {} px, but its intrinsics are of {} x {} px, which are no multiple of it: give the pictures that the cameras were found with, neither cropped nor turned",
+        size_px[0],
+        size_px[1],
+        stated_px[0],
+        stated_px[1]
+    )]
+    Aspect {
+        /// Its size.
+        size_px: [u32; 2],
+        /// That of the index.
+        stated_px: [f64; 2],
+    },
+    /// A picture whose middle is far from the principal point.
+    #[error(
+        "it is {} x {} px, but its principal point is at ({}, {}) px, far from the middle: give pictures of the size that the intrinsics are of",
+        size_px[0],
+        size_px[1],
+        centre_px[0],
+        centre_px[1]
+    )]
+    Centre {
+        /// Its size.
+        size_px: [u32; 2],
+        /// The principal point.
+        centre_px: [f64; 2],
+    },
+    /// A file that ends too early, or holds something else.
+    #[error("it ends too early, or is none of that kind, at byte {0}")]
+    Cut(usize),
+    /// A count that the file has no room for, or that is too large.
+    #[error("{0} of them do not fit into the file")]
+    Count(u64),
+    /// A camera that is not in the list.
+    #[error("camera {0} is not in the list of cameras")]
+    NoCamera(u64),
+    /// Several objects, of which nobody said which is the toy.
+    #[error("the scene has the objects {0}: say which is the toy by --object")]
+    Objects(String),
+    /// A mesh that cannot be taken.
+    #[error("{0}")]
+    Mesh(String),
+}
+
+fn looked_for(first: &Option<String>) -> String {
+    first.as_ref().map_or(String::new(), |path| {
+        format!(": the first is looked for as {path:?}")
+    })
 }
 
 impl ImportError {

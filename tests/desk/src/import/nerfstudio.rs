@@ -1,28 +1,21 @@
-//! nerfstudio's `transforms.json`, in and out.
+//! nerfstudio's `transforms.json`, and that of instant-ngp.
 //!
 //! Camera axes are OpenGL's, which are ours; the world has +Z up; matrices are written row by row. Principal points are
-//! taken as they are: `cx` is half the width in the middle. Times, scale and the scene itself are not in it.
+//! taken as they are: `cx` is half the width in the middle. Scale and the scene itself are not in it, and times hardly ever.
 
-use std::path::Path;
-
-use anyhow::Context;
-use app_core::session::Files;
 use glam::{DMat4, DVec3, DVec4};
 use serde::Deserialize;
-use serde_json::{Value, json};
 
 use super::error::{ImportError, ImportReason};
-use super::{Imported, ImportedFrame, has, number, whole};
-use crate::files::SESSION_FILE;
-use crate::output::{make_folder, write_whole};
-use crate::stored::Stored;
-
-/// No picture of a session is larger.
-const MAX_FILE_BYTES: u64 = 512 << 20;
+use super::imported::{Imported, ImportedFrame};
+use super::lens::Lens;
+use super::paths::{Known, Taken};
+use super::values::{number, ordered, time_s, without_picture};
 
 #[derive(Deserialize)]
 struct Transforms {
     camera_model: Option<String>,
+    is_fisheye: Option<bool>,
     #[serde(flatten)]
     camera: Projection,
     frames: Vec<Frame>,
@@ -54,102 +47,152 @@ struct Frame {
     camera: Projection,
 }
 
-pub(super) fn parse(file: &str, text: &str, paths: &[String]) -> Result<Imported, ImportError> {
+/// Which of OpenCV's models the coefficients are of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Model {
+    Brown,
+    Fisheye,
+}
+
+pub(super) fn parse(file: &str, text: &str, known: &Known) -> Result<Imported, ImportError> {
     let transforms: Transforms =
         serde_json::from_str(text).map_err(|error| ImportError::new(file, "the file", error))?;
-    if let Some(model) = &transforms.camera_model
-        && !["OPENCV", "PINHOLE", "SIMPLE_PINHOLE"].contains(&model.as_str())
-    {
-        return Err(ImportError::new(
+    let model = model(file, &transforms)?;
+    let mut frames = Vec::new();
+    let mut missing = Vec::new();
+    let mut taken = Taken::new();
+    for (index, frame) in transforms.frames.iter().enumerate() {
+        let Some(image) = known.picture(&frame.file_path, &[]) else {
+            missing.push(frame.file_path.clone());
+            continue;
+        };
+        let field = |name: &str| format!("frames[{index}].{name}");
+        if !taken.take(&image, &frame.file_path) {
+            return Err(ImportError::new(
+                file,
+                field("file_path"),
+                ImportReason::Twice(image),
+            ));
+        }
+        let cameras = Cameras {
             file,
-            "camera_model",
-            ImportReason::Lens(model.clone()),
-        ));
+            both: [&frame.camera, &transforms.camera],
+        };
+        let time = frame.time.map(|time| time_s(file, &field("time"), time));
+        frames.push(ImportedFrame {
+            time_s: time.transpose()?,
+            image,
+            intrinsics: cameras.intrinsics()?,
+            size_px: cameras.size_px()?,
+            lens: cameras.lens(model)?,
+            recorded_from_camera: matrix(file, &field("transform_matrix"), &frame.transform_matrix)?,
+        });
     }
-    let lens = lens(file, "", &transforms.camera)?;
-    let frame = |(index, frame): (usize, &Frame)| {
-        let image = image_path(&frame.file_path, paths)?;
-        Some((|| {
-            let field = |name: &str| format!("frames[{index}].{name}");
-            if self::lens(file, &field(""), &frame.camera)?.is_some_and(|own| Some(own) != lens) {
-                let reason = ImportReason::Lens("a lens of a frame's own".to_owned());
-                return Err(ImportError::new(file, field("k1"), reason));
-            }
-            let time_s = frame.time.map(|time_s| number(file, &field("time"), time_s));
-            Ok(ImportedFrame {
-                time_s: time_s.transpose()?,
-                image,
-                intrinsics: intrinsics(file, [&frame.camera, &transforms.camera])?,
-                recorded_from_camera: matrix(file, &field("transform_matrix"), &frame.transform_matrix)?,
-            })
-        })())
-    };
-    let frames = transforms.frames.iter().enumerate().filter_map(frame);
+    let notes = without_picture(&missing, transforms.frames.len());
     Ok(Imported {
-        frames: whole(file, frames.collect::<Result<_, _>>()?)?,
-        lens,
+        frames: ordered(file, frames, missing.into_iter().next())?,
         up: Some(DVec3::Z),
         is_metric: false,
+        recorded_from_object: None,
+        notes: notes.into_iter().collect(),
     })
 }
 
-/// As written, without `./`, and as instant-ngp has it without an ending.
-fn image_path(path: &str, paths: &[String]) -> Option<String> {
-    let path = path.strip_prefix("./").unwrap_or(path);
-    let names = ["", ".png", ".jpg", ".jpeg"].map(|ending| format!("{path}{ending}"));
-    names.into_iter().find(|name| has(paths, name))
-}
-
-fn lens(file: &str, prefix: &str, camera: &Projection) -> Result<Option<[f64; 2]>, ImportError> {
-    let others = [
-        ("k3", camera.k3),
-        ("k4", camera.k4),
-        ("p1", camera.p1),
-        ("p2", camera.p2),
+fn model(file: &str, transforms: &Transforms) -> Result<Model, ImportError> {
+    const BROWN: [&str; 6] = [
+        "OPENCV",
+        "FULL_OPENCV",
+        "PINHOLE",
+        "SIMPLE_PINHOLE",
+        "SIMPLE_RADIAL",
+        "RADIAL",
     ];
-    if let Some((name, Some(value))) = others
-        .into_iter()
-        .find(|(_, value)| value.is_some_and(|value| value != 0.0))
-    {
-        let reason = ImportReason::Lens(format!("{name} = {value}"));
-        return Err(ImportError::new(file, format!("{prefix}{name}"), reason));
-    }
-    let terms = [camera.k1, camera.k2].map(|term| term.unwrap_or(0.0));
-    for term in terms {
-        number(file, &format!("{prefix}k1, k2"), term)?;
-    }
-    Ok((terms != [0.0; 2]).then_some(terms))
+    const FISHEYE: [&str; 3] = ["OPENCV_FISHEYE", "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE"];
+    let named = match transforms.camera_model.as_deref() {
+        None => Model::Brown,
+        Some(name) if BROWN.contains(&name) => Model::Brown,
+        Some(name) if FISHEYE.contains(&name) => Model::Fisheye,
+        Some(name) => {
+            let reason = ImportReason::Lens(name.to_owned());
+            return Err(ImportError::new(file, "camera_model", reason));
+        }
+    };
+    // What instant-ngp has in place of a model.
+    Ok(match transforms.is_fisheye {
+        Some(true) => Model::Fisheye,
+        _ => named,
+    })
 }
 
-/// Of the first of two that states it.
-fn intrinsics(file: &str, cameras: [&Projection; 2]) -> Result<[f64; 4], ImportError> {
-    let of = |name: &str, get: fn(&Projection) -> Option<f64>| {
-        let value = cameras.into_iter().find_map(get);
-        value.map(|value| number(file, name, value)).transpose()
-    };
-    let missing = |name: &str| ImportError::new(file, name, ImportReason::Missing);
-    let [width, height] = [of("w", |camera| camera.w)?, of("h", |camera| camera.h)?];
-    let by_angle = match (of("camera_angle_x", |camera| camera.camera_angle_x)?, width) {
-        (Some(angle_rad), Some(width)) => Some(number(
-            file,
-            "camera_angle_x",
-            0.5 * width / (0.5 * angle_rad).tan(),
-        )?),
-        _ => None,
-    };
-    let fx = of("fl_x", |camera| camera.fl_x)?
-        .or(by_angle)
-        .ok_or_else(|| missing("fl_x"))?;
-    Ok([
-        fx,
-        of("fl_y", |camera| camera.fl_y)?.unwrap_or(fx),
-        of("cx", |camera| camera.cx)?
-            .or(width.map(|width| 0.5 * width))
-            .ok_or_else(|| missing("cx"))?,
-        of("cy", |camera| camera.cy)?
-            .or(height.map(|height| 0.5 * height))
-            .ok_or_else(|| missing("cy"))?,
-    ])
+/// A frame's camera, and that of all, of which the first counts that states a number.
+struct Cameras<'a> {
+    file: &'a str,
+    both: [&'a Projection; 2],
+}
+
+impl Cameras<'_> {
+    fn stated(&self, name: &str, get: fn(&Projection) -> Option<f64>) -> Result<Option<f64>, ImportError> {
+        let value = self.both.into_iter().find_map(get);
+        value.map(|value| number(self.file, name, value)).transpose()
+    }
+
+    fn size_px(&self) -> Result<Option<[f64; 2]>, ImportError> {
+        let [w, h] = [
+            self.stated("w", |camera| camera.w)?,
+            self.stated("h", |camera| camera.h)?,
+        ];
+        Ok(w.zip(h).map(|(w, h)| [w, h]))
+    }
+
+    fn lens(&self, model: Model) -> Result<Lens, ImportError> {
+        let term = |name, get| Ok(self.stated(name, get)?.unwrap_or(0.0));
+        let radial = [
+            term("k1", |camera| camera.k1)?,
+            term("k2", |camera| camera.k2)?,
+            term("k3", |camera| camera.k3)?,
+            term("k4", |camera| camera.k4)?,
+        ];
+        let tangential = [term("p1", |camera| camera.p1)?, term("p2", |camera| camera.p2)?];
+        Ok(match model {
+            Model::Fisheye => Lens::Fisheye(radial),
+            Model::Brown => Lens::Brown {
+                radial,
+                divisor: [0.0; 3],
+                tangential,
+            },
+        })
+    }
+
+    fn intrinsics(&self) -> Result<[f64; 4], ImportError> {
+        let missing = |name: &str| ImportError::new(self.file, name, ImportReason::Missing);
+        let [width, height] = [
+            self.stated("w", |camera| camera.w)?,
+            self.stated("h", |camera| camera.h)?,
+        ];
+        let angle = self.stated("camera_angle_x", |camera| camera.camera_angle_x)?;
+        let by_angle = match (angle, width) {
+            (Some(angle_rad), Some(width)) => Some(number(
+                self.file,
+                "camera_angle_x",
+                0.5 * width / (0.5 * angle_rad).tan(),
+            )?),
+            _ => None,
+        };
+        let fx = self
+            .stated("fl_x", |camera| camera.fl_x)?
+            .or(by_angle)
+            .ok_or_else(|| missing("fl_x"))?;
+        Ok([
+            fx,
+            self.stated("fl_y", |camera| camera.fl_y)?.unwrap_or(fx),
+            self.stated("cx", |camera| camera.cx)?
+                .or(width.map(|width| 0.5 * width))
+                .ok_or_else(|| missing("cx"))?,
+            self.stated("cy", |camera| camera.cy)?
+                .or(height.map(|height| 0.5 * height))
+                .ok_or_else(|| missing("cy"))?,
+        ])
+    }
 }
 
 /// Three or four rows of four.
@@ -170,54 +213,4 @@ fn matrix(file: &str, field: &str, rows: &[Vec<f64>]) -> Result<DMat4, ImportErr
         *row = DVec4::from_array(four);
     }
     Ok(DMat4::from_cols(all[0], all[1], all[2], all[3]).transpose())
-}
-
-/// Writes a session's frames as a folder with `transforms.json`. Toy, receivers, lights and plates have no place in it.
-///
-/// # Errors
-/// When `out` is there already, the session cannot be read, or the system refuses.
-pub fn write_transforms(session: &Stored, out: &Path) -> anyhow::Result<()> {
-    anyhow::ensure!(!out.exists(), "{}: is there already", out.display());
-    let index = session.read(SESSION_FILE, MAX_FILE_BYTES).context(SESSION_FILE)?;
-    let index: Value = serde_json::from_slice(&index).context(SESSION_FILE)?;
-    let shared = &index["intrinsics"];
-    let z_up_from_y_up = DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2);
-    let mut frames = Vec::new();
-    for (place, frame) in index["frames"].as_array().into_iter().flatten().enumerate() {
-        let at = || format!("{SESSION_FILE} (frames[{place}])");
-        let columns: [f64; 16] =
-            serde_json::from_value(frame["world_from_camera"].clone()).with_context(at)?;
-        let path = frame["image"].as_str().with_context(at)?;
-        let file = out.join(path);
-        if !file.exists() {
-            let picture = session
-                .read(path, MAX_FILE_BYTES)
-                .with_context(|| path.to_owned())?;
-            make_folder(file.parent().unwrap_or(out))?;
-            write_whole(&file, &picture)?;
-        }
-        let rows = (z_up_from_y_up * DMat4::from_cols_array(&columns))
-            .transpose()
-            .to_cols_array_2d();
-        let own = if frame["intrinsics"].is_null() {
-            shared
-        } else {
-            &frame["intrinsics"]
-        };
-        frames.push(json!({
-            "file_path": path, "transform_matrix": rows, "time": frame["time"],
-            "fl_x": own["fx"], "fl_y": own["fy"], "cx": own["cx"], "cy": own["cy"],
-        }));
-    }
-    let lens = &index["lens"];
-    let term = |name: &str| lens[name].as_f64().unwrap_or(0.0);
-    let transforms = json!({
-        "camera_model": "OPENCV", "w": index["width"], "h": index["height"],
-        "fl_x": shared["fx"], "fl_y": shared["fy"], "cx": shared["cx"], "cy": shared["cy"],
-        "k1": term("k1"), "k2": term("k2"), "p1": 0.0, "p2": 0.0, "frames": frames,
-    });
-    Ok(write_whole(
-        &out.join("transforms.json"),
-        &serde_json::to_vec_pretty(&transforms)?,
-    )?)
 }

@@ -6,12 +6,20 @@
 use serde::Deserialize;
 
 use super::error::{ImportError, ImportReason};
-use super::{Imported, ImportedFrame, number, picture, pose, whole};
+use super::imported::{Imported, ImportedFrame};
+use super::lens::Lens;
+use super::paths::Known;
+use super::values::{number, ordered, pose, time_s as time, without_picture};
+
+/// Folders that pictures may be in.
+const FOLDERS: [&str; 3] = ["rgbd/", "rgb/", ""];
 
 #[derive(Deserialize)]
 struct Metadata {
     #[serde(default, rename = "K")]
     matrix: Vec<f64>,
+    w: Option<f64>,
+    h: Option<f64>,
     fps: Option<f64>,
     poses: Vec<Vec<f64>>,
     #[serde(default, rename = "perFrameIntrinsicCoeffs")]
@@ -20,47 +28,85 @@ struct Metadata {
     times_s: Option<Vec<f64>>,
 }
 
-pub(super) fn parse(file: &str, text: &str, paths: &[String]) -> Result<Imported, ImportError> {
+pub(super) fn parse(file: &str, text: &str, known: &Known) -> Result<Imported, ImportError> {
     let metadata: Metadata =
         serde_json::from_str(text).map_err(|error| ImportError::new(file, "the file", error))?;
-    let times_s = metadata.times_s.unwrap_or_default();
-    let intrinsics = metadata.intrinsics.unwrap_or_default();
-    let frame = |(index, numbers): (usize, &Vec<f64>)| {
-        let folders = ["rgbd/", "rgb/", ""].into_iter();
-        let names = folders.flat_map(|folder| ["jpg", "png"].map(|kind| format!("{folder}{index}.{kind}")));
-        let image = picture(paths, names)?;
-        Some((|| {
-            let field = format!("poses[{index}]");
-            let &[qx, qy, qz, qw, x, y, z] = numbers.as_slice() else {
-                let reason = ImportReason::Length {
-                    n: numbers.len(),
-                    expected: "7",
-                };
-                return Err(ImportError::new(file, field, reason));
-            };
-            Ok(ImportedFrame {
-                time_s: time_s(file, index, &times_s, metadata.fps)?,
-                image,
-                intrinsics: match intrinsics.get(index) {
-                    Some(numbers) => of_frame(file, index, numbers)?,
-                    None => of_matrix(file, &metadata.matrix)?,
-                },
-                recorded_from_camera: pose(file, &field, [qx, qy, qz, qw], [x, y, z])?,
-            })
-        })())
-    };
-    let frames = metadata.poses.iter().enumerate().filter_map(frame);
+    let n_poses = metadata.poses.len();
+    let last_frame = n_poses.saturating_sub(1) as u64;
+    let first_number = first_number(file, known, last_frame)?;
+    let mut frames = Vec::new();
+    let mut missing = Vec::new();
+    for index in 0..n_poses {
+        let number = index as u64 + first_number;
+        let names = FOLDERS
+            .into_iter()
+            .flat_map(|folder| ["jpg", "png"].map(|kind| format!("{folder}{number}.{kind}")));
+        match known.first(names) {
+            Some(image) => frames.push(metadata.frame(file, index, image)?),
+            None => missing.push(format!("rgbd/{number}.jpg")),
+        }
+    }
+    let mut notes = Vec::from_iter(without_picture(&missing, n_poses));
+    if first_number > 0 {
+        notes.push("the pictures are counted from 1".to_owned());
+    }
     Ok(Imported {
-        frames: whole(file, frames.collect::<Result<_, _>>()?)?,
-        lens: None,
+        frames: ordered(file, frames, missing.into_iter().next())?,
         up: None,
         is_metric: true,
+        recorded_from_object: None,
+        notes,
     })
+}
+
+/// The number of the first frame's picture, by how many there are.
+fn first_number(file: &str, known: &Known, last_frame: u64) -> Result<u64, ImportError> {
+    let of_folders = FOLDERS.map(|folder| known.first_number(folder, [0, last_frame]));
+    if of_folders.contains(&Ok(1)) {
+        return Ok(1);
+    }
+    // More poses than pictures are usual: numbers from 1 that end before the last pose are ambiguous all the same.
+    match of_folders.into_iter().find_map(Result::err) {
+        Some(numbers) => Err(ImportError::new(
+            file,
+            "the pictures",
+            ImportReason::Numbering { numbers, last_frame },
+        )),
+        None => Ok(0),
+    }
+}
+
+impl Metadata {
+    fn frame(&self, file: &str, index: usize, image: String) -> Result<ImportedFrame, ImportError> {
+        let numbers = &self.poses[index];
+        let field = format!("poses[{index}]");
+        let &[qx, qy, qz, qw, x, y, z] = numbers.as_slice() else {
+            let reason = ImportReason::Length {
+                n: numbers.len(),
+                expected: "7",
+            };
+            return Err(ImportError::new(file, field, reason));
+        };
+        let intrinsics = self.intrinsics.iter().flatten().nth(index);
+        let times_s = self.times_s.as_deref().unwrap_or_default();
+        let size = |name, value: Option<f64>| value.map(|value| number(file, name, value)).transpose();
+        Ok(ImportedFrame {
+            time_s: time_s(file, index, times_s, self.fps)?,
+            image,
+            intrinsics: match intrinsics {
+                Some(numbers) => of_frame(file, index, numbers)?,
+                None => of_matrix(file, &self.matrix)?,
+            },
+            size_px: size("w", self.w)?.zip(size("h", self.h)?).map(|(w, h)| [w, h]),
+            lens: Lens::NONE,
+            recorded_from_camera: pose(file, &field, [qx, qy, qz, qw], [x, y, z])?,
+        })
+    }
 }
 
 fn time_s(file: &str, index: usize, times_s: &[f64], fps: Option<f64>) -> Result<Option<f64>, ImportError> {
     if let Some(time_s) = times_s.get(index) {
-        return number(file, &format!("frameTimestamps[{index}]"), *time_s).map(Some);
+        return time(file, &format!("frameTimestamps[{index}]"), *time_s).map(Some);
     }
     let Some(fps) = fps else { return Ok(None) };
     if fps.is_nan() || fps <= 0.0 {
@@ -70,8 +116,7 @@ fn time_s(file: &str, index: usize, times_s: &[f64], fps: Option<f64>) -> Result
             ImportReason::NotANumber(fps.to_string()),
         ));
     }
-    let time_s = index as f64 / fps;
-    number(file, "fps", time_s).map(Some)
+    time(file, "fps", index as f64 / fps).map(Some)
 }
 
 fn of_frame(file: &str, index: usize, numbers: &[f64]) -> Result<[f64; 4], ImportError> {

@@ -4,18 +4,25 @@
 //! the oldest have neither header, time nor number. There are blanks after commas, and empty columns at the end. The
 //! camera's axes are those of OpenCV (y down, z forward), ARKit's turned by half about x; the world is ARKit's, +Y up.
 
-use glam::{DMat4, DVec3};
+use glam::DVec3;
 
 use super::error::{ImportError, ImportReason};
-use super::{Imported, ImportedFrame, number, picture, pose, whole};
+use super::imported::{Imported, ImportedFrame};
+use super::lens::Lens;
+use super::paths::Known;
+use super::values::{OPENCV_FROM_CAMERA, number, ordered, pose, time_s, without_picture};
 
 pub(super) const ODOMETRY_FILE: &str = "odometry.csv";
 pub(super) const MATRIX_FILE: &str = "camera_matrix.csv";
 
+/// Where the video's frames are.
+const FOLDER: &str = "rgb/";
+/// No frame has a higher number.
+const MAX_FRAME: u64 = 1 << 32;
 /// Columns of a file that has no header.
 const OLDEST: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
 
-pub(super) fn parse(odometry: &str, matrix: Option<&str>, paths: &[String]) -> Result<Imported, ImportError> {
+pub(super) fn parse(odometry: &str, matrix: Option<&str>, known: &Known) -> Result<Imported, ImportError> {
     let mut lines = odometry
         .lines()
         .enumerate()
@@ -29,48 +36,44 @@ pub(super) fn parse(odometry: &str, matrix: Option<&str>, paths: &[String]) -> R
         None => OLDEST.to_vec(),
     };
     let shared = matrix.map(of_matrix).transpose()?;
+    let rows = lines.map(|(line, text)| Row {
+        line: line + 1,
+        header: &header,
+        cells: cells(text),
+    });
+    let numbered = rows
+        .enumerate()
+        .map(|(place, row)| Ok((row.frame(place as u64)?, row)));
+    let numbered = numbered.collect::<Result<Vec<_>, ImportError>>()?;
+    let frames = || numbered.iter().map(|(frame, _)| *frame);
+    let [first_frame, last_frame] = [frames().min(), frames().max()].map(|frame| frame.unwrap_or(0));
+    let first_number = known.first_number(FOLDER, [first_frame, last_frame]);
+    let first_number = first_number.map_err(|numbers| {
+        let reason = ImportReason::Numbering { numbers, last_frame };
+        ImportError::new(FOLDER, "the pictures", reason)
+    })?;
     let mut frames = Vec::new();
-    for (place, (line, text)) in lines.enumerate() {
-        let row = Row {
-            line: line + 1,
-            header: &header,
-            cells: cells(text),
-        };
-        let index = match row.cell("frame") {
-            Some(_) => row.number("frame")?,
-            None => place as f64,
-        };
-        let names = ["jpg", "jpeg", "png"].map(|kind| format!("rgb/{index:06}.{kind}"));
-        let Some(image) = picture(paths, names) else {
-            continue;
-        };
-        let camera = |name: &str| row.cell(name).map(|_| row.number(name)).transpose();
-        let own = [camera("fx")?, camera("fy")?, camera("cx")?, camera("cy")?];
-        let intrinsics = match (own, shared) {
-            ([Some(fx), Some(fy), Some(cx), Some(cy)], _) => [fx, fy, cx, cy],
-            (_, Some(shared)) => shared,
-            _ => return Err(ImportError::new(MATRIX_FILE, "the file", ImportReason::Missing)),
-        };
-        let quaternion = [
-            row.number("qx")?,
-            row.number("qy")?,
-            row.number("qz")?,
-            row.number("qw")?,
-        ];
-        let position = [row.number("x")?, row.number("y")?, row.number("z")?];
-        let recorded_from_opencv = pose(ODOMETRY_FILE, &row.field("qw"), quaternion, position)?;
-        frames.push(ImportedFrame {
-            time_s: camera("timestamp")?,
-            image,
-            intrinsics,
-            recorded_from_camera: recorded_from_opencv * DMat4::from_scale(DVec3::new(1.0, -1.0, -1.0)),
-        });
+    let mut missing = Vec::new();
+    for (frame, row) in &numbered {
+        let number = frame + first_number;
+        let names = ["jpg", "jpeg", "png"].map(|kind| format!("{FOLDER}{number:06}.{kind}"));
+        match known.first(names) {
+            Some(image) => frames.push(row.imported(image, shared)?),
+            None => missing.push(format!("{FOLDER}{number:06}.jpg")),
+        }
+    }
+    let mut notes = Vec::from_iter(without_picture(&missing, numbered.len()));
+    if first_number > 0 {
+        notes.push(format!(
+            "the pictures in {FOLDER} are counted from 1, the frames from 0"
+        ));
     }
     Ok(Imported {
-        frames: whole(ODOMETRY_FILE, frames)?,
-        lens: None,
+        frames: ordered(ODOMETRY_FILE, frames, missing.into_iter().next())?,
         up: Some(DVec3::Y),
         is_metric: true,
+        recorded_from_object: None,
+        notes,
     })
 }
 
@@ -91,6 +94,61 @@ struct Row<'a> {
 }
 
 impl<'a> Row<'a> {
+    /// The number of its frame, or its place if there is no such column.
+    fn frame(&self, place: u64) -> Result<u64, ImportError> {
+        let Some(cell) = self.cell("frame") else {
+            return Ok(place);
+        };
+        let wrong = || {
+            let reason = ImportReason::NotANumber(cell.to_owned());
+            ImportError::new(ODOMETRY_FILE, self.field("frame"), reason)
+        };
+        let number: u64 = cell.parse().map_err(|_| wrong())?;
+        if number < MAX_FRAME {
+            Ok(number)
+        } else {
+            Err(wrong())
+        }
+    }
+
+    fn imported(&self, image: String, shared: Option<[f64; 4]>) -> Result<ImportedFrame, ImportError> {
+        let camera = |name: &str| self.cell(name).map(|_| self.number(name)).transpose();
+        let own = [camera("fx")?, camera("fy")?, camera("cx")?, camera("cy")?];
+        let intrinsics = match (own, shared) {
+            ([Some(fx), Some(fy), Some(cx), Some(cy)], _) => [fx, fy, cx, cy],
+            (_, Some(shared)) => shared,
+            _ => return Err(ImportError::new(MATRIX_FILE, "the file", ImportReason::Missing)),
+        };
+        let quaternion = [
+            self.number("qx")?,
+            self.number("qy")?,
+            self.number("qz")?,
+            self.number("qw")?,
+        ];
+        let position = [self.number("x")?, self.number("y")?, self.number("z")?];
+        let recorded_from_opencv = pose(ODOMETRY_FILE, &self.field("qw"), quaternion, position)?;
+        Ok(ImportedFrame {
+            time_s: self.time_s()?,
+            image,
+            intrinsics,
+            size_px: None,
+            lens: Lens::NONE,
+            recorded_from_camera: recorded_from_opencv * OPENCV_FROM_CAMERA,
+        })
+    }
+
+    fn time_s(&self) -> Result<Option<f64>, ImportError> {
+        let Some(cell) = self.cell("timestamp") else {
+            return Ok(None);
+        };
+        let field = self.field("timestamp");
+        let reason = || ImportReason::NotANumber(cell.to_owned());
+        let value = cell
+            .parse()
+            .map_err(|_| ImportError::new(ODOMETRY_FILE, field.clone(), reason()))?;
+        time_s(ODOMETRY_FILE, &field, value).map(Some)
+    }
+
     fn field(&self, name: &str) -> String {
         format!("line {}, {name}", self.line)
     }

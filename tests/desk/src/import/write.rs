@@ -1,26 +1,21 @@
 //! A session made of what a format tells and of what somebody says beside it.
 
 use std::fs;
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
+use app_core::session::Capture;
 use app_core::session::record::{
-    BackgroundRecord, CaptureRecord, Encoding, FrameRecord, Index, IntrinsicsRecord, LensRecord, PoseRecord,
-    ToyRecord,
+    BackgroundRecord, CaptureRecord, Encoding, FrameRecord, Index, PoseRecord, ToyRecord,
 };
-use app_core::session::{Capture, Files};
 use glam::{DMat4, DQuat, DVec3};
-use image::ImageReader;
 use serde::de::DeserializeOwned;
 
-use super::error::{ImportError, ImportReason};
-use super::{Imported, ImportedFrame};
+use super::imported::{Imported, ImportedFrame};
+use super::pictures::{Fitted, fit};
+use super::ply::glb_of_ply_file;
 use crate::files::{Folder, SESSION_FILE};
 use crate::output::{make_folder, write_whole};
-
-/// No picture and no toy of a session is larger.
-const MAX_FILE_BYTES: u64 = 512 << 20;
 
 /// Frames that show the place without the toy, counted from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,10 +29,14 @@ pub enum PlateFrames {
 /// What no format tells; world is the session's, +Y up and in metres.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct Lacking {
-    /// The toy's model, a .glb
+    /// The toy's model: a .glb, or a .ply, which is converted
     #[arg(long, value_name = "FILE")]
     pub toy: Option<PathBuf>,
-    /// Where the toy stands: 16 numbers, column by column, object space to world, with blanks or commas between them
+    /// Which object is the toy, in a scene of several
+    #[arg(long, value_name = "NUMBER")]
+    pub object: Option<u32>,
+    /// Where the toy stands: 16 numbers, column by column, object space to world, with blanks or commas between them; a scene of bop
+    /// tells it
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     pub world_from_object: Option<String>,
     /// A plane that catches the shadow, as an entry of `receivers`; may be given several times
@@ -66,7 +65,10 @@ impl Lacking {
         let has_times = imported.frames.iter().all(|frame| frame.time_s.is_some());
         let needed = [
             ("--toy FILE", self.toy.is_none()),
-            ("--world-from-object NUMBERS", self.world_from_object.is_none()),
+            (
+                "--world-from-object NUMBERS",
+                self.world_from_object.is_none() && imported.recorded_from_object.is_none(),
+            ),
             ("--receiver JSON", self.receiver.is_empty()),
             ("--light JSON|none", self.light.is_empty()),
             ("--plates A-B|none", self.plates.is_none()),
@@ -111,6 +113,29 @@ impl Lacking {
     }
 }
 
+impl Lacking {
+    fn world_from_object(&self, imported: &Imported) -> anyhow::Result<[f64; 16]> {
+        if let Some(text) = &self.world_from_object {
+            return numbers("--world-from-object", text);
+        }
+        let (rotation, metres) = self.world_from_recorded(imported)?;
+        let world_from_recorded =
+            DMat4::from_scale_rotation_translation(DVec3::splat(metres), rotation, DVec3::ZERO);
+        let recorded_from_object = imported.recorded_from_object.context("--world-from-object")?;
+        Ok((world_from_recorded * recorded_from_object).to_cols_array())
+    }
+
+    /// The toy's file as a .glb.
+    fn toy(&self) -> anyhow::Result<Vec<u8>> {
+        let toy = self.toy.as_deref().context("--toy")?;
+        let bytes = fs::read(toy).with_context(|| toy.display().to_string())?;
+        if bytes.starts_with(b"ply") {
+            return glb_of_ply_file(toy, &bytes).with_context(|| toy.display().to_string());
+        }
+        Ok(bytes)
+    }
+}
+
 fn numbers<const N: usize>(argument: &str, text: &str) -> anyhow::Result<[f64; N]> {
     let texts = text.split([',', ' ', '[', ']']).filter(|text| !text.is_empty());
     let numbers = texts.map(|text| {
@@ -133,6 +158,14 @@ fn entries<T: DeserializeOwned>(argument: &str, texts: &[String]) -> anyhow::Res
         .collect()
 }
 
+/// A session that was written.
+pub struct Written {
+    /// As it is read.
+    pub capture: Capture,
+    /// What was left out or taken otherwise than written, for people.
+    pub notes: Vec<String>,
+}
+
 /// Writes a session's folder of a recording, and opens it.
 ///
 /// # Errors
@@ -143,7 +176,7 @@ pub fn write(
     imported: &Imported,
     lacking: &Lacking,
     out: &Path,
-) -> anyhow::Result<Capture> {
+) -> anyhow::Result<Written> {
     let missing = lacking.missing(imported);
     ensure!(
         missing.is_empty(),
@@ -151,56 +184,40 @@ pub fn write(
         missing.join(", ")
     );
     ensure!(!out.exists(), "{}: is there already", out.display());
-    let index = index(name, files, imported, lacking)?;
-    let toy = lacking.toy.as_deref().context("--toy")?;
-    let toy = fs::read(toy).with_context(|| toy.display().to_string())?;
+    let fitted = fit(files, imported)?;
+    let index = index(name, imported, &fitted, lacking)?;
+    let toy = lacking.toy()?;
     make_folder(out)?;
     if files.holds(out)? {
         fs::remove_dir(out)?;
         bail!("{}: lies in the recording itself", out.display());
     }
     write_whole(&out.join("toy.glb"), &toy)?;
-    for frame in &imported.frames {
-        let file = out.join(&frame.image);
+    for (place, frame) in imported.frames.iter().enumerate() {
+        let file = out.join(fitted.path(&frame.image));
         make_folder(file.parent().unwrap_or(out))?;
-        let picture = files
-            .read(&frame.image, MAX_FILE_BYTES)
-            .with_context(|| frame.image.clone())?;
-        write_whole(&file, &picture)?;
+        write_whole(&file, &fitted.picture(files, imported, place)?)?;
     }
     write_whole(
         &out.join(SESSION_FILE),
         &serde_json::to_vec_pretty(&Index::from(index))?,
     )?;
-    Ok(Capture::open(Folder::open(out)?)?)
+    let notes = imported.notes.iter().chain(&fitted.notes).cloned();
+    Ok(Written {
+        notes: notes.collect(),
+        capture: Capture::open(Folder::open(out)?)?,
+    })
 }
 
 /// `capture.json`.
 fn index(
     name: &str,
-    files: &Folder,
     imported: &Imported,
+    fitted: &Fitted,
     lacking: &Lacking,
 ) -> anyhow::Result<CaptureRecord> {
-    let first = imported.frames.first().context("no frame")?;
-    let [width, height] = size_px(files, &first.image)?;
-    let (rotation, metres) = lacking.world_from_recorded(imported)?;
-    let begin_s = first.time_s.unwrap_or(0.0);
-    let entry = |(place, frame): (usize, &ImportedFrame)| {
-        let counted_s = lacking.fps.map_or(0.0, |fps| place as f64 / fps);
-        let time_s = frame.time_s.map_or(counted_s, |time_s| time_s - begin_s);
-        let (_, of_camera, position) = frame.recorded_from_camera.to_scale_rotation_translation();
-        let world_from_camera =
-            DMat4::from_rotation_translation(rotation * of_camera, rotation * (metres * position));
-        FrameRecord {
-            time: time_s,
-            image: frame.image.clone(),
-            intrinsics: Some(projection(frame.intrinsics)),
-            world_from_camera: world_from_camera.to_cols_array(),
-            ..FrameRecord::default()
-        }
-    };
-    let mut frames: Vec<_> = imported.frames.iter().enumerate().map(entry).collect();
+    let mut frames = frames(imported, fitted, lacking)?;
+    let first = fitted.intrinsics.first().context("no frame")?;
     let plates: Vec<FrameRecord> = match lacking.plate_frames()? {
         PlateFrames::None => Vec::new(),
         PlateFrames::Frames(first, last) => {
@@ -215,20 +232,16 @@ fn index(
         intrinsics: frame.intrinsics,
         world_from_camera: frame.world_from_camera,
     };
-    let place: [f64; 16] = numbers(
-        "--world-from-object",
-        lacking.world_from_object.as_deref().unwrap_or_default(),
-    )?;
     Ok(CaptureRecord {
         name: name.to_owned(),
-        width,
-        height,
+        width: fitted.size_px[0],
+        height: fitted.size_px[1],
         encoding: Encoding::Srgb,
-        intrinsics: projection(first.intrinsics),
-        lens: imported.lens.map(|[k1, k2]| LensRecord { k1, k2: Some(k2) }),
+        intrinsics: first.into(),
+        lens: fitted.lens,
         toy: ToyRecord {
             file: "toy.glb".to_owned(),
-            world_from_object: place,
+            world_from_object: lacking.world_from_object(imported)?,
             physical_pose: PoseRecord::default(),
             resting: None,
         },
@@ -241,18 +254,24 @@ fn index(
     })
 }
 
-fn projection([fx, fy, cx, cy]: [f64; 4]) -> IntrinsicsRecord {
-    IntrinsicsRecord { fx, fy, cx, cy }
-}
-
-/// By the picture's header.
-fn size_px(files: &Folder, path: &str) -> anyhow::Result<[u32; 2]> {
-    let bytes = files
-        .read(path, MAX_FILE_BYTES)
-        .with_context(|| path.to_owned())?;
-    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
-    let (width, height) = reader
-        .into_dimensions()
-        .map_err(|_| ImportError::new(path, "the file", ImportReason::NotAPicture))?;
-    Ok([width, height])
+/// Entries of all frames, plates included.
+fn frames(imported: &Imported, fitted: &Fitted, lacking: &Lacking) -> anyhow::Result<Vec<FrameRecord>> {
+    let first = imported.frames.first().context("no frame")?;
+    let (rotation, metres) = lacking.world_from_recorded(imported)?;
+    let begin_s = first.time_s.unwrap_or(0.0);
+    let entry = |(place, frame): (usize, &ImportedFrame)| {
+        let counted_s = lacking.fps.map_or(0.0, |fps| place as f64 / fps);
+        let time_s = frame.time_s.map_or(counted_s, |time_s| time_s - begin_s);
+        let (_, of_camera, position) = frame.recorded_from_camera.to_scale_rotation_translation();
+        let world_from_camera =
+            DMat4::from_rotation_translation(rotation * of_camera, rotation * (metres * position));
+        FrameRecord {
+            time: time_s,
+            image: fitted.path(&frame.image),
+            intrinsics: fitted.intrinsics.get(place).map(Into::into),
+            world_from_camera: world_from_camera.to_cols_array(),
+            ..FrameRecord::default()
+        }
+    };
+    Ok(imported.frames.iter().enumerate().map(entry).collect())
 }

@@ -76,7 +76,7 @@ fn a_good_session_has_nothing_wrong_and_is_drawn() {
 fn each_wrong_session_is_told_by_its_field() {
     type Change = fn(&mut Value);
     #[rustfmt::skip] // One case a line.
-    let cases: [(&str, Change, &str); 6] = [
+    let cases: [(&str, Change, &str); 9] = [
         ("key", |index| index["toy"]["scale"] = json!(2.0), "capture.json (toy.scale)"),
         (
             "millimetres",
@@ -97,6 +97,22 @@ fn each_wrong_session_is_told_by_its_field() {
             },
             "the toy is behind the camera",
         ),
+        (
+            "cameras",
+            |index| {
+                for list in ["frames", "backgrounds"] {
+                    for entry in index[list].as_array_mut().unwrap() {
+                        for axis in 12..15 {
+                            let metres = entry["world_from_camera"][axis].as_f64().unwrap();
+                            entry["world_from_camera"][axis] = json!(1e3 * metres);
+                        }
+                    }
+                }
+            },
+            "lengths are in metres: if it is given in millimetres, multiply its last column by 0.001",
+        ),
+        ("bulb", |index| index["lights"][0]["radius"] = json!(50.0), "lights[0].radius: the bulb's radius is 50 m, but its middle is only"),
+        ("exposure", |index| index["frames"][0]["exposure"] = json!(4.0), "frames[0].exposure: an exposure of 4 is stated, but the picture is"),
         ("light", |index| index["lights"][0]["position"][1] = json!(-1.0), "lights[0]: it is above none of the receivers"),
         ("file", |index| index["frames"][1]["image"] = json!("gone.png"), "gone.png"),
         ("pose", off, "toy.world_from_object: the outline is"),
@@ -109,6 +125,21 @@ fn each_wrong_session_is_told_by_its_field() {
             "{name}: {wrong:?}"
         );
     }
+}
+
+#[test]
+fn a_grey_frame_of_a_coloured_place_is_told() {
+    let session = changed("grey", |_| {});
+    let path = session.0.join("frame_0000.png");
+    let grey = image::open(&path).unwrap().into_luma8();
+    grey.save(&path).unwrap();
+    let expected = "frames[0].image: the picture is grey, but a plate has colours";
+    let is_told = |wrong: Vec<String>| wrong.iter().any(|line| line.starts_with(expected));
+    assert!(is_told(wrong(&session.0)));
+    // Both grey are one camera's.
+    let plate = session.0.join("background_0000.png");
+    image::open(&plate).unwrap().into_luma8().save(&plate).unwrap();
+    assert!(!is_told(wrong(&session.0)));
 }
 
 /// Keys that are told as unknown in an index without files.

@@ -5,4 +5,5 @@ mod damage;
 mod killed;
 mod library;
 mod limits;
+mod rewritten;
 mod small;

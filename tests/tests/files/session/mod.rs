@@ -206,7 +206,7 @@ fn each_wrong_value_is_named() {
         ("backgrounds[0].intrinsics.fy", json!(0), "0 is not from"),
         ("backgrounds", json!(vec![plate; 513]), "has 513 entries, but at most 512"),
         ("frames[0].animation.clip", json!("Wafe"), "none is called \"Wafe\"; it has Wave"),
-        ("frames[0].animation.time", json!(-0.1), "-0.1 is not from 0"),
+        ("frames[0].animation.time", json!(-0.1), "-0.1 s is not from 0 s to"),
         ("probe.focal_length", json!(0), "0 is not from"),
         ("probe.facets[0].at", json!(1.5), "1.5 is not from"),
         ("probe.pictures[0].exposure_ratio", json!(2), "2 is not from"),

@@ -1,10 +1,10 @@
-//! Recordings of other programs: what each format is known to do otherwise, one by one.
+//! Texts of nerfstudio, Record3D and Stray Scanner.
 
 use std::path::Path;
 
 use app_core::session::Session;
 use desk::files::{BUNDLED_SESSION, Folder};
-use desk::import::{Format, ImportError, Imported, Lacking, parse, read, write, write_transforms};
+use desk::import::{Format, ImportError, Imported, Lacking, Lens, parse, read, write, write_transforms};
 use desk::stored::Stored;
 use glam::{DMat4, DQuat, DVec3};
 use harness::bundled_session;
@@ -36,13 +36,17 @@ fn stray(odometry: &str) -> Result<Imported, ImportError> {
         "rgb/000002.png",
         "rgb/000003.jpg",
     ]);
-    parse(Format::StrayScanner, [odometry, MATRIX], &pictures)
+    parse(
+        Format::StrayScanner,
+        [odometry, MATRIX].map(str::as_bytes),
+        &pictures,
+    )
 }
 
 fn record3d(metadata: &str) -> Result<Imported, ImportError> {
     parse(
         Format::Record3d,
-        [metadata, ""],
+        [metadata.as_bytes(), b""],
         &paths(&["rgbd/0.jpg", "rgbd/1.jpg"]),
     )
 }
@@ -50,7 +54,7 @@ fn record3d(metadata: &str) -> Result<Imported, ImportError> {
 fn nerfstudio(transforms: &str) -> Result<Imported, ImportError> {
     parse(
         Format::Nerfstudio,
-        [transforms, ""],
+        [transforms.as_bytes(), b""],
         &paths(&["images/a.png", "images/b.jpg"]),
     )
 }
@@ -131,7 +135,8 @@ fn nerfstudio_has_rows_and_z_up_and_its_own_intrinsics() {
     let imported = nerfstudio(TRANSFORMS).unwrap();
     assert_eq!(imported.up, Some(DVec3::Z));
     assert!(!imported.is_metric);
-    assert_eq!(imported.lens, Some([-0.05, 0.01]));
+    assert_eq!(imported.frames[0].lens, Lens::radial([-0.05, 0.01, 0.0, 0.0]));
+    assert_eq!(imported.frames[0].size_px, Some([640.0, 480.0]));
     assert_eq!(imported.frames[1].image, "images/b.jpg");
     assert_eq!(imported.frames[1].intrinsics, [510.0, 501.0, 320.0, 240.0]);
     let pose = imported.frames[0].recorded_from_camera;
@@ -149,10 +154,10 @@ fn errors_name_file_field_and_reason() {
         (stray(&ODOMETRY.replace("000003, 0.1", "000003, inf")), "odometry.csv (line 5, x): \"inf\" is not a finite number"),
         (record3d(&METADATA.replace(",1,2,3]", ",1,2]")), "metadata (poses[1]): 6 numbers, 7 are needed"),
         (record3d("{}"), "metadata (the file): missing field `poses`"),
-        (nerfstudio(&TRANSFORMS.replace("OPENCV", "OPENCV_FISHEYE")), "transforms.json (camera_model): \"OPENCV_FISHEYE\": only pinholes"),
-        (nerfstudio(&TRANSFORMS.replace("\"p2\":0", "\"p2\":0.1")), "transforms.json (p2): \"p2 = 0.1\": only pinholes"),
+        (nerfstudio(&TRANSFORMS.replace("OPENCV", "EQUIRECTANGULAR")), "transforms.json (camera_model): \"EQUIRECTANGULAR\": that camera model cannot be taken: undistort the pictures first"),
+        (nerfstudio(&TRANSFORMS.replace("\"time\":0.5", "\"time\":1.7e18")), "transforms.json (frames[1].time): 1700000000000000000 is no time in seconds"),
         (nerfstudio(&TRANSFORMS.replace("[0,0,1,6]", "[0,0,1]")), "transforms.json (frames[1].transform_matrix): 3 numbers, 4 are needed"),
-        (parse(Format::Record3d, [METADATA, ""], &[]), "metadata (the frames): no frame with a pose has a picture"),
+        (parse(Format::Record3d, [METADATA.as_bytes(), b""], &[]), "metadata (the frames): no frame with a pose has a picture: the first is looked for as \"rgbd/0.jpg\""),
     ];
     for (result, expected) in cases {
         let error = result.err().map(|error| error.to_string()).unwrap_or_default();
@@ -207,7 +212,7 @@ fn the_bundled_session_comes_back_from_nerfstudio() {
     let [there, back] = ["there", "back"].map(|name| folder.0.join(name));
     write_transforms(&Stored::open(BUNDLED_SESSION).unwrap(), &there).unwrap();
     let files = Folder::open(&there).unwrap();
-    let imported = read(Format::Nerfstudio, &files, &files.paths().unwrap()).unwrap();
+    let imported = read(Format::Nerfstudio, &files, &files.paths().unwrap(), None).unwrap();
     let given = bundled_session();
     let error = write("llama", &files, &imported, &Lacking::default(), &back)
         .err()
@@ -239,7 +244,9 @@ fn the_bundled_session_comes_back_from_nerfstudio() {
         metres: Some(1.0),
         ..Lacking::default()
     };
-    let capture = write("llama", &files, &imported, &lacking, &back).unwrap();
+    let capture = write("llama", &files, &imported, &lacking, &back)
+        .unwrap()
+        .capture;
     assert_eq!(
         (capture.n_frames() + 1, capture.scene().plates.len()),
         (given.n_frames(), 1)
