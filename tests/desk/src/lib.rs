@@ -21,3 +21,4 @@ pub mod replay;
 pub mod report;
 pub mod shaders;
 pub mod stored;
+pub mod toy_file;

@@ -18,6 +18,7 @@ use super::error::{ImportError, ImportReason};
 use super::{Imported, ImportedFrame};
 use crate::files::{Folder, SESSION_FILE};
 use crate::output::{make_folder, write_whole};
+use crate::toy_file::read_toy;
 
 /// No picture and no toy of a session is larger.
 const MAX_FILE_BYTES: u64 = 512 << 20;
@@ -153,7 +154,7 @@ pub fn write(
     ensure!(!out.exists(), "{}: is there already", out.display());
     let index = index(name, files, imported, lacking)?;
     let toy = lacking.toy.as_deref().context("--toy")?;
-    let toy = fs::read(toy).with_context(|| toy.display().to_string())?;
+    let toy = read_toy(toy)?;
     make_folder(out)?;
     if files.holds(out)? {
         fs::remove_dir(out)?;
