@@ -53,7 +53,7 @@ pub(super) fn read_tree(bytes: &[u8]) -> Result<Tree<'_>, Flaw> {
     // Some exporters pad with zeros in place of blanks.
     let n_bytes = text
         .iter()
-        .rposition(|byte| *byte != 0)
+        .rposition(|byte| *byte != 0 && !byte.is_ascii_whitespace())
         .map_or(0, |last| last + 1);
     let json: Value = serde_json::from_slice(&text[..n_bytes])
         .map_err(|error| ToyProblem::Json(error.to_string()).at(JSON_CHUNK))?;

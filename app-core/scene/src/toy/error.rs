@@ -297,12 +297,6 @@ pub(super) struct Flaw {
     problem: ToyProblem,
 }
 
-impl fmt::Display for Flaw {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.field, self.problem)
-    }
-}
-
 impl Flaw {
     /// The field and the reason.
     pub(super) fn parts(&self) -> (String, String) {

@@ -64,7 +64,7 @@ pub(super) fn refusal(bytes: &[u8]) -> Option<Flaw> {
         None if is_obj(text) => Some(("an OBJ model", BLENDER)),
         None => None,
     };
-    kind.map(|kind| flaw(kind))
+    kind.map(flaw)
 }
 
 /// The refusal of glTF 1.0.

@@ -67,7 +67,7 @@ pub(super) fn apply(shape: &mut Shape, looks: &Looks, warnings: &mut Vec<ToyWarn
     let cut = loop {
         let finest = |part: &Part| Finest {
             texels: texels as f32,
-            length: (FINEST * size / part.scale.max(f64::MIN_POSITIVE)) as f32,
+            length: FINEST * size / part.scale.max(f64::MIN_POSITIVE),
         };
         match all_cut(shape.geometries, &parts, finest) {
             Some(cut) => break cut,

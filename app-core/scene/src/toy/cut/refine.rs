@@ -17,7 +17,7 @@ use crate::toy::geometry::Geometry;
 pub(super) struct Finest {
     pub(super) texels: f32,
     /// In units of the file.
-    pub(super) length: f32,
+    pub(super) length: f64,
 }
 
 /// A vertex on the line between two before it.
@@ -99,7 +99,7 @@ impl Mesh {
     fn marked(&self, field: &Field, finest: &Finest, is_open: &[bool]) -> HashMap<Edge, u32> {
         let is_long = |edge: &Edge| {
             let [a, b] = edge.map(|vertex| self.places[vertex as usize]);
-            self.texels(field, *edge) > finest.texels && a.distance(b) > finest.length
+            self.texels(field, *edge) > finest.texels && f64::from(a.distance(b)) > finest.length
         };
         let open = self
             .triangles
