@@ -9,6 +9,7 @@ pub mod frame;
 pub mod geometry;
 pub mod grain;
 pub mod lens;
+pub mod picture;
 pub mod scene;
 pub mod sharpness;
 pub mod things;

@@ -258,7 +258,8 @@ fn read_index(files: &dyn Files) -> Result<CaptureRecord, SessionError> {
     let bytes = files
         .read(INDEX_FILE, MAX_INDEX_BYTES)
         .map_err(|error| SessionError::new(INDEX_FILE, WHOLE_FILE, error))?;
-    parse_index(&bytes)
+    // Some editors mark the text's encoding, which JSON knows nothing of.
+    parse_index(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes))
 }
 
 /// Checks format and version first: another version may break every other rule.

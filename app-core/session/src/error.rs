@@ -79,6 +79,14 @@ pub enum PictureError {
     /// Not one of the two formats.
     #[error("neither PNG nor JPEG")]
     Format,
+    /// Another format that is known.
+    #[error("the picture is {format}, and only PNG and JPEG are read: {way_out}")]
+    OtherFormat {
+        /// What it is.
+        format: &'static str,
+        /// What makes a picture of it that is read.
+        way_out: &'static str,
+    },
     /// Another size than the session's; checked before anything is decoded.
     #[error(
         "the picture is {width_px} x {height_px} px, but the session's is {expected_width_px} x {expected_height_px} px"

@@ -92,7 +92,10 @@ fn decode(bytes: &[u8], size: PictureSize) -> Result<DynamicImage, PictureError>
         }
         decode_sized(decoder, size)
     } else {
-        Err(PictureError::Format)
+        Err(match app_scene::picture::kind(bytes) {
+            Some((format, way_out)) => PictureError::OtherFormat { format, way_out },
+            None => PictureError::Format,
+        })
     }
 }
 

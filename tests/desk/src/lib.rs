@@ -23,3 +23,4 @@ mod replay_error;
 pub mod report;
 pub mod shaders;
 pub mod stored;
+pub mod toy_file;

@@ -9,14 +9,15 @@ use gltf::json::{Index, Root, buffer};
 
 use super::check::{check_finite, check_limit, check_range};
 use super::component::{float_decoder, integer_decoder};
-use super::container::{allowed, get};
+use super::container::{Container, allowed, get};
 use super::error::{Flaw, ToyProblem};
 use super::limits::{MAX_DECODED_VALUES, NUMBER, UV};
+use super::uv_transform::UvTransform;
 
-/// The JSON tree with its binary chunk, and how much has been decoded from it.
+/// The JSON tree with its binary data, and how much has been decoded from it.
 pub(super) struct Source<'a> {
     pub(super) root: &'a Root,
-    bin: &'a [u8],
+    container: &'a Container<'a>,
     n_decoded: Cell<usize>,
 }
 
@@ -36,12 +37,22 @@ impl Layout {
 }
 
 impl<'a> Source<'a> {
-    pub(super) fn new(root: &'a Root, bin: &'a [u8]) -> Self {
+    pub(super) fn new(container: &'a Container<'_>) -> Self {
         Self {
-            root,
-            bin,
+            root: &container.root,
+            container,
             n_decoded: Cell::new(0),
         }
+    }
+
+    /// The extension of a texture that is in a format that is not read alone.
+    pub(super) fn unread_texture(&self, texture: usize) -> Option<&'static str> {
+        self.container.extras.unread_textures.get(&texture).copied()
+    }
+
+    /// How a material moves texture coordinates.
+    pub(super) fn uv_transform(&self, material: Option<usize>) -> Option<&UvTransform> {
+        self.container.extras.uv_transforms.get(&material?)
     }
 
     /// Adds `n_values` to the numbers that this file fills memory with.
@@ -116,17 +127,20 @@ impl<'a> Source<'a> {
     ) -> Result<(&'a [u8], Option<usize>), Flaw> {
         let view = get(self.root, field, index, "buffer view")?;
         let field = format!("bufferViews[{}]", index.value());
-        let buffer = get(self.root, &field, view.buffer, "buffer")?;
-        if buffer.uri.is_some() || view.buffer.value() != 0 {
-            return Err(ToyProblem::External.at(format!("buffers[{}]", view.buffer.value())));
+        let stride = view.byte_stride.map(|stride| stride.0);
+        if let Some(bytes) = self.container.decompressed.get(&index.value()) {
+            return Ok((bytes, stride));
         }
+        get(self.root, &field, view.buffer, "buffer")?;
+        let buffer = view.buffer.value();
+        let bytes = self.container.buffers.get(buffer).and_then(Option::as_deref);
         let bytes = range(
             &field,
-            self.bin,
+            bytes.ok_or_else(|| ToyProblem::External.at(format!("buffers[{buffer}]")))?,
             view.byte_offset.unwrap_or_default().0,
             view.byte_length.0,
         )?;
-        Ok((bytes, view.byte_stride.map(|stride| stride.0)))
+        Ok((bytes, stride))
     }
 
     fn decode<T: Copy + Default>(

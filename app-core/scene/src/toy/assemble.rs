@@ -9,8 +9,9 @@ use gltf::json::mesh::{Mesh, Primitive};
 
 use super::accessor::Source;
 use super::check::{check_count, check_limit};
-use super::container::{self, check_extensions, get};
-use super::error::{Flaw, ToyProblem, ToyWarning};
+use super::container::{self, get};
+use super::cut::{self, Looks, Shape};
+use super::error::{Flaw, ToyProblem};
 use super::geometry::{self, Geometry};
 use super::limits::{MAX_INDICES, MAX_TRIANGLES, MAX_VERTICES};
 use super::material::{self, Material, tex_coord};
@@ -18,21 +19,22 @@ use super::outward::turn_outward;
 use super::rig::{Rig, RigPose, Set};
 use super::shadow_indices::ShadowIndices;
 use super::surface::{Surface, is_mirrored, lay_out};
-use super::{Toy, clip, graph, skin};
+use super::warning::ToyWarning;
+use super::{Toy, clip, graph, instances, mirrored, skin};
 
 pub(super) fn assemble(file: &str, bytes: &[u8]) -> Result<Toy, Flaw> {
-    let container = container::open(bytes)?;
     let mut warnings = Vec::new();
-    check_extensions(&container.root, &mut warnings)?;
-    let source = Source::new(&container.root, &container.bin);
-    let graph = graph::read(source.root)?;
-    let clips = clip::read(&source, &graph, &mut warnings)?;
+    let mut container = container::open(bytes, &mut warnings)?;
+    instances::expand(&mut container)?;
+    let source = Source::new(&container);
+    let mut graph = graph::read(source.root, &mut warnings)?;
+    let clips = clip::read(&source, &mut graph, &container.extras.broken_clips, &mut warnings);
     let rig = Rig {
         skins: skin::read_skins(&source)?,
         graph,
         clips,
     };
-    let (geometries, surfaces) = read_scene(&source, &rig, &mut warnings)?;
+    let (mut geometries, mut surfaces) = read_scene(&source, &rig, &mut warnings)?;
 
     // Primitives without a material count as one past the last of the file.
     let mut is_used = vec![false; source.root.materials.len() + 1];
@@ -43,8 +45,20 @@ pub(super) fn assemble(file: &str, bytes: &[u8]) -> Result<Toy, Flaw> {
     if is_used[materials.len()] {
         materials.push(Material::DEFAULT);
     }
+    let mut shape = Shape {
+        rig: &rig,
+        rest: &rig.pose(&Set::Authored, DAffine3::IDENTITY),
+        geometries: &mut geometries,
+        surfaces: &mut surfaces,
+    };
+    let looks = Looks {
+        materials: &materials,
+        textures: &textures,
+    };
+    cut::apply(&mut shape, &looks, &mut warnings);
+    let is_mirrored = mirrored::by_clips(&rig, &geometries, &surfaces, &mut warnings);
     let draws = lay_out(&surfaces, &geometries);
-    let shadow_indices = ShadowIndices::new(&surfaces, &geometries, &draws.indices);
+    let shadow_indices = ShadowIndices::new(&surfaces, &geometries, &draws.indices, &is_mirrored);
     if shadow_indices.indices.is_empty() {
         return Err(ToyProblem::NoTriangles.at("meshes"));
     }

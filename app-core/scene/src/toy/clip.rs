@@ -1,5 +1,7 @@
 //! Animation clips: animated values of nodes, and durations.
 
+use std::collections::HashMap;
+
 use gltf::json::accessor::Type;
 use gltf::json::animation::{
     Animation, Channel as JsonChannel, Interpolation as JsonInterpolation, Property,
@@ -8,10 +10,11 @@ use gltf::json::animation::{
 use super::accessor::Source;
 use super::check::check_count;
 use super::container::{allowed, get};
-use super::error::{Flaw, ToyProblem, ToyWarning};
+use super::error::{Flaw, ToyProblem};
 use super::graph::{Graph, Local};
 use super::limits::{KEY_SECS, NUMBER};
 use super::track::{Interpolation, Track};
+use super::warning::ToyWarning;
 
 /// Index of a clip within its toy, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -30,6 +33,8 @@ pub struct Clip {
     pub name: Option<String>,
     /// Time of the last key; 0 or more.
     pub duration_secs: f64,
+    /// Why it cannot be read, if so.
+    pub(super) flaw: Option<String>,
     pub(super) channels: Vec<Channel>,
 }
 
@@ -40,60 +45,111 @@ pub(super) struct Channel {
     pub(super) track: Track,
 }
 
+/// Reads all clips; those that cannot be read hold nothing but the reason. Nodes that are given by a matrix and animated are
+/// taken apart in `graph`.
 pub(super) fn read(
     source: &Source,
-    graph: &Graph,
+    graph: &mut Graph,
+    broken: &HashMap<usize, String>,
     warnings: &mut Vec<ToyWarning>,
-) -> Result<Vec<Clip>, Flaw> {
-    let mut clips = Vec::with_capacity(source.root.animations.len());
+) -> Vec<Clip> {
+    let mut clips: Vec<Clip> = Vec::with_capacity(source.root.animations.len());
     for (i, animation) in source.root.animations.iter().enumerate() {
-        let mut channels = Vec::with_capacity(animation.channels.len());
-        for (j, channel) in animation.channels.iter().enumerate() {
-            let field = format!("animations[{i}].channels[{j}]");
-            let node = channel.target.node;
-            get(source.root, &field, node, "node")?;
-            let property = allowed(channel.target.path, &format!("{field}.target.path"))?;
-            let Some(width) = width(graph, node.value(), property, &field)? else {
-                warnings.push(ToyWarning::ChannelIgnored { field });
-                continue;
-            };
-            let track = read_track(source, animation, channel, &format!("animations[{i}]"), width)?;
-            if property == Property::Rotation
-                && let Some(element) = track.zero_rotation()
-            {
-                return Err(ToyProblem::ZeroRotation { element }.at(field));
+        let mut said = Vec::new();
+        let read = match broken.get(&i) {
+            Some(reason) => Err((format!("animations[{i}]"), reason.clone())),
+            None => read_channels(source, graph, animation, (i, &mut said)).map_err(|flaw| flaw.parts()),
+        };
+        let (channels, flaw) = match read {
+            Ok(channels) => (channels, None),
+            Err((field, reason)) => {
+                let flaw = format!("{field}: {reason}");
+                said = vec![ToyWarning::ClipIgnored { field, reason }];
+                (Vec::new(), Some(flaw))
             }
-            channels.push(Channel {
-                node: node.value(),
-                property,
-                track,
-            });
-        }
-        let duration_secs = channels
-            .iter()
-            .map(|channel| channel.track.end_secs())
-            .fold(0.0, f64::max);
-        clips.push(Clip {
+        };
+        warnings.append(&mut said);
+        let ends_secs = channels.iter().map(|channel| channel.track.end_secs());
+        let clip = Clip {
             name: animation.name.clone(),
-            duration_secs,
+            duration_secs: ends_secs.fold(0.0, f64::max),
+            flaw,
             channels,
+        };
+        let alike = |other: &Clip| clip.name.is_some() && other.name == clip.name;
+        if let (Some(first), Some(name)) = (clips.iter().position(alike), &clip.name) {
+            let (name, second) = (name.clone(), i);
+            warnings.push(ToyWarning::ClipsAlike { name, first, second });
+        }
+        clips.push(clip);
+    }
+    clips
+}
+
+fn read_channels(
+    source: &Source,
+    graph: &mut Graph,
+    animation: &Animation,
+    (i, warnings): (usize, &mut Vec<ToyWarning>),
+) -> Result<Vec<Channel>, Flaw> {
+    let mut channels = Vec::with_capacity(animation.channels.len());
+    for (j, channel) in animation.channels.iter().enumerate() {
+        let field = format!("animations[{i}].channels[{j}]");
+        let node = channel.target.node;
+        get(source.root, &field, node, "node")?;
+        let property = allowed(channel.target.path, &format!("{field}.target.path"))?;
+        let Some(width) = width(graph, node.value(), property) else {
+            warnings.push(ToyWarning::ChannelIgnored { field });
+            continue;
+        };
+        if property != Property::MorphTargetWeights {
+            take_apart(graph, node.value(), &field, warnings)?;
+        }
+        let mut track = read_track(source, animation, channel, &format!("animations[{i}]"), width)?;
+        if property == Property::Rotation {
+            let n = track.repair_rotations();
+            if n > 0 {
+                warnings.push(ToyWarning::RotationsRepaired { field, n });
+            }
+        }
+        channels.push(Channel {
+            node: node.value(),
+            property,
+            track,
         });
     }
-    Ok(clips)
+    Ok(channels)
 }
 
 /// Numbers of one value; `None` where the channel has nothing to move.
-fn width(graph: &Graph, node: usize, property: Property, field: &str) -> Result<Option<usize>, Flaw> {
-    let target = &graph.nodes[node];
-    let is_matrix = matches!(target.rest, Local::Matrix(_));
+fn width(graph: &Graph, node: usize, property: Property) -> Option<usize> {
     match property {
         Property::MorphTargetWeights => {
-            Ok((!target.morph_weights.is_empty()).then_some(target.morph_weights.len()))
+            let n_weights = graph.nodes[node].morph_weights.len();
+            (n_weights > 0).then_some(n_weights)
         }
-        _ if is_matrix => Err(ToyProblem::AnimatedMatrix { node }.at(field)),
-        Property::Rotation => Ok(Some(4)),
-        Property::Translation | Property::Scale => Ok(Some(3)),
+        Property::Rotation => Some(4),
+        Property::Translation | Property::Scale => Some(3),
     }
+}
+
+/// Takes the matrix of a node apart whose parts are animated.
+fn take_apart(
+    graph: &mut Graph,
+    node: usize,
+    field: &str,
+    warnings: &mut Vec<ToyWarning>,
+) -> Result<(), Flaw> {
+    let rest = &mut graph.nodes[node].rest;
+    if matches!(rest, Local::Matrix(_)) {
+        let trs = rest
+            .taken_apart()
+            .ok_or_else(|| ToyProblem::AnimatedMatrix { node }.at(field))?;
+        *rest = Local::Decomposed(trs);
+        let field = field.to_owned();
+        warnings.push(ToyWarning::MatrixDecomposed { field });
+    }
+    Ok(())
 }
 
 fn read_track(

@@ -1,36 +1,163 @@
-//! From bytes to glTF: the JSON tree and the binary chunk beside it.
+//! From bytes to glTF: the JSON tree, mended, and the binary data beside it.
 //!
 //! The tree is taken without the crate's own validation, which panics on a `POSITION` beyond the last accessor and
 //! refuses application-specific attributes.
 //! Each reference is therefore looked up with [`get`], and each enumeration opened with [`allowed`].
 
-use gltf::json::validation::Checked;
-use gltf::json::{self, Index, Root, root::Get};
+use std::borrow::Cow;
+use std::collections::HashMap;
 
+use gltf::json::validation::Checked;
+use gltf::json::{Index, Root, root::Get};
+use serde_json::Value;
+
+use super::base64::{self, Uri};
 use super::check::check_limit;
-use super::error::{Flaw, ToyProblem, ToyWarning};
-use super::limits::{MAX_FILE_BYTES, MAX_JSON_BYTES};
+use super::error::{Flaw, ToyProblem};
+use super::extensions::check_extensions;
+use super::foreign;
+use super::limits::{MAX_DECODED_VALUES, MAX_FILE_BYTES, MAX_JSON_BYTES};
+use super::mend::{self, CompressedView, Extras};
+use super::warning::ToyWarning;
 
 /// A glTF file taken apart, its references not yet checked.
 pub(super) struct Container<'a> {
     pub(super) root: Root,
-    pub(super) bin: std::borrow::Cow<'a, [u8]>,
+    /// The bytes of each buffer; `None` for those outside the file.
+    pub(super) buffers: Vec<Option<Cow<'a, [u8]>>>,
+    /// Buffer views that were compressed.
+    pub(super) decompressed: HashMap<usize, Vec<u8>>,
+    pub(super) extras: Extras,
+}
+
+/// A file's JSON tree as written, and its binary chunk.
+pub(super) struct Tree<'a> {
+    pub(super) json: Value,
+    pub(super) bin: Option<Cow<'a, [u8]>>,
 }
 
 const HEADER_BYTES: u32 = 12;
+const JSON_CHUNK: &str = "JSON chunk";
 
-pub(super) fn open(bytes: &[u8]) -> Result<Container<'_>, Flaw> {
+/// Reads binary glTF, or glTF as JSON alone.
+pub(super) fn read_tree(bytes: &[u8]) -> Result<Tree<'_>, Flaw> {
     check_limit("bytes", bytes.len(), MAX_FILE_BYTES, "file")?;
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let (text, bin) = if text.trim_ascii_start().starts_with(b"{") {
+        (Cow::Borrowed(text), None)
+    } else {
+        chunks(bytes)?
+    };
+    check_limit("bytes", text.len(), MAX_JSON_BYTES, JSON_CHUNK)?;
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
+    // Some exporters pad with zeros in place of blanks.
+    let n_bytes = text
+        .iter()
+        .rposition(|byte| *byte != 0 && !byte.is_ascii_whitespace())
+        .map_or(0, |last| last + 1);
+    let json: Value = serde_json::from_slice(&text[..n_bytes])
+        .map_err(|error| ToyProblem::Json(error.to_string()).at(JSON_CHUNK))?;
+    let version = json.pointer("/asset/version");
+    let is_first = match version.and_then(Value::as_str) {
+        Some(version) => version.starts_with("1."),
+        // Version 1.0 had names in place of numbers.
+        None => json.get("meshes").is_some_and(Value::is_object),
+    };
+    match is_first {
+        true => Err(foreign::first_version()),
+        false => Ok(Tree { json, bin }),
+    }
+}
+
+type Chunks<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);
+
+fn chunks(bytes: &[u8]) -> Result<Chunks<'_>, Flaw> {
+    if !bytes.starts_with(b"glTF") {
+        if let Some(refusal) = foreign::refusal(bytes) {
+            return Err(refusal);
+        }
+    } else if bytes.get(4..8) == Some(&[1, 0, 0, 0]) {
+        return Err(foreign::first_version());
+    }
     check_header_length(bytes)?;
-    let not_gltf = |error| ToyProblem::Container(Box::new(error));
-    let glb = gltf::Glb::from_slice(bytes).map_err(|error| not_gltf(error).at("file"))?;
-    check_limit("bytes", glb.json.len(), MAX_JSON_BYTES, "JSON chunk")?;
-    let root: Root = json::deserialize::from_slice(&glb.json)
-        .map_err(|error| not_gltf(gltf::Error::Deserialize(error)).at("JSON chunk"))?;
+    let not_gltf = |error| ToyProblem::Container(Box::new(error)).at("file");
+    let glb = gltf::Glb::from_slice(bytes).map_err(not_gltf)?;
+    Ok((glb.json, glb.bin))
+}
+
+/// Opens a file. `warnings` get what was repaired, and what is not followed.
+pub(super) fn open<'a>(bytes: &'a [u8], warnings: &mut Vec<ToyWarning>) -> Result<Container<'a>, Flaw> {
+    let Tree { mut json, bin } = read_tree(bytes)?;
+    check_extensions(&json, warnings)?;
+    let extras = mend::mend(&mut json, warnings)?;
+    let root: Root = serde_path_to_error::deserialize(json).map_err(|error| {
+        let problem = ToyProblem::Json(error.inner().to_string());
+        problem.at(format!("{JSON_CHUNK}: {}", error.path()))
+    })?;
+    let buffers = buffers(&root, bin)?;
+    let decompressed = decompressed(&extras.compressed, &buffers)?;
     Ok(Container {
         root,
-        bin: glb.bin.unwrap_or_default(),
+        buffers,
+        decompressed,
+        extras,
     })
+}
+
+fn buffers<'a>(root: &Root, bin: Option<Cow<'a, [u8]>>) -> Result<Vec<Option<Cow<'a, [u8]>>>, Flaw> {
+    let mut bin = Some(bin.unwrap_or_default());
+    let buffers = root.buffers.iter().enumerate().map(|(i, buffer)| {
+        let bytes = match buffer.uri.as_deref().map(base64::read) {
+            None if i == 0 => bin.take(),
+            Some(Uri::Data(bytes)) => Some(Cow::Owned(bytes)),
+            Some(Uri::Broken) => return Err(ToyProblem::DataUri.at(format!("buffers[{i}].uri"))),
+            None | Some(Uri::Elsewhere(_)) => None,
+        };
+        Ok(bytes)
+    });
+    buffers.collect()
+}
+
+/// Decodes the views that are compressed.
+fn decompressed(
+    views: &[CompressedView],
+    buffers: &[Option<Cow<'_, [u8]>>],
+) -> Result<HashMap<usize, Vec<u8>>, Flaw> {
+    let mut n_bytes = 0_usize;
+    let mut all = HashMap::new();
+    for view in views {
+        let field = format!("bufferViews[{}].extensions.{}", view.index, view.extension);
+        let how = view.how;
+        n_bytes = n_bytes.saturating_add(how.count.saturating_mul(how.stride));
+        check_limit(
+            "decoded numbers",
+            n_bytes / size_of::<f32>(),
+            MAX_DECODED_VALUES,
+            &field,
+        )?;
+        let buffer = buffers.get(view.buffer).ok_or_else(|| {
+            let (index, n) = (view.buffer, buffers.len());
+            ToyProblem::NoSuch {
+                what: "buffer",
+                index,
+                n,
+            }
+            .at(&field)
+        })?;
+        let buffer = buffer
+            .as_deref()
+            .ok_or_else(|| ToyProblem::External.at(format!("buffers[{}]", view.buffer)))?;
+        let end = view.offset.saturating_add(view.length);
+        let stream = buffer.get(view.offset..end).ok_or_else(|| {
+            let (end, available) = (end as u64, buffer.len());
+            ToyProblem::OutOfRange { end, available }.at(&field)
+        })?;
+        let bytes = how
+            .decode(stream)
+            .ok_or_else(|| ToyProblem::Compressed.at(&field))?;
+        all.insert(view.index, bytes);
+    }
+    Ok(all)
 }
 
 /// The container reader subtracts the header from the length it reads, which must not go below zero.
@@ -71,28 +198,4 @@ pub(super) fn allowed<T>(value: Checked<T>, field: &str) -> Result<T, Flaw> {
         Checked::Valid(value) => Ok(value),
         Checked::Invalid => Err(ToyProblem::NotAllowed.at(field)),
     }
-}
-
-/// Refuses extensions that move or encode vertices in ways not read here; warns of those that are not supported.
-pub(super) fn check_extensions(root: &Root, warnings: &mut Vec<ToyWarning>) -> Result<(), Flaw> {
-    // Supported, or without effect on a toy's shape and base colour.
-    const HARMLESS: [&str; 4] = [
-        "KHR_mesh_quantization",
-        "KHR_lights_punctual",
-        "KHR_materials_unlit",
-        "KHR_materials_specular",
-    ];
-    let is_look = |name: &str| name.starts_with("KHR_materials_") || name == "KHR_texture_transform";
-    for (i, name) in root.extensions_required.iter().enumerate() {
-        if !HARMLESS.contains(&name.as_str()) && !is_look(name) {
-            let problem = ToyProblem::Extension { name: name.clone() };
-            return Err(problem.at(format!("extensionsRequired[{i}]")));
-        }
-    }
-    let unfollowed = root
-        .extensions_used
-        .iter()
-        .filter(|name| !HARMLESS.contains(&name.as_str()));
-    warnings.extend(unfollowed.map(|name| ToyWarning::ExtensionIgnored { name: name.clone() }));
-    Ok(())
 }

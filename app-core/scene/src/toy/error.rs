@@ -60,6 +60,16 @@ pub enum ToyError {
         /// Number of nodes, counted from 0.
         n_nodes: usize,
     },
+    /// A clip that the file has, but that cannot be read.
+    #[error("{file}: clip {:?}: cannot be read: {reason}", Text(name).to_string())]
+    BrokenClip {
+        /// The file as named by the caller.
+        file: String,
+        /// The name asked for.
+        name: String,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A transform or a weight that no pose can be made of.
     #[error("{file}: pose: node {node}: {reason}")]
     NodePose {
@@ -94,7 +104,18 @@ pub enum ToyError {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ToyProblem {
-    /// Not the container or not the JSON that glTF asks for.
+    /// Another kind of file.
+    #[error("is {what}, not glTF 2.0: {way_out}")]
+    Foreign {
+        /// What it is.
+        what: &'static str,
+        /// What makes a toy of it.
+        way_out: &'static str,
+    },
+    /// Not the JSON that glTF asks for.
+    #[error("not glTF: {0}")]
+    Json(String),
+    /// Not the container that glTF asks for.
     #[error("not binary glTF: {0}")]
     Container(#[source] Box<gltf::Error>),
     /// The length in the header is impossible.
@@ -104,14 +125,33 @@ pub enum ToyProblem {
         found: u32,
     },
     /// A feature without which the file would look or move wrongly.
-    #[error("the file requires the extension {name:?}, which is not supported")]
+    #[error("the file requires the extension {name:?}, which is not supported: {way_out}")]
     Extension {
         /// Name of the extension.
         name: String,
+        /// How the file is written without it.
+        way_out: &'static str,
     },
     /// Data outside the file.
-    #[error("refers to data outside the file, which is not read")]
+    #[error(
+        "refers to data outside the file, which is not there: put the file beside its neighbours, or pack it with \
+         `npx @gltf-transform/cli copy IN.gltf OUT.glb`"
+    )]
     External,
+    /// A file beside the toy's that cannot be read.
+    #[error("{name}: {reason}")]
+    Neighbour {
+        /// Its name, as seen from the toy's file.
+        name: String,
+        /// What the caller said.
+        reason: String,
+    },
+    /// A data URI that is none.
+    #[error("is not a base64 data URI")]
+    DataUri,
+    /// A stream of meshopt that breaks its format.
+    #[error("the compressed data is broken, or shorter or longer than it says")]
+    Compressed,
     /// More than is allowed.
     #[error("{found} {what} are more than the {limit} allowed")]
     TooMany {
@@ -208,12 +248,6 @@ pub enum ToyProblem {
         /// The key at fault, from 0.
         key: usize,
     },
-    /// A quaternion of length zero.
-    #[error("rotation {element} is a quaternion of length zero")]
-    ZeroRotation {
-        /// The element at fault.
-        element: usize,
-    },
     /// A matrix whose last row is not 0 0 0 1.
     #[error("matrix {element} is not affine")]
     NotAffine {
@@ -221,7 +255,7 @@ pub enum ToyProblem {
         element: usize,
     },
     /// An animated node that is given by a matrix.
-    #[error("node {node} is given by a matrix, which glTF does not allow for an animated node")]
+    #[error("node {node} is given by a matrix that shears, which no animated node can have")]
     AnimatedMatrix {
         /// The node at fault.
         node: usize,
@@ -264,6 +298,11 @@ pub(super) struct Flaw {
 }
 
 impl Flaw {
+    /// The field and the reason.
+    pub(super) fn parts(&self) -> (String, String) {
+        (self.field.clone(), self.problem.to_string())
+    }
+
     pub(super) fn in_file(self, file: &str) -> ToyError {
         ToyError::Malformed {
             file: file.to_owned(),
@@ -271,80 +310,6 @@ impl Flaw {
             problem: self.problem,
         }
     }
-}
-
-/// An unsupported feature of a toy's file; the toy is usable all the same.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum ToyWarning {
-    /// Points and lines, whose shadows are not supported.
-    #[error("{field}: not made of triangles, left out")]
-    PrimitiveSkipped {
-        /// Path of the primitive.
-        field: String,
-    },
-    /// Skin weights that did not sum to one; they were scaled, or given to the first joint where all were 0.
-    #[error("meshes: the skin weights of {n_vertices} vertices did not sum to 1 and were repaired")]
-    WeightsRepaired {
-        /// Vertices touched, over the whole file.
-        n_vertices: usize,
-    },
-    /// Colours of vertices outside 0 to 1: clamped, as glTF asks for.
-    #[error("{field}: {n_vertices} colours were not from 0 to 1 and were clamped")]
-    ColorsClamped {
-        /// Path of the attribute.
-        field: String,
-        /// Vertices touched.
-        n_vertices: usize,
-    },
-    /// Normals of length zero: taken from the faces around them.
-    #[error("{field}: {n_vertices} normals had no length and were taken from the faces")]
-    NormalsFromFaces {
-        /// Path of the attribute.
-        field: String,
-        /// Vertices touched.
-        n_vertices: usize,
-    },
-    /// Normals that pointed away from the outer side of most of their faces: turned around.
-    #[error("{field}: {n_vertices} normals pointed into the toy and were turned around")]
-    NormalsInverted {
-        /// Path of the attribute.
-        field: String,
-        /// Vertices touched.
-        n_vertices: usize,
-    },
-    /// Closed pieces whose faces looked inwards: turned around.
-    #[error("{field}: {n_triangles} triangles of closed pieces faced inwards and were turned around")]
-    FacesInverted {
-        /// Path of the primitive.
-        field: String,
-        /// Triangles touched.
-        n_triangles: usize,
-    },
-    /// A skin on a primitive that has no joints: drawn rigid.
-    #[error("{field}: has a skin but no joints, drawn rigid")]
-    SkinIgnored {
-        /// Path of the primitive.
-        field: String,
-    },
-    /// A picture that is outside the file or neither PNG nor JPEG: the plain colour is used.
-    #[error("{field}: the image is not embedded PNG or JPEG, left out")]
-    ImageIgnored {
-        /// Path of the image.
-        field: String,
-    },
-    /// Animated weights on a node without morph targets.
-    #[error("{field}: moves nothing, left out")]
-    ChannelIgnored {
-        /// Path of the channel.
-        field: String,
-    },
-    /// An extension that changes how the toy looks.
-    #[error("extensionsUsed: {name:?} is not followed")]
-    ExtensionIgnored {
-        /// Name of the extension.
-        name: String,
-    },
 }
 
 /// Names in a sentence.

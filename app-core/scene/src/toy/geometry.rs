@@ -7,12 +7,13 @@ use gltf::json::validation::Checked;
 use gltf::json::{Index, mesh::Mode};
 
 use super::accessor::{Source, grouped};
-use super::check::{check_count, check_limit};
+use super::check::{check_count, check_limit, check_range};
 use super::container::{allowed, get};
-use super::error::{Flaw, ToyProblem, ToyWarning};
-use super::limits::{COLOR, FACTOR, MAX_INDICES, MAX_TRIANGLES, MAX_VERTICES};
+use super::error::{Flaw, ToyProblem};
+use super::limits::{COLOR, FACTOR, MAX_INDICES, MAX_TRIANGLES, MAX_VERTICES, UV};
 use super::skin::{Influences, read_influences};
 use super::topology::{compacted, triangles, unwelded};
+use super::warning::ToyWarning;
 
 /// A primitive in the space of its mesh.
 #[derive(Clone)]
@@ -46,6 +47,14 @@ impl MorphTarget {
     /// Whether it moves any vertex.
     pub(super) fn moves(&self) -> bool {
         self.positions.is_some()
+    }
+
+    /// The same with other lists in place of its own.
+    pub(super) fn mapped(&self, map: impl Fn(&[Vec3]) -> Vec<Vec3>) -> Self {
+        Self {
+            positions: self.positions.as_deref().map(&map),
+            normals: self.normals.as_deref().map(&map),
+        }
     }
 
     /// Its offset of a vertex's position.
@@ -183,14 +192,26 @@ pub(super) fn read(
             influences.n_per_vertex.saturating_mul(2 * corners.sources.len()),
         )?;
     }
+    let mut uvs = gather.attribute(
+        &format!("TEXCOORD_{tex_coord}"),
+        attribute(Semantic::TexCoords(tex_coord)),
+        Source::uvs,
+    )?;
+    let material = primitive.material.map(|material| material.value());
+    if let (Some(uvs), Some(transform)) = (&mut uvs, source.uv_transform(material)) {
+        uvs.iter_mut().for_each(|uv| *uv = transform.apply(*uv));
+        let moved: Vec<f32> = uvs.iter().flat_map(Vec2::to_array).collect();
+        check_range(
+            &format!("{field}.attributes.TEXCOORD_{tex_coord}"),
+            &moved,
+            2,
+            &UV,
+        )?;
+    }
     Ok(Some(Geometry {
         targets,
         influences: influences.map(|all| all.gather(&corners.sources)),
-        uvs: gather.attribute(
-            &format!("TEXCOORD_{tex_coord}"),
-            attribute(Semantic::TexCoords(tex_coord)),
-            Source::uvs,
-        )?,
+        uvs,
         colors,
         normals: gather.attribute("NORMAL", normals, Source::vec3s)?,
         positions: gather.picked(&positions)?,

@@ -9,6 +9,7 @@ use super::check::{check_count, check_finite, check_limit, check_range};
 use super::container::get;
 use super::error::{Flaw, ToyProblem};
 use super::limits::{MAX_MORPH_WEIGHTS, MAX_NODES, NUMBER};
+use super::warning::ToyWarning;
 
 /// Every node of the file, in the scene or not: a joint may be outside of it.
 pub(super) struct Graph {
@@ -43,6 +44,24 @@ impl Local {
         }
     }
 
+    /// The same in parts; `None` if it shears.
+    pub(super) fn taken_apart(self) -> Option<Trs> {
+        const TOLERANCE: f64 = 1e-4;
+        let matrix = match self {
+            Self::Decomposed(trs) => return Some(trs),
+            Self::Matrix(matrix) => matrix,
+        };
+        let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
+        let again = DAffine3::from_scale_rotation_translation(scale, rotation, translation);
+        let size = scale.abs().max_element();
+        let is_same = again.matrix3.abs_diff_eq(matrix.matrix3, TOLERANCE * size);
+        (is_same && rotation.is_normalized()).then_some(Trs {
+            translation,
+            rotation,
+            scale,
+        })
+    }
+
     pub(super) fn parent_from_node(self) -> DAffine3 {
         match self {
             Self::Matrix(matrix) => matrix,
@@ -64,7 +83,7 @@ pub struct Trs {
     pub scale: DVec3,
 }
 
-pub(super) fn read(root: &Root) -> Result<Graph, Flaw> {
+pub(super) fn read(root: &Root, warnings: &mut Vec<ToyWarning>) -> Result<Graph, Flaw> {
     let n_nodes = check_limit("nodes", root.nodes.len(), MAX_NODES, "nodes")?;
     let parents = parents(root)?;
     let parents_first = parents_first(&parents)?;
@@ -74,7 +93,7 @@ pub(super) fn read(root: &Root) -> Result<Graph, Flaw> {
         let field = format!("nodes[{i}]");
         let first = rest_weights.len();
         append_weights(root, node, &field, &mut rest_weights)?;
-        let rest = local(node, &field)?;
+        let rest = local(node, &field, warnings)?;
         nodes.push(Node {
             parent,
             rest,
@@ -190,7 +209,7 @@ pub(super) fn n_morph_targets(mesh: &Mesh) -> usize {
         .map_or(0, Vec::len)
 }
 
-fn local(node: &json::Node, field: &str) -> Result<Local, Flaw> {
+fn local(node: &json::Node, field: &str, warnings: &mut Vec<ToyWarning>) -> Result<Local, Flaw> {
     if let Some(matrix) = &node.matrix {
         return affine(matrix, &format!("{field}.matrix"), 0).map(Local::Matrix);
     }
@@ -202,8 +221,11 @@ fn local(node: &json::Node, field: &str) -> Result<Local, Flaw> {
     let field_of_rotation = format!("{field}.rotation");
     let rotation = node.rotation.unwrap_or_default().0;
     check_finite(&field_of_rotation, &rotation, 4)?;
-    let rotation = unit_rotation(rotation.map(f64::from))
-        .ok_or_else(|| ToyProblem::ZeroRotation { element: 0 }.at(field_of_rotation))?;
+    let rotation = unit_rotation(rotation.map(f64::from)).unwrap_or_else(|| {
+        let field = field_of_rotation;
+        warnings.push(ToyWarning::RotationsRepaired { field, n: 1 });
+        DQuat::IDENTITY
+    });
     Ok(Local::Decomposed(Trs {
         translation: vector("translation", node.translation, [0.0; 3])?,
         rotation,

@@ -1,14 +1,17 @@
 //! Materials: the base colour, the factor of the fitted light.
 
+use gltf::json::Index;
+use gltf::json::material::{AlphaMode, Material as JsonMaterial};
 use gltf::json::texture::WrappingMode;
-use gltf::json::{Index, material::Material as JsonMaterial};
 
 use super::accessor::Source;
 use super::check::{check_limit, check_range};
 use super::container::{allowed, get};
-use super::error::{Flaw, ToyWarning};
-use super::limits::{FACTOR, MAX_MATERIALS};
+use super::error::Flaw;
+use super::extensions::way_out;
+use super::limits::{COLOR, FACTOR, MAX_MATERIALS};
 use super::texture::{Texture, TextureStore};
+use super::warning::ToyWarning;
 
 /// Appearance of a surface: the base colour of the metallic-roughness model.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +22,19 @@ pub struct Material {
     pub base_color_texture: Option<MaterialTexture>,
     /// Whether the back faces are seen too.
     pub double_sided: bool,
+    /// What of it is there, by its alpha.
+    pub(super) alpha: Alpha,
+}
+
+/// How alpha tells what is there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Alpha {
+    /// It does not.
+    Opaque,
+    /// What has as much.
+    Mask(f32),
+    /// All of it, more or less clear.
+    Blend,
 }
 
 impl Material {
@@ -27,6 +43,7 @@ impl Material {
         base_color_linear: [1.0; 4],
         base_color_texture: None,
         double_sided: false,
+        alpha: Alpha::Opaque,
     };
 }
 
@@ -62,6 +79,9 @@ impl From<WrappingMode> for Wrap {
     }
 }
 
+/// How the crate writes that a texture has no source.
+const NO_SOURCE: usize = u32::MAX as usize;
+
 /// The texture coordinate set that a material's base colour reads.
 pub(super) fn tex_coord(material: &JsonMaterial) -> u32 {
     material
@@ -88,9 +108,14 @@ pub(super) fn read(
     for (i, (material, &is_used)) in source.root.materials.iter().zip(is_used).enumerate() {
         let field = format!("materials[{i}].pbrMetallicRoughness");
         let base = &material.pbr_metallic_roughness;
-        let base_color_linear = base.base_color_factor.0;
+        let written = base.base_color_factor.0;
         let factor_field = format!("{field}.baseColorFactor");
-        check_range(&factor_field, &base_color_linear, 4, &FACTOR)?;
+        check_range(&factor_field, &written, 4, &COLOR)?;
+        let base_color_linear = written.map(|factor| factor.clamp(*FACTOR.start(), *FACTOR.end()));
+        if base_color_linear != written {
+            let field = factor_field;
+            warnings.push(ToyWarning::FactorClamped { field });
+        }
         let field = format!("{field}.baseColorTexture");
         let base_color_texture = match &base.base_color_texture {
             Some(info) if is_used => texture(&mut store, &field, info.index, warnings)?,
@@ -100,9 +125,22 @@ pub(super) fn read(
             base_color_linear,
             base_color_texture,
             double_sided: material.double_sided,
+            alpha: alpha(material, i)?,
         });
     }
     Ok((materials, store.textures))
+}
+
+fn alpha(material: &JsonMaterial, i: usize) -> Result<Alpha, Flaw> {
+    let cutoff = material.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0);
+    check_range(&format!("materials[{i}].alphaCutoff"), &[cutoff], 1, &COLOR)?;
+    Ok(
+        match allowed(material.alpha_mode, &format!("materials[{i}].alphaMode"))? {
+            AlphaMode::Opaque => Alpha::Opaque,
+            AlphaMode::Mask => Alpha::Mask(cutoff),
+            AlphaMode::Blend => Alpha::Blend,
+        },
+    )
 }
 
 fn texture(
@@ -125,6 +163,17 @@ fn texture(
         }
         None => (Wrap::Repeat, Wrap::Repeat),
     };
+    if texture.source.value() == NO_SOURCE {
+        warnings.push(match store.source.unread_texture(index.value()) {
+            Some(format) => ToyWarning::FormatIgnored {
+                field,
+                format,
+                way_out: way_out(format),
+            },
+            None => ToyWarning::TextureIgnored { field },
+        });
+        return Ok(None);
+    }
     let image = get(root, &field, texture.source, "image")?;
     let texture = store.texture(texture.source.value(), image, warnings)?;
     Ok(texture.map(|texture| MaterialTexture {

@@ -8,10 +8,14 @@
 //!
 //! Object space is the space of the glTF scene: right-handed, +Y up, in whatever unit the file was made.
 //! [`Toy::displaced`] is the same toy with another shape, which every pose carries.
-//! A toy opens no file itself; pictures outside the file are left out with a warning.
+//! What extensions say is written in plain glTF first (`mend`), or decoded (`meshopt`); what materials cut out by alpha is
+//! cut out of the triangles (`cut`), so that every pass sees the same shape.
+//! A toy opens no file itself: [`packed`] makes one file of several, and pictures that are still outside are left out with a
+//! warning.
 
 mod accessor;
 mod assemble;
+mod base64;
 mod blend;
 mod bounds;
 mod casters;
@@ -19,15 +23,23 @@ mod check;
 mod clip;
 mod component;
 mod container;
+mod cut;
 mod displaced;
 mod error;
+mod extensions;
+mod foreign;
 mod geometry;
 mod graph;
+mod instances;
 mod limits;
 mod material;
+mod mend;
+mod meshopt;
+mod mirrored;
 mod moment;
 mod normal;
 mod outward;
+mod packed;
 mod pieces;
 mod pose;
 mod rig;
@@ -38,6 +50,8 @@ mod surface;
 mod texture;
 mod topology;
 mod track;
+mod uv_transform;
+mod warning;
 
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -45,14 +59,16 @@ use std::sync::{Arc, OnceLock};
 pub use bounds::Bounds;
 pub use casters::Caster;
 pub use clip::{Clip, ClipId};
-pub use error::{ToyError, ToyProblem, ToyWarning};
+pub use error::{ToyError, ToyProblem};
 pub use graph::Trs;
 pub use material::{Material, MaterialTexture, Wrap};
 pub use moment::{NodeId, NodePose, Pose};
+pub use packed::packed;
 pub use pose::PosedMesh;
 pub use shadow_indices::ShadowIndices;
 pub use surface::Part;
 pub use texture::Texture;
+pub use warning::ToyWarning;
 
 use geometry::Geometry;
 use rig::Rig;
@@ -80,7 +96,7 @@ impl fmt::Debug for Toy {
 }
 
 impl Toy {
-    /// Reads a binary glTF 2.0 file. `file` names it in messages.
+    /// Reads a glTF 2.0 file, binary or as JSON with its data in it. `file` names it in messages.
     ///
     /// Only the default scene is drawn (the first where there is none). Vertices that no triangle uses are dropped.
     ///
@@ -104,7 +120,7 @@ impl Toy {
     /// Finds a clip by its name, or by `#N`, its number from 0. A name wins over a number.
     ///
     /// # Errors
-    /// [`ToyError::UnknownClip`], which lists the names that there are.
+    /// [`ToyError::UnknownClip`], which lists the names that there are; [`ToyError::BrokenClip`] for one that cannot be read.
     pub fn find_clip(&self, name: &str) -> Result<ClipId, ToyError> {
         let by_name = || {
             self.clips()
@@ -117,14 +133,21 @@ impl Toy {
                 .ok()
                 .filter(|&number| number < self.clips().len())
         };
-        by_name()
+        let found = by_name()
             .or_else(by_number)
-            .map(ClipId)
             .ok_or_else(|| ToyError::UnknownClip {
                 file: self.file.clone(),
                 name: name.to_owned(),
                 known: self.clip_names(),
-            })
+            })?;
+        match &self.clips()[found].flaw {
+            None => Ok(ClipId(found)),
+            Some(reason) => Err(ToyError::BrokenClip {
+                file: self.file.clone(),
+                name: name.to_owned(),
+                reason: reason.clone(),
+            }),
+        }
     }
 
     /// A name for each clip that [`Toy::find_clip`] takes: `#N` for those without one.

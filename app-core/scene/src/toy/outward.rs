@@ -8,9 +8,9 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
-use super::error::ToyWarning;
 use super::geometry::{Geometry, place_bits};
 use super::pieces::Pieces;
+use super::warning::ToyWarning;
 
 /// Repairs the primitives of one mesh, at rest; `fields` are their paths.
 pub(super) fn turn_outward(geometries: &mut [Geometry], fields: &[String], warnings: &mut Vec<ToyWarning>) {

@@ -33,7 +33,8 @@ impl Toy {
     ///
     /// `anchor_from_object` is affine and does not mirror; object space is that of the glTF scene.
     /// A time beyond the clip shows its end. Everything is composed in 64 bits and stored in 32.
-    /// Where an animated scale changes sign, normals stay outward, but the triangles' winding is that at rest.
+    /// Where an animated scale changes sign, normals stay outward, but the triangles' winding is that at rest; those that a clip
+    /// mirrors count as open, and are drawn from both sides.
     ///
     /// # Errors
     /// An id of another toy, a time or a transform that is not one or too large, or a position that is not from -1e6 m

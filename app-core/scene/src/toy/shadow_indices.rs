@@ -26,8 +26,14 @@ pub struct ShadowIndices {
 }
 
 impl ShadowIndices {
-    /// Of the triangles `indices`, three corners each, of surfaces that are laid out one after the other.
-    pub(super) fn new(surfaces: &[Surface], geometries: &[Geometry], indices: &[u32]) -> Self {
+    /// Of the triangles `indices`, three corners each, of surfaces that are laid out one after the other. Those that clips mirror
+    /// count as open: their faces look inwards at times.
+    pub(super) fn new(
+        surfaces: &[Surface],
+        geometries: &[Geometry],
+        indices: &[u32],
+        is_mirrored: &[bool],
+    ) -> Self {
         let first_alike = first_alike(surfaces, geometries);
         let corners = indices.as_chunks().0.iter();
         let welded: Vec<_> = corners
@@ -40,13 +46,17 @@ impl ShadowIndices {
             .iter()
             .flat_map(|surface| &geometries[surface.geometry].positions);
         let mut pieces = Pieces::of(&triangles, &places.copied().collect::<Vec<_>>());
+        let is_turned = |vertex: u32| {
+            let of = surfaces.partition_point(|surface| surface.first_vertex <= vertex as usize);
+            of > 0 && is_mirrored[of - 1]
+        };
+        let mut is_closed = |vertex: u32| pieces.is_closed(vertex) && !is_turned(vertex);
         let is_of_closed = welded
             .iter()
-            .map(|corners| has_area(corners) && pieces.is_closed(corners[0]))
+            .map(|corners| has_area(corners) && is_closed(corners[0]))
             .collect();
-        let (closed, open): (Vec<_>, Vec<_>) = triangles
-            .into_iter()
-            .partition(|[corner, ..]| pieces.is_closed(*corner));
+        let (closed, open): (Vec<_>, Vec<_>) =
+            triangles.into_iter().partition(|[corner, ..]| is_closed(*corner));
         Self {
             n_closed: 3 * closed.len(),
             is_of_closed,

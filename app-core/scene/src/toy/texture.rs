@@ -7,9 +7,13 @@ use std::io::Cursor;
 use gltf::json::Image;
 use image::{ImageFormat, ImageReader};
 
+use crate::picture;
+
 use super::accessor::Source;
-use super::error::{Flaw, ToyProblem, ToyWarning};
+use super::base64::{self, Uri};
+use super::error::{Flaw, ToyProblem};
 use super::limits::{MAX_TEXELS, MAX_TEXTURE_SIDE_PX};
+use super::warning::ToyWarning;
 
 /// A texture image.
 #[derive(Clone, PartialEq, Eq)]
@@ -59,18 +63,29 @@ impl<'a> TextureStore<'a> {
         let field = format!("images[{index}]");
         let bytes = match (image.buffer_view, &image.uri) {
             (Some(view), _) => Some(self.source.view(&field, view)?.0.to_vec()),
-            (None, Some(uri)) => bytes_from_data_uri(uri),
+            (None, Some(uri)) => match base64::read(uri) {
+                Uri::Data(bytes) => Some(bytes),
+                Uri::Broken | Uri::Elsewhere(_) => None,
+            },
             (None, None) => return Err(ToyProblem::Missing.at(format!("{field}.bufferView"))),
         };
         let format = bytes.as_ref().and_then(|bytes| image::guess_format(bytes).ok());
         let texture = match (bytes, format) {
-            (Some(bytes), Some(format @ (ImageFormat::Png | ImageFormat::Jpeg))) => {
+            (Some(bytes), Some(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP))) => {
                 let texture = self.decode(&bytes, format).map_err(|problem| problem.at(field))?;
                 self.textures.push(texture);
                 Some(self.textures.len() - 1)
             }
-            _ => {
-                warnings.push(ToyWarning::ImageIgnored { field });
+            (bytes, _) => {
+                let known = bytes.as_deref().and_then(picture::kind);
+                warnings.push(match known {
+                    Some((format, way_out)) => ToyWarning::FormatIgnored {
+                        field,
+                        format,
+                        way_out,
+                    },
+                    None => ToyWarning::ImageIgnored { field },
+                });
                 None
             }
         };
@@ -106,39 +121,4 @@ impl<'a> TextureStore<'a> {
             rgba8_srgb,
         })
     }
-}
-
-/// The bytes of a base64 data URI; `None` for any other URI.
-fn bytes_from_data_uri(uri: &str) -> Option<Vec<u8>> {
-    let (head, text) = uri.strip_prefix("data:")?.split_once(',')?;
-    head.ends_with(";base64").then(|| bytes_from_base64(text))?
-}
-
-/// Source: RFC 4648, section 4.
-fn bytes_from_base64(text: &str) -> Option<Vec<u8>> {
-    let text = text.trim_end_matches('=').as_bytes();
-    let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 2);
-    for quad in text.chunks(4) {
-        let mut bits = 0_u32;
-        for &symbol in quad {
-            bits = bits << 6 | sextet(symbol)?;
-        }
-        // A short last group holds one byte in two symbols or two bytes in three.
-        let n_bytes = quad.len() * 6 / 8;
-        bits <<= 6 * (4 - quad.len());
-        bytes.extend_from_slice(&bits.to_be_bytes()[1..=n_bytes]);
-    }
-    Some(bytes)
-}
-
-fn sextet(symbol: u8) -> Option<u32> {
-    let value = match symbol {
-        b'A'..=b'Z' => symbol - b'A',
-        b'a'..=b'z' => symbol - b'a' + 26,
-        b'0'..=b'9' => symbol - b'0' + 52,
-        b'+' => 62,
-        b'/' => 63,
-        _ => return None,
-    };
-    Some(value.into())
 }

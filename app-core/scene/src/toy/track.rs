@@ -80,9 +80,40 @@ impl Track {
         }
     }
 
-    /// The first key whose rotation has no length.
-    pub(super) fn zero_rotation(&self) -> Option<usize> {
-        (0..self.times_secs.len()).find(|&key| unit_rotation(self.key_xyzw(key)).is_none())
+    /// Gives keys whose rotation has no length that of the key before, or of the first that has one; returns how many there were.
+    pub(super) fn repair_rotations(&mut self) -> usize {
+        let n_keys = self.times_secs.len();
+        let is_zero: Vec<bool> = (0..n_keys)
+            .map(|key| unit_rotation(self.key_xyzw(key)).is_none())
+            .collect();
+        let first = is_zero.iter().position(|is_zero| !is_zero);
+        let mut good = first.map_or([0.0, 0.0, 0.0, 1.0], |key| self.written_value(key));
+        for (key, is_zero) in is_zero.iter().enumerate() {
+            match is_zero {
+                true => self.write_value(key, good),
+                false => good = self.written_value(key),
+            }
+        }
+        is_zero.iter().filter(|is_zero| **is_zero).count()
+    }
+
+    /// Where the value of a key stands among all numbers.
+    fn value_at(&self, key: usize) -> usize {
+        let per_key = self.interpolation.values_per_key();
+        (key * per_key + per_key / 2) * self.width
+    }
+
+    fn written_value(&self, key: usize) -> [f32; 4] {
+        let at = self.value_at(key);
+        let written = self.values.get(at..).and_then(<[f32]>::first_chunk);
+        written.copied().unwrap_or([0.0, 0.0, 0.0, 1.0])
+    }
+
+    fn write_value(&mut self, key: usize, value: [f32; 4]) {
+        let at = self.value_at(key);
+        if let Some(written) = self.values.get_mut(at..).and_then(<[f32]>::first_chunk_mut) {
+            *written = value;
+        }
     }
 
     fn key_rotation(&self, key: usize) -> DQuat {

@@ -14,7 +14,7 @@ use crate::files::{Files, INDEX_FILE};
 use crate::picture::PictureSize;
 use app_scene::lens::Distortion;
 use app_scene::scene::{Intrinsics, Pose, Scene, check};
-use app_scene::toy::Toy;
+use app_scene::toy::{self, Toy};
 use glam::DMat4;
 
 const MAX_TOY_BYTES: u64 = 256 << 20;
@@ -108,7 +108,16 @@ fn picture_size(record: &CaptureRecord) -> Result<PictureSize, SessionError> {
 fn read_toy(files: &dyn Files, path: &str) -> Result<Toy, SessionError> {
     let field = "toy.file";
     let bytes = read_named(files, path, field, MAX_TOY_BYTES)?;
-    Toy::from_glb(path, &bytes).map_err(|error| SessionError::new(path, field, error))
+    let folder = path
+        .rsplit_once('/')
+        .map_or(String::new(), |(folder, _)| format!("{folder}/"));
+    let mut neighbour = |name: &str| {
+        let read = files.read(&format!("{folder}{name}"), MAX_TOY_BYTES);
+        read.map_err(|error| error.to_string())
+    };
+    toy::packed(path, &bytes, &mut neighbour)
+        .and_then(|bytes| Toy::from_glb(path, &bytes))
+        .map_err(|error| SessionError::new(path, field, error))
 }
 
 fn toy_warnings(toy: &Toy, file: &str) -> Vec<SessionWarning> {

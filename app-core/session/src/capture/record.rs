@@ -181,7 +181,7 @@ pub struct LensRecord {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 pub struct ToyRecord {
-    /// Path of the model, binary glTF 2.0, in the session's folder.
+    /// Path of the model, glTF 2.0, in the session's folder.
     #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
     pub file: String,
     /// Where the real toy stands: from the model's scene space, in whatever unit, to world, metres. A rotation, a

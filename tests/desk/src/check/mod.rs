@@ -6,6 +6,7 @@ mod keys;
 pub mod overlay;
 mod pictures;
 mod sense;
+mod upright;
 
 use std::path::{Path, PathBuf};
 
@@ -91,6 +92,9 @@ pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyh
             Ok(alignments) => {
                 if let Some(aligned) = alignments.of(0) {
                     findings.aligned(aligned);
+                    if upright::is_misaligned(&alignments, 0) {
+                        findings.wrong.extend(upright::offered(&capture, 0, asked));
+                    }
                     let picture = drawn(&capture, &given, &aligned.alignment)?;
                     let path = out.join(DRAWING);
                     write_png(&path, &picture)?;

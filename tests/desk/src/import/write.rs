@@ -16,6 +16,7 @@ use super::pictures::{Fitted, fit};
 use super::ply::glb_of_ply_file;
 use crate::files::{Folder, SESSION_FILE};
 use crate::output::{make_folder, write_whole};
+use crate::toy_file::read_toy;
 
 /// Frames that show the place without the toy, counted from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -132,7 +133,7 @@ impl Lacking {
         if bytes.starts_with(b"ply") {
             return glb_of_ply_file(toy, &bytes).with_context(|| toy.display().to_string());
         }
-        Ok(bytes)
+        read_toy(toy)
     }
 }
 

@@ -1,15 +1,14 @@
 //! Lists the clips of a toy.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, ensure};
 use app_core::scene::Pose;
 use app_core::toy::{ClipId, Toy};
 use clap::Parser;
 use desk::output::make_folder;
 use desk::program::{exit_code, print, repository};
+use desk::toy_file::read_toy;
 use film::animate::outputs::write_rgb;
 use film::small::sheet;
 use film::thumbnail::Stand;
@@ -17,7 +16,6 @@ use film::thumbnail::Stand;
 /// Where sheets go that were given no place, below the top of the repository.
 const RESULTS: &str = "target/film";
 const FPS: f64 = 24.0;
-const MAX_TOY_BYTES: u64 = 256 << 20;
 /// Thumbnails of each clip, from its start to its end.
 const N_THUMBNAILS: u32 = 6;
 const THUMBNAIL_PX: u32 = 160;
@@ -63,15 +61,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
 }
 
 fn read(path: &Path) -> anyhow::Result<Toy> {
-    let named = || path.display().to_string();
-    let n_bytes = fs::metadata(path).with_context(named)?.len();
-    ensure!(
-        n_bytes <= MAX_TOY_BYTES,
-        "{}: has {n_bytes} bytes; at most {MAX_TOY_BYTES} are read",
-        path.display()
-    );
-    let bytes = fs::read(path).with_context(named)?;
-    Ok(Toy::from_glb(&named(), &bytes)?)
+    Ok(Toy::from_glb(&path.display().to_string(), &read_toy(path)?)?)
 }
 
 fn table(toy: &Toy) -> String {

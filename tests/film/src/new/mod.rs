@@ -28,8 +28,6 @@ pub const DRAWING: &str = "found.png";
 
 /// Heights that a toy without a stated one may have by its model, in metres.
 const LIKELY_M: [f64; 2] = [0.01, 1.0];
-/// No model is read that is larger.
-const MOST_TOY_BYTES: u64 = 512 << 20;
 
 /// Which photographs, and what is known beside them.
 #[derive(Clone, Debug)]
@@ -199,13 +197,7 @@ fn same_size(plate: &Photograph, photograph: &Photograph) -> Result<(), NewError
 
 fn read_toy(path: &Path) -> anyhow::Result<(Toy, Vec<u8>)> {
     let name = path.display().to_string();
-    let length = std::fs::metadata(path).with_context(|| name.clone())?.len();
-    anyhow::ensure!(
-        length <= MOST_TOY_BYTES,
-        "{name}: is larger than {} MiB",
-        MOST_TOY_BYTES >> 20
-    );
-    let bytes = std::fs::read(path).with_context(|| name.clone())?;
+    let bytes = desk::toy_file::read_toy(path)?;
     Ok((Toy::from_glb(&name, &bytes)?, bytes))
 }
 

@@ -73,6 +73,35 @@ fn a_good_session_has_nothing_wrong_and_is_drawn() {
 }
 
 #[test]
+fn a_toy_that_lies_on_its_back_is_offered_the_turn() {
+    let upright = json!([1.0]);
+    let given = std::cell::RefCell::new(upright);
+    let lying = changed("lying", |index| {
+        let object = &mut index["toy"]["world_from_object"];
+        *given.borrow_mut() = object.clone();
+        // As if the file had Z up.
+        *object =
+            json!((matrix(object) * DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2)).to_cols_array());
+    });
+    let wrong = wrong(&lying.0);
+    let offer = wrong
+        .iter()
+        .find(|wrong| wrong.contains("Z up"))
+        .expect("an offer");
+    let (_, numbers) = offer.split_once("toy.world_from_object [").expect("a matrix");
+    let (numbers, _) = numbers.split_once(']').expect("a matrix");
+    let numbers: Vec<f64> = numbers
+        .split(", ")
+        .map(|number| number.parse().unwrap())
+        .collect();
+    let upright = matrix(&given.into_inner());
+    assert!(
+        DMat4::from_cols_slice(&numbers).abs_diff_eq(upright, 1e-5),
+        "{offer}"
+    );
+}
+
+#[test]
 fn each_wrong_session_is_told_by_its_field() {
     type Change = fn(&mut Value);
     #[rustfmt::skip] // One case a line.

@@ -2,11 +2,16 @@
 
 pub(crate) mod builder;
 mod casters;
+mod cut;
+mod extensions;
 mod hard;
+mod mended;
+mod meshopt;
 mod out_of_range;
 mod poses;
 mod refusals;
 mod shadow;
+mod wrong_files;
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -149,6 +154,19 @@ fn broken_files_are_refused_with_field_and_reason() {
     let whole = triangle().bytes();
     for n_bytes in 0..whole.len() {
         Toy::from_glb(FILE, &whole[..n_bytes]).unwrap_err();
+    }
+}
+
+#[test]
+fn a_clip_that_cannot_be_read_is_refused_once_it_is_asked_for() {
+    for broken in refusals::broken_clips() {
+        let toy = Toy::from_glb(FILE, &broken.bytes).expect(broken.name);
+        let said: String = toy.warnings().iter().map(ToString::to_string).collect();
+        let refused = toy.find_clip("move").expect_err(broken.name).to_string();
+        for word in &broken.words {
+            let is_said = said.contains(word) && refused.contains(word);
+            assert!(is_said, "{}: no {word:?} in {said:?}, {refused:?}", broken.name);
+        }
     }
 }
 

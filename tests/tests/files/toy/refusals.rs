@@ -69,7 +69,6 @@ pub(crate) fn refusals() -> Vec<Refusal> {
         numbers(),
         ranges(),
         skins(),
-        animations(),
         pictures(),
     ];
     all.into_iter().flatten().collect()
@@ -85,7 +84,7 @@ fn containers() -> Vec<Refusal> {
         raw("empty", &["file", "not binary glTF"], &[]),
         raw("truncated", &["file", "not binary glTF"], &whole[..whole.len() / 2]),
         raw("header of 3 bytes", &["file", "3 bytes"], &short_header),
-        set("no number", &["JSON chunk", "three", "column"], "/accessors/0/count", json!("three")),
+        set("no number", &["JSON chunk: accessors[0].count", "three"], "/accessors/0/count", json!("three")),
         set("compressed", &["extensionsRequired[0]", "KHR_draco_mesh_compression"], "/extensionsRequired", json!(["KHR_draco_mesh_compression"])),
         set("external buffer", &["buffers[0]", "outside the file"], "/buffers", json!([{ "byteLength": 72, "uri": "../../etc/passwd" }])),
     ]
@@ -141,7 +140,6 @@ fn numbers() -> Vec<Refusal> {
     vec![
         attribute("NaN position", &[position, "1 of 9 numbers", "element 1"], "POSITION", "VEC3", &corners),
         set("infinite scale", &["nodes[0].scale", "not finite"], "/nodes/0/scale", json!([1.0, 1e39, 1.0])),
-        set("rotation of length zero", &["nodes[0].rotation", "length zero"], "/nodes/0/rotation", json!([0.0, 0.0, 0.0, 0.0])),
         set("projection", &["nodes[0].matrix", "not affine"], "/nodes/0/matrix", json!([1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])),
         set("morph weights", &["nodes[0].weights", "has 2 weights, but 0"], "/nodes/0/weights", json!([0.0, 0.0])),
         changed("sparse out of order", &["sparse", "index 1"], |glb| {
@@ -157,7 +155,7 @@ fn numbers() -> Vec<Refusal> {
 #[rustfmt::skip] // One case a line.
 fn ranges() -> Vec<Refusal> {
     let factor = |name, factor: [f32; 4]| {
-        let words = ["materials[0].pbrMetallicRoughness.baseColorFactor", "from 0 to 1"];
+        let words = ["materials[0].pbrMetallicRoughness.baseColorFactor", "from -1000 to 1000"];
         set(name, &words, "/materials", json!([{ "pbrMetallicRoughness": { "baseColorFactor": factor } }]))
     };
     let far = |key, shape: &str, values: &[f32]| {
@@ -171,16 +169,11 @@ fn ranges() -> Vec<Refusal> {
         far("COLOR_0", "VEC3", &[1e30]),
         far("TEXCOORD_0", "VEC2", &[1e30]),
         factor("bright factor", [1e30, 0.0, 0.0, 1.0]),
-        factor("negative factor", [0.0, -1.0, 0.0, 1.0]),
-        factor("alpha factor", [0.0, 0.0, 0.0, 1.5]),
         set("translation", &["nodes[0].translation", "is not from"], "/nodes/0/translation", json!([0.0, 1e20, 0.0])),
         set("scale", &["nodes[0].scale", "is not from"], "/nodes/0/scale", json!([1e20, 1.0, 1.0])),
         set("matrix", &["nodes[0].matrix", "is not from"], "/nodes/0/matrix", json!([1, 0, 0, 0, 0, 1e20, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])),
         morphed("morph offset", &["POSITION of targets[0]", "element 1", "is not from"], 1e30, 0.0),
         morphed("morph weight", &["nodes[0].weights", "is not from"], 1.0, 1e30),
-        moved("animated value", &["samplers[0].output", "is not from"], "translation", [1.0, 1e30]),
-        moved("animated scale", &["samplers[0].output", "is not from"], "scale", [1.0, -1e30]),
-        moved("late key", &["samplers[0].input", "is not from"], "translation", [1e30, 0.0]),
         bound_far(),
     ]
 }
@@ -235,8 +228,9 @@ fn skins() -> Vec<Refusal> {
     ]
 }
 
+/// Files that are toys, and whose only clip, `move`, cannot be read.
 #[rustfmt::skip] // One case a line.
-fn animations() -> Vec<Refusal> {
+pub(crate) fn broken_clips() -> Vec<Refusal> {
     let animate = |glb: &mut Glb, times: &[f32], values: &[f32]| {
         let keys = [glb.floats("SCALAR", times), glb.floats("VEC3", values)];
         glb.animate("move", "translation", "LINEAR", keys);
@@ -247,9 +241,16 @@ fn animations() -> Vec<Refusal> {
         animated("keys that stand still", &["samplers[0].input", "key 1"], &[1.0, 1.0], &[0.0; 6]),
         animated("too few values", &[output, "has 3 numbers, but 6"], &[0.0, 1.0], &[0.0; 3]),
         animated("infinite value", &[output, "not finite"], &[0.0], &[f32::INFINITY, 0.0, 0.0]),
-        changed("animated matrix", &["animations[0].channels[0]", "by a matrix"], |glb| {
-            glb.json["nodes"][0]["matrix"] = json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+        moved("animated value", &["samplers[0].output", "is not from"], "translation", [1.0, 1e30]),
+        moved("animated scale", &["samplers[0].output", "is not from"], "scale", [1.0, -1e30]),
+        moved("late key", &["samplers[0].input", "is not from"], "translation", [1e30, 0.0]),
+        changed("matrix that shears", &["animations[0].channels[0]", "by a matrix"], |glb| {
+            glb.json["nodes"][0]["matrix"] = json!([1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
             animate(glb, &[0.0], &[0.0; 3]);
+        }),
+        changed("no output", &["animations[0]", "missing field `output`"], |glb| {
+            animate(glb, &[0.0], &[0.0; 3]);
+            glb.json["animations"][0]["samplers"][0] = json!({ "input": 0 });
         }),
     ]
 }

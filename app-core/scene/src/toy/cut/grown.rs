@@ -1,0 +1,106 @@
+//! A geometry with vertices between its own: everything that a vertex has is on the line between two.
+
+use std::collections::HashMap;
+use std::ops::{Add, Mul};
+
+use super::refine::{Made, Mesh};
+use crate::toy::geometry::{Geometry, place_bits};
+use crate::toy::skin::Influences;
+use crate::toy::topology::{compacted, unwelded};
+
+/// Corners of triangles, those of faceted triangles shared as far as they are alike.
+pub(super) fn welded(geometry: &Geometry) -> Vec<[u32; 3]> {
+    if geometry.normals.is_some() || geometry.targets.iter().any(|target| target.moves()) {
+        return geometry.triangles().to_vec();
+    }
+    let mut known = HashMap::new();
+    let mut first = |vertex: u32| {
+        let v = vertex as usize;
+        let mut key = place_bits(geometry.positions[v]).to_vec();
+        let uv = geometry.uvs.iter().flat_map(|uvs| uvs[v].to_array());
+        let color = geometry.colors.iter().flat_map(|colors| colors[v].to_array());
+        key.extend(uv.chain(color).map(f32::to_bits));
+        let influences = geometry.influences.iter().flat_map(|all| all.of(v));
+        key.extend(influences.flat_map(|(joint, weight)| [u32::from(joint), weight.to_bits()]));
+        *known.entry(key).or_insert(vertex)
+    };
+    let triangles = geometry.triangles().iter();
+    triangles.map(|corners| corners.map(&mut first)).collect()
+}
+
+/// The geometry that has a mesh's triangles.
+pub(super) fn geometry(own: &Geometry, mesh: &Mesh) -> Geometry {
+    let triangles = mesh.triangles.as_flattened();
+    let n_vertices = own.positions.len() + mesh.made.len();
+    // Without normals every triangle has three vertices of its own.
+    let corners = match own.normals {
+        Some(_) => compacted(triangles, n_vertices),
+        None => unwelded(triangles.to_vec()),
+    };
+    let maker = Maker {
+        made: &mesh.made,
+        sources: &corners.sources,
+    };
+    Geometry {
+        positions: maker.values(&own.positions),
+        normals: own.normals.as_ref().map(|normals| maker.values(normals)),
+        targets: own
+            .targets
+            .iter()
+            .map(|target| target.mapped(|values| maker.values(values)))
+            .collect(),
+        influences: own
+            .influences
+            .as_ref()
+            .map(|influences| maker.influences(influences)),
+        uvs: own.uvs.as_ref().map(|uvs| maker.values(uvs)),
+        colors: own.colors.as_ref().map(|colors| maker.values(colors)),
+        indices: corners.indices,
+    }
+}
+
+struct Maker<'a> {
+    made: &'a [Made],
+    /// The vertices to keep.
+    sources: &'a [u32],
+}
+
+impl Maker<'_> {
+    fn values<T>(&self, own: &[T]) -> Vec<T>
+    where
+        T: Copy + Add<Output = T> + Mul<f32, Output = T>,
+    {
+        let mut all = own.to_vec();
+        for made in self.made {
+            let (from, to) = (all[made.from as usize], all[made.to as usize]);
+            all.push(from * (1.0 - made.part) + to * made.part);
+        }
+        self.sources.iter().map(|&source| all[source as usize]).collect()
+    }
+
+    /// The joints of both ends; of more than a vertex can have, those with the most weight.
+    fn influences(&self, own: &Influences) -> Influences {
+        let n = own.n_per_vertex;
+        let mut all = own.clone();
+        for made in self.made {
+            let mut joints: Vec<(u16, f32)> = Vec::with_capacity(2 * n);
+            for (end, part) in [(made.from, 1.0 - made.part), (made.to, made.part)] {
+                let ends: Vec<(u16, f32)> =
+                    all.of(end as usize).filter(|(_, weight)| *weight > 0.0).collect();
+                for (joint, weight) in ends {
+                    match joints.iter_mut().find(|(known, _)| *known == joint) {
+                        Some((_, sum)) => *sum += part * weight,
+                        None => joints.push((joint, part * weight)),
+                    }
+                }
+            }
+            joints.sort_by(|one, other| other.1.total_cmp(&one.1));
+            joints.truncate(n);
+            let sum: f32 = joints.iter().map(|(_, weight)| weight).sum();
+            joints.resize(n, (0, 0.0));
+            all.joints.extend(joints.iter().map(|(joint, _)| joint));
+            all.weights.extend(joints.iter().map(|(_, weight)| weight / sum));
+        }
+        all.gather(self.sources)
+    }
+}

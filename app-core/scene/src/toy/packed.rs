@@ -1,0 +1,203 @@
+//! One file of several: a glTF whose buffers and pictures lie beside it becomes binary glTF that has them in it.
+
+use std::borrow::Cow;
+
+use serde_json::{Map, Value, json};
+
+use super::base64::{self, Uri};
+use super::check::check_limit;
+use super::container::{Tree, read_tree};
+use super::error::{Flaw, ToyError, ToyProblem};
+use super::limits::MAX_FILE_BYTES;
+use super::mend::MESHOPT;
+
+/// Binary glTF of a file and its neighbours; the bytes as they are if it has none.
+///
+/// `read` is asked for the bytes of a neighbour by its name as seen from the file, with `/` between its parts; an error is
+/// words for a person. Buffers must be there. Pictures that are not are left out, with a warning once the toy is read.
+///
+/// # Errors
+/// [`ToyError::Malformed`] if the bytes are no glTF, or a buffer cannot be read.
+pub fn packed<'a>(
+    file: &str,
+    bytes: &'a [u8],
+    read: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+) -> Result<Cow<'a, [u8]>, ToyError> {
+    pack(bytes, read).map_err(|flaw| flaw.in_file(file))
+}
+
+fn pack<'a>(
+    bytes: &'a [u8],
+    read: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+) -> Result<Cow<'a, [u8]>, Flaw> {
+    let Tree { mut json, bin } = read_tree(bytes)?;
+    let is_outside = |entry: &Value| matches!(uri(entry), Some(Uri::Elsewhere(_)));
+    let list = |name: &str| json.get(name).and_then(Value::as_array).into_iter().flatten();
+    if !list("buffers").chain(list("images")).any(is_outside) {
+        return Ok(Cow::Borrowed(bytes));
+    }
+    let mut packing = Packing {
+        bin: Vec::new(),
+        read,
+    };
+    let own = bin.unwrap_or_default();
+    let starts = packing.buffers(&mut json, &own)?;
+    move_views(&mut json, &starts);
+    packing.images(&mut json)?;
+    packing.glb(json).map(Cow::Owned)
+}
+
+fn uri(entry: &Value) -> Option<Uri<'_>> {
+    entry.get("uri").and_then(Value::as_str).map(base64::read)
+}
+
+struct Packing<'r> {
+    bin: Vec<u8>,
+    read: &'r mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+}
+
+/// Where a buffer begins in the one of the packed file; `Err` is the number of one that stays for itself.
+type Start = Result<usize, usize>;
+
+impl Packing<'_> {
+    fn append(&mut self, bytes: &[u8]) -> Result<usize, Flaw> {
+        let start = self.bin.len();
+        check_limit(
+            "bytes",
+            start.saturating_add(bytes.len()),
+            MAX_FILE_BYTES,
+            "buffers",
+        )?;
+        self.bin.extend_from_slice(bytes);
+        self.bin.resize(self.bin.len().next_multiple_of(8), 0);
+        Ok(start)
+    }
+
+    fn neighbour(&mut self, field: &str, uri: &str) -> Result<Vec<u8>, Flaw> {
+        let flaw = |name: &str, reason: String| {
+            let name = name.to_owned();
+            ToyProblem::Neighbour { name, reason }.at(field)
+        };
+        let name = base64::percent_decoded(uri).ok_or_else(|| flaw(uri, "the name is no text".to_owned()))?;
+        let name = name.strip_prefix("./").unwrap_or(&name);
+        (self.read)(name).map_err(|reason| flaw(name, reason))
+    }
+
+    /// Makes one buffer of all that have bytes.
+    fn buffers(&mut self, json: &mut Value, own: &[u8]) -> Result<Vec<Start>, Flaw> {
+        let buffers = json
+            .get_mut("buffers")
+            .and_then(Value::as_array_mut)
+            .map(std::mem::take);
+        let mut starts = Vec::new();
+        let mut kept = vec![Value::Null];
+        for (i, buffer) in buffers.into_iter().flatten().enumerate() {
+            let field = format!("buffers[{i}].uri");
+            let bytes = match uri(&buffer) {
+                None if i == 0 => Some(Cow::Borrowed(own)),
+                None => None,
+                Some(Uri::Data(bytes)) => Some(Cow::Owned(bytes)),
+                Some(Uri::Broken) => return Err(ToyProblem::DataUri.at(field)),
+                Some(Uri::Elsewhere(uri)) => Some(Cow::Owned(self.neighbour(&field, uri)?)),
+            };
+            match bytes {
+                Some(bytes) => starts.push(Ok(self.append(&bytes)?)),
+                None => {
+                    starts.push(Err(kept.len()));
+                    kept.push(buffer);
+                }
+            }
+        }
+        json["buffers"] = kept.into();
+        Ok(starts)
+    }
+
+    fn images(&mut self, json: &mut Value) -> Result<(), Flaw> {
+        let mut images = json.get_mut("images").map(Value::take).unwrap_or_default();
+        for (i, image) in images.as_array_mut().into_iter().flatten().enumerate() {
+            let Some(Uri::Elsewhere(uri)) = uri(image) else {
+                continue;
+            };
+            // It is warned about when the toy is read.
+            let Ok(bytes) = self.neighbour(&format!("images[{i}].uri"), uri) else {
+                continue;
+            };
+            let view = json!({ "buffer": 0, "byteOffset": self.append(&bytes)?, "byteLength": bytes.len() });
+            let views = json.get_mut("bufferViews").and_then(Value::as_array_mut);
+            let number = match views {
+                Some(views) => {
+                    views.push(view);
+                    views.len() - 1
+                }
+                None => {
+                    json["bufferViews"] = json!([view]);
+                    0
+                }
+            };
+            *image = json!({ "bufferView": number });
+        }
+        if !images.is_null() {
+            json["images"] = images;
+        }
+        Ok(())
+    }
+
+    /// Source: glTF 2.0 specification, section 4.4 (binary glTF layout).
+    fn glb(self, mut json: Value) -> Result<Vec<u8>, Flaw> {
+        json["buffers"][0] = json!({ "byteLength": self.bin.len() });
+        let mut text = json.to_string().into_bytes();
+        text.resize(text.len().next_multiple_of(4), b' ');
+        let word = |value: usize| {
+            let value = check_limit("bytes", value, MAX_FILE_BYTES, "file")?;
+            Ok(u32::try_from(value).unwrap_or(u32::MAX).to_le_bytes())
+        };
+        let length = 12 + 8 + text.len() + 8 + self.bin.len();
+        let head = [*b"glTF", 2_u32.to_le_bytes(), word(length)?];
+        let parts: [&[u8]; 7] = [
+            head.as_flattened(),
+            &word(text.len())?,
+            b"JSON",
+            &text,
+            &word(self.bin.len())?,
+            b"BIN\0",
+            &self.bin,
+        ];
+        Ok(parts.concat())
+    }
+}
+
+/// Lets views, and what is compressed in them, refer to the one buffer.
+fn move_views(json: &mut Value, starts: &[Start]) {
+    let views = json.get_mut("bufferViews").and_then(Value::as_array_mut);
+    for view in views.into_iter().flatten().filter_map(Value::as_object_mut) {
+        let extensions = view.get_mut("extensions").and_then(Value::as_object_mut);
+        for (_, compressed) in extensions
+            .into_iter()
+            .flatten()
+            .filter(|(name, _)| MESHOPT.contains(&name.as_str()))
+        {
+            if let Some(compressed) = compressed.as_object_mut() {
+                move_view(compressed, starts);
+            }
+        }
+        move_view(view, starts);
+    }
+}
+
+fn move_view(view: &mut Map<String, Value>, starts: &[Start]) {
+    let number = |key: &str| view.get(key).and_then(Value::as_u64);
+    let buffer = number("buffer").and_then(|buffer| usize::try_from(buffer).ok());
+    let offset = number("byteOffset").unwrap_or_default();
+    match buffer.and_then(|buffer| starts.get(buffer)) {
+        Some(Ok(start)) => {
+            view.insert("buffer".to_owned(), 0.into());
+            view.insert(
+                "byteOffset".to_owned(),
+                offset.saturating_add(*start as u64).into(),
+            );
+        }
+        Some(Err(kept)) => drop(view.insert("buffer".to_owned(), (*kept).into())),
+        // A reference to no buffer stays one.
+        None => drop(view.insert("buffer".to_owned(), u32::MAX.into())),
+    }
+}

@@ -1,0 +1,29 @@
+//! A toy's file on a desktop, with the files beside it that it refers to.
+
+use std::path::Path;
+
+use anyhow::{Context, ensure};
+use app_core::session::{Files, Folder};
+use app_core::toy::packed;
+
+/// No toy is larger.
+const MAX_BYTES: u64 = 256 << 20;
+
+/// The bytes of one binary glTF: those of the file, with its neighbours in them if it has any.
+///
+/// # Errors
+/// When it cannot be read, is too large or no glTF, or refers to a buffer that is not beside it.
+pub fn read_toy(path: &Path) -> anyhow::Result<Vec<u8>> {
+    let named = || path.display().to_string();
+    let n_bytes = std::fs::metadata(path).with_context(named)?.len();
+    ensure!(
+        n_bytes <= MAX_BYTES,
+        "{}: has {n_bytes} bytes; at most {MAX_BYTES} are read",
+        path.display()
+    );
+    let bytes = std::fs::read(path).with_context(named)?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = Folder::open(folder.unwrap_or(Path::new(".")))?;
+    let mut neighbour = |name: &str| folder.read(name, MAX_BYTES).map_err(|error| error.to_string());
+    Ok(packed(&named(), &bytes, &mut neighbour)?.into_owned())
+}

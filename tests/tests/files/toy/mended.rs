@@ -1,0 +1,189 @@
+//! Files that are a little wrong are toys all the same, and what was mended is said.
+
+use app_core::toy::{Pose, PosedMesh, Toy, ToyWarning, packed};
+use glam::{DMat4, Vec3};
+use serde_json::{Value, json};
+
+use super::FILE;
+use super::builder::{CORNERS, triangle};
+use super::extensions::read;
+
+/// The tree of a triangle, with its bytes in a data URI or elsewhere.
+fn tree(uri: &str) -> Value {
+    let glb = triangle();
+    let mut tree = glb.json.clone();
+    tree["buffers"] = json!([{ "byteLength": 72, "uri": uri }]);
+    tree
+}
+
+/// The same as text: corners, then normals.
+const DATA: &str = "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/";
+
+fn corners(bytes: &[u8]) -> Vec<Vec3> {
+    let toy = Toy::from_glb(FILE, bytes).unwrap();
+    let mut posed = PosedMesh::default();
+    toy.pose(&Pose::Authored, &DMat4::IDENTITY, &mut posed).unwrap();
+    assert!(toy.warnings().is_empty(), "{:?}", toy.warnings());
+    posed.positions
+}
+
+#[test]
+fn json_alone_is_a_toy_with_or_without_marks_and_padding() {
+    let expected: Vec<Vec3> = CORNERS
+        .as_chunks()
+        .0
+        .iter()
+        .copied()
+        .map(Vec3::from_array)
+        .collect();
+    let text = tree(DATA).to_string();
+    for bytes in [
+        text.clone(),
+        format!("\u{feff}{text}"),
+        format!("\n {text}\0\0\0"),
+    ] {
+        assert_eq!(corners(bytes.as_bytes()), expected);
+    }
+    // The same as the JSON of a binary file, whose own chunk is another buffer.
+    assert_eq!(corners(&measure::glb::container(text.as_bytes(), &[])), expected);
+    assert_eq!(
+        corners(&measure::glb::container(
+            format!("\u{feff}{text}\0").as_bytes(),
+            &[]
+        )),
+        expected
+    );
+}
+
+#[test]
+fn neighbours_are_packed_in() {
+    let expected = corners(tree(DATA).to_string().as_bytes());
+    let mut json = tree("parts/the%20toy.bin");
+    json["images"] = json!([{ "uri": "skin.png" }, { "uri": "missing.png" }]);
+    let text = json.to_string();
+    let bytes: Vec<u8> = [&CORNERS[..], &[0.0, 0.0, 1.0].repeat(3)]
+        .concat()
+        .iter()
+        .flat_map(|value| value.to_le_bytes())
+        .collect();
+    let mut asked = Vec::new();
+    let mut neighbour = |name: &str| {
+        asked.push(name.to_owned());
+        match name {
+            "parts/the toy.bin" => Ok(bytes.clone()),
+            "skin.png" => Ok(vec![1, 2, 3]),
+            _ => Err("is not there".to_owned()),
+        }
+    };
+    let whole = packed(FILE, text.as_bytes(), &mut neighbour).unwrap();
+    assert_eq!(corners(&whole), expected);
+    let (json, bin) = measure::glb::chunks(&whole);
+    assert_eq!(json["images"][1]["uri"], "missing.png");
+    let view = &json["bufferViews"][json["images"][0]["bufferView"].as_u64().unwrap() as usize];
+    let at = view["byteOffset"].as_u64().unwrap() as usize;
+    assert_eq!(bin[at..at + 3], [1, 2, 3]);
+    assert_eq!(asked, ["parts/the toy.bin", "skin.png", "missing.png"]);
+    // What is whole is not touched, and a buffer that is nowhere is named.
+    let own = triangle().bytes();
+    assert_eq!(
+        packed(FILE, &own, &mut |_| Err(String::new())).unwrap().as_ref(),
+        own
+    );
+    let refused = packed(FILE, text.as_bytes(), &mut |_| Err("is not there".to_owned()))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        refused.contains("buffers[0].uri: parts/the toy.bin: is not there"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn numbers_that_are_a_little_off_are_mended_and_said() {
+    let mut glb = triangle();
+    glb.json["materials"] =
+        json!([{ "pbrMetallicRoughness": { "baseColorFactor": [1.000_000_1, -0.1, 0.5, 1.5] } }]);
+    glb.json["nodes"][0]["rotation"] = json!([0.0, 0.0, 0.0, 0.0]);
+    let keys = [
+        glb.floats("SCALAR", &[0.0, 1.0]),
+        glb.floats("VEC4", &[0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+    ];
+    glb.animate("turn", "rotation", "LINEAR", keys);
+    glb.animate("turn", "rotation", "LINEAR", keys);
+    let toy = read(&glb);
+    assert_eq!(toy.materials()[0].base_color_linear, [1.0, 0.0, 0.5, 1.0]);
+    let mut posed = PosedMesh::default();
+    let clip = toy.find_clip("turn").unwrap();
+    toy.pose(&Pose::Clip { clip, time_secs: 1.0 }, &DMat4::IDENTITY, &mut posed)
+        .unwrap();
+    assert!(
+        posed.positions[1].distance(Vec3::NEG_X) < 1e-6,
+        "{}",
+        posed.positions[1]
+    );
+    let repaired = |field: &str| ToyWarning::RotationsRepaired {
+        field: field.to_owned(),
+        n: 1,
+    };
+    let expected = [
+        repaired("nodes[0].rotation"),
+        repaired("animations[0].channels[0]"),
+        repaired("animations[1].channels[0]"),
+        ToyWarning::ClipsAlike {
+            name: "turn".to_owned(),
+            first: 0,
+            second: 1,
+        },
+        ToyWarning::FactorClamped {
+            field: "materials[0].pbrMetallicRoughness.baseColorFactor".to_owned(),
+        },
+    ];
+    assert_eq!(toy.warnings(), expected);
+}
+
+#[test]
+fn an_animated_matrix_is_taken_apart() {
+    let mut glb = triangle();
+    // Twice as large, and at (0, 0, 3).
+    glb.json["nodes"][0]["matrix"] = json!([2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 3, 1]);
+    let keys = [glb.floats("SCALAR", &[0.0]), glb.floats("VEC3", &[5.0, 0.0, 0.0])];
+    glb.animate("move", "translation", "STEP", keys);
+    let toy = read(&glb);
+    let clip = toy.find_clip("move").unwrap();
+    let mut posed = PosedMesh::default();
+    toy.pose(&Pose::Clip { clip, time_secs: 0.0 }, &DMat4::IDENTITY, &mut posed)
+        .unwrap();
+    assert_eq!(posed.positions[1], Vec3::new(7.0, 0.0, 0.0));
+    toy.pose(&Pose::Authored, &DMat4::IDENTITY, &mut posed).unwrap();
+    assert_eq!(posed.positions[1], Vec3::new(2.0, 0.0, 3.0));
+    assert!(
+        matches!(toy.warnings(), [ToyWarning::MatrixDecomposed { .. }]),
+        "{:?}",
+        toy.warnings()
+    );
+}
+
+#[test]
+fn a_part_that_a_clip_mirrors_is_seen_from_both_sides() {
+    let closed = |last: f32| {
+        let mut glb = triangle();
+        let corner = |axis: usize| {
+            let mut at = [0.0; 3];
+            at[axis] = 1.0;
+            at
+        };
+        let places = [[0.0; 3], corner(0), corner(1), corner(2)].concat();
+        let position = glb.floats("VEC3", &places);
+        let indices = glb.u16s("SCALAR", &[0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]);
+        glb.json["meshes"][0]["primitives"][0] =
+            json!({ "attributes": { "POSITION": position }, "indices": indices });
+        let keys = [
+            glb.floats("SCALAR", &[0.0, 1.0]),
+            glb.floats("VEC3", &[1.0, 1.0, 1.0, last, 1.0, 1.0]),
+        ];
+        glb.animate("flip", "scale", "LINEAR", keys);
+        let toy = read(&glb);
+        (toy.shadow_indices().n_closed, toy.warnings().len())
+    };
+    assert_eq!((closed(0.5), closed(-1.0)), ((12, 0), (0, 1)));
+}
