@@ -11,7 +11,8 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 
 use super::ANDROID;
-use super::apk::{self, Arcore};
+use super::apk;
+use super::arcore::Arcore;
 use super::elf::{AARCH64, Library};
 use super::imports::{Imports, assembly};
 use super::ndk::{self, ANDROID_API};

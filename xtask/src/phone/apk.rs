@@ -7,6 +7,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
+use super::arcore::{Arcore, Unpacked, files_below, unzip};
 use super::ndk;
 use super::tools::{self, Tool};
 use super::zip::{self, Entry};
@@ -26,15 +27,10 @@ const FRAMEWORK_PACKAGE: &str = "android-framework-res";
 const KEYSTORE_PASSWORD: &str = "android";
 const HAS_CODE: &str = "android:hasCode=\"true\"";
 const LIBRARIES: &str = "lib/arm64-v8a";
-
-/// ARCore's archive of classes, library and manifest (`com.google.ar:core`), which is not ours to hand on.
-#[derive(Clone)]
-pub(crate) struct Arcore {
-    /// Where it lies.
-    pub(crate) archive: PathBuf,
-    /// What it must be, in hexadecimal.
-    pub(crate) sha256: String,
-}
+/// Level of the Android that brought `<queries>`: tools before it refuse the element.
+const QUERIES: u32 = 30;
+/// Attributes of our manifest that tools before a level refuse.
+const NEWER_ATTRIBUTES: [(&str, u32); 1] = [("android:enableOnBackInvokedCallback=\"false\"", 33)];
 
 /// Where the tools are: the SDK's, or Debian's.
 struct Tools {
@@ -42,37 +38,42 @@ struct Tools {
     apksigner: PathBuf,
     /// What is compiled against.
     framework: PathBuf,
+    /// The level of its Android, which decides what a manifest may hold.
+    framework_api: u32,
     /// Makes an Android program of Java's classes; only the SDK has it.
     d8: Option<PathBuf>,
 }
 
-/// ARCore's parts.
-struct Unpacked {
-    manifest: String,
-    library: Vec<u8>,
-    classes: Option<Vec<u8>>,
-}
-
 /// Makes, signs and verifies a package around the shell's `library`, and says what it is.
 pub(super) fn make(shell: &Path, folder: &Path, library: Vec<u8>, arcore: Option<&Arcore>) -> Result<()> {
-    let tools = Tools::find()?;
-    let arcore = arcore.map(|arcore| arcore.unpack(folder, &tools)).transpose()?;
-    let manifest = fs::read_to_string(shell.join("AndroidManifest.xml"))?;
-    let has_code = arcore.as_ref().is_some_and(|arcore| arcore.classes.is_some());
+    make_with(&Tools::find()?, shell, folder, library, arcore)
+}
+
+fn make_with(
+    tools: &Tools,
+    shell: &Path,
+    folder: &Path,
+    library: Vec<u8>,
+    arcore: Option<&Arcore>,
+) -> Result<()> {
+    let arcore = arcore.map(|arcore| arcore.unpack(folder)).transpose()?;
+    let has_code = arcore.is_some() && tools.d8.is_some();
     let manifest = manifest_for(
-        &manifest,
+        &fs::read_to_string(shell.join("AndroidManifest.xml"))?,
         arcore.as_ref().map(|arcore| arcore.manifest.as_str()),
-        has_code,
+        (has_code, tools.framework_api),
     )?;
-    let mut entries = resources(&tools, shell, folder, &manifest)?;
+    let sources = folder.join("sources");
+    let mut entries = resources(tools, shell, (folder, &sources), &manifest, arcore.as_ref())?;
     entries.push(entry("lib/arm64-v8a/libapp_android.so", library));
     if let Some(arcore) = arcore {
+        let program = arcore.program((&tools.framework, tools.d8.as_deref()), &sources)?;
         entries.push(entry("lib/arm64-v8a/libarcore_sdk_c.so", arcore.library));
-        entries.extend(arcore.classes.map(|classes| entry("classes.dex", classes)));
+        entries.extend(program.map(|program| entry("classes.dex", program)));
     }
     let apk = folder.join("shadow-retargeting.apk");
     fs::write(&apk, zip::write(&entries)?)?;
-    sign(&tools, folder, &apk)?;
+    sign(tools, folder, &apk)?;
     report(&apk, has_code)
 }
 
@@ -92,6 +93,7 @@ impl Tools {
             Some(Self {
                 aapt2: tools.join("aapt2"),
                 apksigner: tools.join("apksigner"),
+                framework_api: level_of(&platform)?,
                 framework: platform.join("android.jar"),
                 d8: Some(tools.join("d8")),
             })
@@ -106,66 +108,53 @@ impl Tools {
         Ok(Self {
             aapt2: "aapt2".into(),
             apksigner: "apksigner".into(),
+            framework_api: framework_level(FRAMEWORK),
             framework: FRAMEWORK.into(),
             d8: None,
         })
     }
 }
 
-impl Arcore {
-    fn unpack(&self, folder: &Path, tools: &Tools) -> Result<Unpacked> {
-        let archive = fs::canonicalize(&self.archive).with_context(|| self.archive.display().to_string())?;
-        let sum = sha256(&archive)?;
-        if !sum.eq_ignore_ascii_case(&self.sha256) {
-            bail!("{}: SHA-256 is {sum}, not {}", archive.display(), self.sha256);
-        }
-        let unpacked = folder.join("arcore");
-        let _ = fs::remove_dir_all(&unpacked);
-        fs::create_dir_all(&unpacked)?;
-        command::run(
-            Command::new("unzip")
-                .args(["-q"])
-                .arg(&archive)
-                .current_dir(&unpacked),
-        )?;
-        let classes = match &tools.d8 {
-            Some(d8) => {
-                let mut dex = Command::new(d8);
-                dex.args(["--release", "--min-api", &ndk::ANDROID_API.to_string(), "--lib"]);
-                dex.arg(&tools.framework).arg("--output").arg(&unpacked);
-                command::run(dex.arg(unpacked.join("classes.jar")))?;
-                Some(fs::read(unpacked.join("classes.dex"))?)
-            }
-            None => None,
-        };
-        Ok(Unpacked {
-            manifest: fs::read_to_string(unpacked.join("AndroidManifest.xml"))?,
-            library: fs::read(unpacked.join("jni/arm64-v8a/libarcore_sdk_c.so"))
-                .context("no library for 64-bit ARM in ARCore's archive")?,
-            classes,
-        })
-    }
+/// The level of a platform of the SDK's, which its folder is named after: `android-36`.
+fn level_of(platform: &Path) -> Option<u32> {
+    let name = platform.file_name()?.to_str()?;
+    let number = name.strip_prefix("android-")?.split('.').next()?;
+    number.parse().ok()
 }
 
-fn sha256(file: &Path) -> Result<String> {
-    let name = file.display().to_string();
-    let sum = command::output("sha256sum", &[&name])
-        .or_else(|| command::output("shasum", &["-a", "256", &name]))
-        .context("neither sha256sum nor shasum runs here")?;
-    Ok(sum.split_whitespace().next().unwrap_or_default().to_owned())
+/// The level that a framework says it is of; the oldest that the app runs on where it says none.
+fn framework_level(framework: &str) -> u32 {
+    let told = command::output("aapt2", &["dump", "badging", framework]).unwrap_or_default();
+    let level = told
+        .split_once("sdkVersion:'")
+        .and_then(|(_, rest)| rest.split('\'').next()?.parse().ok());
+    level.unwrap_or(ndk::ANDROID_API)
 }
 
-/// Our manifest, joined with ARCore's, and true about whether there are classes.
-fn manifest_for(ours: &str, arcore: Option<&str>, has_code: bool) -> Result<String> {
+/// Our manifest, joined with ARCore's, true about whether there are classes, and without what the framework of that level does not
+/// know: such a package is for looking at alone.
+fn manifest_for(ours: &str, arcore: Option<&str>, (has_code, framework_api): (bool, u32)) -> Result<String> {
     if ours.matches(HAS_CODE).count() != 1 {
         bail!("the manifest does not say {HAS_CODE} once");
     }
     let mut manifest = ours.replace(HAS_CODE, &format!("android:hasCode=\"{has_code}\""));
+    for (attribute, level) in NEWER_ATTRIBUTES {
+        if framework_api < level {
+            println!("{attribute} is left out: it is of API level {level}, the framework of {framework_api}");
+            manifest = manifest.replace(attribute, "");
+        }
+    }
     for (tag, before) in [("application", "</application>"), ("queries", "<application")] {
         let Some(inside) = arcore.and_then(|manifest| inside(manifest, tag)) else {
             continue;
         };
         let inside = if tag == "queries" {
+            if framework_api < QUERIES {
+                println!(
+                    "<queries> is left out: it is of API level {QUERIES}, the framework of {framework_api}"
+                );
+                continue;
+            }
             format!("<queries>{inside}</queries>")
         } else {
             inside.to_owned()
@@ -185,19 +174,18 @@ fn inside<'a>(xml: &'a str, tag: &str) -> Option<&'a str> {
     Some(&inside[..inside.find(&format!("</{tag}>"))?])
 }
 
-/// Manifest and resources as Android reads them.
-fn resources(tools: &Tools, shell: &Path, folder: &Path, manifest: &str) -> Result<Vec<Entry>> {
-    let (text, compiled, linked) = (
-        folder.join("AndroidManifest.xml"),
-        folder.join("resources.zip"),
-        folder.join("resources"),
-    );
+/// Manifest and resources as Android reads them; the sources of their R classes go to the second folder.
+fn resources(
+    tools: &Tools,
+    shell: &Path,
+    (folder, sources): (&Path, &Path),
+    manifest: &str,
+    arcore: Option<&Unpacked>,
+) -> Result<Vec<Entry>> {
+    let (text, linked) = (folder.join("AndroidManifest.xml"), folder.join("resources"));
     fs::write(&text, manifest)?;
-    let _ = fs::remove_dir_all(&linked);
-    fs::create_dir_all(&linked)?;
-    let mut compile = Command::new(&tools.aapt2);
-    compile.arg("compile").arg("--dir").arg(shell.join("res"));
-    command::run(compile.arg("-o").arg(&compiled))?;
+    let _ = fs::remove_dir_all(sources);
+    let mut compiled = vec![compile(tools, &shell.join("res"), folder.join("resources.zip"))?];
     let mut link = Command::new(&tools.aapt2);
     link.args(["link", "--version-name", env!("CARGO_PKG_VERSION")]);
     link.args([
@@ -205,23 +193,26 @@ fn resources(tools: &Tools, shell: &Path, folder: &Path, manifest: &str) -> Resu
         &version_code(env!("CARGO_PKG_VERSION"))?.to_string(),
     ]);
     link.arg("-I").arg(&tools.framework).arg("--manifest").arg(&text);
-    let base = folder.join("base.zip");
-    command::run(link.arg("-o").arg(&base).arg(&compiled))?;
-    command::run(Command::new("unzip").arg("-q").arg(&base).arg("-d").arg(&linked))?;
-    let mut entries = Vec::new();
-    let mut folders = vec![linked.clone()];
-    while let Some(folder) = folders.pop() {
-        for path in fs::read_dir(folder)?.flatten().map(|entry| entry.path()) {
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let name = path.strip_prefix(&linked)?.display().to_string();
-                entries.push(entry(&name, fs::read(&path)?));
-            }
-        }
+    if let Some((arcore, resources)) = arcore.and_then(|arcore| Some((arcore, arcore.resources()?))) {
+        compiled.push(compile(tools, &resources, folder.join("arcore.zip"))?);
+        link.args(["--auto-add-overlay", "--extra-packages", arcore.package()?]);
+        link.arg("--java").arg(sources);
     }
-    entries.sort_by(|one, other| one.name.cmp(&other.name));
-    Ok(entries)
+    let base = folder.join("base.zip");
+    command::run(link.arg("-o").arg(&base).args(&compiled))?;
+    unzip(&base, &linked)?;
+    let entries = files_below(&linked).into_iter().map(|path| {
+        let name = path.strip_prefix(&linked)?.display().to_string();
+        Ok(entry(&name, fs::read(&path)?))
+    });
+    entries.collect()
+}
+
+fn compile(tools: &Tools, resources: &Path, compiled: PathBuf) -> Result<PathBuf> {
+    let mut compile = Command::new(&tools.aapt2);
+    compile.arg("compile").arg("--dir").arg(resources);
+    command::run(compile.arg("-o").arg(&compiled))?;
+    Ok(compiled)
 }
 
 /// A number that grows with the version, as the store asks: two digits for each part.
@@ -304,6 +295,7 @@ fn report(apk: &Path, has_code: bool) -> Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::classes::class_file;
     use super::*;
 
     const OURS: &str =
@@ -313,19 +305,184 @@ mod tests {
 
     #[test]
     fn a_manifest_is_joined_with_that_of_arcore() {
-        let joined = manifest_for(OURS, Some(ARCORE), true).expect("a manifest");
+        let joined = manifest_for(OURS, Some(ARCORE), (true, 36)).expect("a manifest");
         let expected = r#"<manifest><queries><package/></queries><application android:hasCode="true"><activity/><meta-data/></application></manifest>"#;
         assert_eq!(joined, expected);
     }
 
     #[test]
     fn without_classes_a_manifest_has_no_code() {
-        let alone = manifest_for(OURS, None, false).expect("a manifest");
+        let alone = manifest_for(OURS, None, (false, 36)).expect("a manifest");
         assert_eq!(alone, OURS.replace("true", "false"));
         assert!(
-            manifest_for(&alone, None, false).is_err(),
+            manifest_for(&alone, None, (false, 36)).is_err(),
             "says nothing to replace"
         );
+    }
+
+    #[test]
+    fn what_a_framework_does_not_know_is_left_out() {
+        let ours = OURS.replace("hasCode", "enableOnBackInvokedCallback=\"false\" android:hasCode");
+        let old = manifest_for(&ours, Some(ARCORE), (true, 29)).expect("a manifest");
+        assert!(
+            !old.contains("queries") && !old.contains("Invoked") && old.contains("<meta-data/>"),
+            "{old}"
+        );
+        let new = manifest_for(&ours, Some(ARCORE), (true, 33)).expect("a manifest");
+        assert!(
+            new.contains("<queries><package/></queries>") && new.contains("Invoked"),
+            "{new}"
+        );
+    }
+
+    #[test]
+    fn a_platforms_folder_says_its_level() {
+        let level = |name: &str| level_of(Path::new(name));
+        assert_eq!(
+            [
+                level("p/android-36"),
+                level("p/android-36.1"),
+                level("p/android-Baklava")
+            ],
+            [Some(36), Some(36), None]
+        );
+        let folder = temporary("levels");
+        for name in ["android-9", "android-36", "android-35"] {
+            fs::create_dir_all(folder.join(name)).expect("a folder");
+        }
+        assert_eq!(ndk::newest_folder(&folder), Some(folder.join("android-36")));
+        fs::remove_dir_all(folder).expect("a folder");
+    }
+
+    fn temporary(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("xtask-apk-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).expect("a folder");
+        folder
+    }
+
+    /// An archive as ARCore's is: an activity that uses R classes which are not in it, their resources, and `<queries>`.
+    fn stand_in(folder: &Path, also_names: &[&str]) -> Arcore {
+        let r = ["R", "R$id", "R$layout", "R$string"].map(|name| format!("com/google/ar/core/{name}"));
+        let mut names: Vec<&str> = r.iter().map(String::as_str).collect();
+        names.extend(["android/app/Activity", "[Lcom/google/ar/core/Session;"]);
+        names.extend(also_names);
+        let class = |name: &str, names: &[&str]| {
+            let name = format!("com/google/ar/core/{name}");
+            entry(&format!("{name}.class"), class_file(&name, names))
+        };
+        let jar = zip::write(&[class("InstallActivity", &names), class("Session", &[])]).expect("a jar");
+        let manifest = r#"<manifest xmlns:android="http://schemas.android.com/apk/res/android" package="com.google.ar.core">
+            <queries><package android:name="com.google.ar.core"/></queries>
+            <application><meta-data android:name="com.google.ar.core.min_apk_version" android:value="1"/>
+            <activity android:name="com.google.ar.core.InstallActivity"/></application></manifest>"#;
+        let layout = r#"<LinearLayout xmlns:android="http://schemas.android.com/apk/res/android"
+            android:id="@+id/box" android:layout_width="1dp" android:layout_height="1dp"/>"#;
+        let strings = r#"<resources><string name="install">Install</string></resources>"#;
+        let archive = zip::write(&[
+            entry("AndroidManifest.xml", manifest.into()),
+            entry("R.txt", "int string install 0x0".into()),
+            entry("res/layout/ask.xml", layout.into()),
+            entry("res/values/values.xml", strings.into()),
+            entry("classes.jar", jar),
+            entry("jni/arm64-v8a/libarcore_sdk_c.so", vec![7; 9]),
+        ]);
+        let path = folder.join("core.aar");
+        fs::write(&path, archive.expect("an archive")).expect("a file");
+        Arcore {
+            sha256: super::super::arcore::sha256(&path).expect("a sum"),
+            archive: path,
+        }
+    }
+
+    /// Debian's tools, with a script in the place of the SDK's compiler: its program is the list of what it was given.
+    fn tools_with_d8(folder: &Path) -> Option<Tools> {
+        let programs = TOOLS.iter().map(|tool| tool.program).chain(["javac"]);
+        let has_all = programs
+            .into_iter()
+            .all(|program| command::find(program).is_some());
+        if !has_all || !Path::new(FRAMEWORK).is_file() {
+            eprintln!("not tested here: a package, for which the tools of `android package` are missing");
+            return None;
+        }
+        let d8 = folder.join("d8");
+        let script = "#!/bin/sh\nlist=\"$*\"\nwhile [ \"$1\" != --output ]; do shift; done\necho \"$list\" > \"$2/classes.dex\"\n";
+        fs::write(&d8, script).expect("a script");
+        command::run(Command::new("chmod").arg("+x").arg(&d8)).expect("a program");
+        Some(Tools {
+            aapt2: "aapt2".into(),
+            apksigner: "apksigner".into(),
+            framework: FRAMEWORK.into(),
+            framework_api: framework_level(FRAMEWORK),
+            d8: Some(d8),
+        })
+    }
+
+    #[test]
+    fn a_package_has_the_classes_of_its_archives_resources_or_is_refused() {
+        let folder = temporary("package");
+        let Some(tools) = tools_with_d8(&folder) else {
+            return;
+        };
+        let shell = Path::new(env!("CARGO_MANIFEST_DIR")).join("../app-android");
+        let whole = stand_in(&folder, &[]);
+        make_with(&tools, &shell, &folder, vec![1; 5], Some(&whole)).expect("a package");
+        let apk = fs::read(folder.join("shadow-retargeting.apk")).expect("a package");
+        let found = zip::read(&apk).expect("what is in it");
+        let bytes = |name: &str| {
+            let found = found.iter().find(|found| found.name == name).expect(name);
+            String::from_utf8_lossy(&apk[found.at..found.at + found.n_bytes]).into_owned()
+        };
+        for class in [
+            "R.class",
+            "R$id.class",
+            "R$layout.class",
+            "R$string.class",
+            "classes.jar",
+        ] {
+            assert!(
+                bytes("classes.dex").contains(class),
+                "{class}: {}",
+                bytes("classes.dex")
+            );
+        }
+        assert!(
+            found.iter().any(|found| found.name == "res/layout/ask.xml"),
+            "{found:?}"
+        );
+
+        let torn = stand_in(&folder, &["com/google/other/Gone"]);
+        let error = make_with(&tools, &shell, &folder, vec![1; 5], Some(&torn))
+            .expect_err("torn")
+            .to_string();
+        assert!(
+            error.contains("com/google/other/Gone, which com/google/ar/core/InstallActivity names"),
+            "{error}"
+        );
+        // As a package was made before: without R classes.
+        fs::write(
+            folder.join("core.aar"),
+            zip::write(&without_resources(&folder)).expect("an archive"),
+        )
+        .expect("a file");
+        let plain = Arcore {
+            sha256: super::super::arcore::sha256(&whole.archive).expect("a sum"),
+            ..whole
+        };
+        let error = make_with(&tools, &shell, &folder, vec![1; 5], Some(&plain))
+            .expect_err("no R")
+            .to_string();
+        assert!(error.contains("com/google/ar/core/R$layout"), "{error}");
+        fs::remove_dir_all(folder).expect("a folder");
+    }
+
+    fn without_resources(folder: &Path) -> Vec<Entry> {
+        stand_in(folder, &[]);
+        let archive = fs::read(folder.join("core.aar")).expect("an archive");
+        let found = zip::read(&archive).expect("what is in it").into_iter();
+        let kept = found.filter(|found| !found.name.starts_with("res/"));
+        kept.map(|found| entry(&found.name, archive[found.at..found.at + found.n_bytes].to_vec()))
+            .collect()
     }
 
     #[test]

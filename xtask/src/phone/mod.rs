@@ -2,7 +2,9 @@
 
 mod android;
 mod apk;
+mod arcore;
 pub(crate) mod calls;
+mod classes;
 mod elf;
 mod imports;
 mod ios;
@@ -19,7 +21,7 @@ use anyhow::{Result, bail};
 use crate::command;
 use crate::toolchain::Toolchain;
 
-pub(crate) use apk::Arcore;
+pub(crate) use arcore::Arcore;
 
 /// A shell.
 pub(crate) struct Phone {
