@@ -1,6 +1,7 @@
 //! What only Java can do: the camera's permission, the system's settings, and the pointers that ARCore asks for.
 
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use android_activity::{AndroidApp, WindowManagerFlags};
@@ -10,6 +11,7 @@ use arcore::java::{Java, JavaHost};
 use jni::errors::Result;
 use jni::objects::{JObject, JValue};
 use jni::refs::Global;
+use jni::strings::JNIStr;
 use jni::{Env, JavaVM, jni_sig, jni_str};
 
 use crate::heat::Thermometer;
@@ -30,6 +32,8 @@ const LONG: i32 = 1;
 pub(crate) struct Activity {
     app: AndroidApp,
     was_asked: bool,
+    /// What bars and cut-outs cover, as Java's own thread has told last.
+    insets_px: Arc<Mutex<Option<[i32; 4]>>>,
     thermometer: Option<Thermometer>,
 }
 
@@ -39,8 +43,25 @@ impl Activity {
         Self {
             app,
             was_asked: false,
+            insets_px: Arc::default(),
             thermometer: Thermometer::find(),
         }
+    }
+
+    /// What bars and cut-outs cover, at the left, the top, the right and the bottom; none before Android tells.
+    pub(crate) fn insets_px(&self) -> Option<[i32; 4]> {
+        *self.insets_px.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Has it told anew.
+    fn look_at_insets(&self) {
+        let (app, told) = (self.app.clone(), Arc::clone(&self.insets_px));
+        self.app.run_on_java_main_thread(Box::new(move || {
+            let insets_px = guarded("a call of Java", || with_java(&app, covered));
+            if let Some(Ok(insets_px)) = insets_px {
+                *told.lock().unwrap_or_else(PoisonError::into_inner) = insets_px;
+            }
+        }));
     }
 
     /// Lets `act` call Java on the thread that activities live on, and writes to the log where it fails.
@@ -81,6 +102,56 @@ fn with_java<T>(app: &AndroidApp, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -
         }
         result
     })
+}
+
+/// A number that a method without arguments returns.
+fn number(env: &mut Env<'_>, of: &JObject<'_>, method: &JNIStr) -> Result<i32> {
+    env.call_method(of, method, jni_sig!("()I"), &[])?.i()
+}
+
+/// `getWindow().getDecorView().getRootWindowInsets()` and its `getDisplayCutout()`: what bars and cut-outs cover, none while the window
+/// is not shown. Both are there since Android 9.
+fn covered(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<Option<[i32; 4]>> {
+    let window = env
+        .call_method(activity, jni_str!("getWindow"), jni_sig!("()Landroid/view/Window;"), &[])?
+        .l()?;
+    let view = env
+        .call_method(&window, jni_str!("getDecorView"), jni_sig!("()Landroid/view/View;"), &[])?
+        .l()?;
+    let insets = env
+        .call_method(&view, jni_str!("getRootWindowInsets"), jni_sig!("()Landroid/view/WindowInsets;"), &[])?
+        .l()?;
+    if insets.is_null() {
+        return Ok(None);
+    }
+    let cutout = env
+        .call_method(&insets, jni_str!("getDisplayCutout"), jni_sig!("()Landroid/view/DisplayCutout;"), &[])?
+        .l()?;
+    let sides = [
+        (jni_str!("getSystemWindowInsetLeft"), jni_str!("getSafeInsetLeft")),
+        (jni_str!("getSystemWindowInsetTop"), jni_str!("getSafeInsetTop")),
+        (jni_str!("getSystemWindowInsetRight"), jni_str!("getSafeInsetRight")),
+        (jni_str!("getSystemWindowInsetBottom"), jni_str!("getSafeInsetBottom")),
+    ];
+    let mut covered = [0; 4];
+    for (side, (of_bars, of_cutout)) in covered.iter_mut().zip(sides) {
+        *side = number(env, &insets, of_bars)?;
+        if !cutout.is_null() {
+            *side = number(env, &cutout, of_cutout)?.max(*side);
+        }
+    }
+    Ok(Some(covered))
+}
+
+/// `getWindowManager().getDefaultDisplay().getRotation()`.
+fn rotation(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<i32> {
+    let manager = env
+        .call_method(activity, jni_str!("getWindowManager"), jni_sig!("()Landroid/view/WindowManager;"), &[])?
+        .l()?;
+    let display = env
+        .call_method(&manager, jni_str!("getDefaultDisplay"), jni_sig!("()Landroid/view/Display;"), &[])?
+        .l()?;
+    number(env, &display, jni_str!("getRotation"))
 }
 
 /// How much larger than usual the person wants letters to be: `getResources().getConfiguration().fontScale`. Android makes the activity
@@ -242,6 +313,13 @@ impl Phone for Activity {
 
     fn thermal_status(&mut self) -> Option<i32> {
         self.thermometer.as_ref().map(Thermometer::status)
+    }
+
+    fn rotation(&mut self) -> i32 {
+        // Asked several times a second, as long as there is a window.
+        self.look_at_insets();
+        // The activity is made for landscape.
+        with_java(&self.app, rotation).unwrap_or(1)
     }
 
     fn folder(&self) -> Option<PathBuf> {

@@ -139,7 +139,7 @@ fn manifest_for(ours: &str, arcore: Option<&str>, (has_code, framework_api): (bo
     }
     let mut manifest = ours.replace(HAS_CODE, &format!("android:hasCode=\"{has_code}\""));
     for (attribute, level) in NEWER_ATTRIBUTES {
-        if framework_api < level {
+        if framework_api < level && manifest.contains(attribute) {
             println!("{attribute} is left out: it is of API level {level}, the framework of {framework_api}");
             manifest = manifest.replace(attribute, "");
         }
