@@ -113,25 +113,51 @@ fn number(env: &mut Env<'_>, of: &JObject<'_>, method: &JNIStr) -> Result<i32> {
 /// is not shown. Both are there since Android 9.
 fn covered(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<Option<[i32; 4]>> {
     let window = env
-        .call_method(activity, jni_str!("getWindow"), jni_sig!("()Landroid/view/Window;"), &[])?
+        .call_method(
+            activity,
+            jni_str!("getWindow"),
+            jni_sig!("()Landroid/view/Window;"),
+            &[],
+        )?
         .l()?;
     let view = env
-        .call_method(&window, jni_str!("getDecorView"), jni_sig!("()Landroid/view/View;"), &[])?
+        .call_method(
+            &window,
+            jni_str!("getDecorView"),
+            jni_sig!("()Landroid/view/View;"),
+            &[],
+        )?
         .l()?;
     let insets = env
-        .call_method(&view, jni_str!("getRootWindowInsets"), jni_sig!("()Landroid/view/WindowInsets;"), &[])?
+        .call_method(
+            &view,
+            jni_str!("getRootWindowInsets"),
+            jni_sig!("()Landroid/view/WindowInsets;"),
+            &[],
+        )?
         .l()?;
     if insets.is_null() {
         return Ok(None);
     }
     let cutout = env
-        .call_method(&insets, jni_str!("getDisplayCutout"), jni_sig!("()Landroid/view/DisplayCutout;"), &[])?
+        .call_method(
+            &insets,
+            jni_str!("getDisplayCutout"),
+            jni_sig!("()Landroid/view/DisplayCutout;"),
+            &[],
+        )?
         .l()?;
     let sides = [
         (jni_str!("getSystemWindowInsetLeft"), jni_str!("getSafeInsetLeft")),
         (jni_str!("getSystemWindowInsetTop"), jni_str!("getSafeInsetTop")),
-        (jni_str!("getSystemWindowInsetRight"), jni_str!("getSafeInsetRight")),
-        (jni_str!("getSystemWindowInsetBottom"), jni_str!("getSafeInsetBottom")),
+        (
+            jni_str!("getSystemWindowInsetRight"),
+            jni_str!("getSafeInsetRight"),
+        ),
+        (
+            jni_str!("getSystemWindowInsetBottom"),
+            jni_str!("getSafeInsetBottom"),
+        ),
     ];
     let mut covered = [0; 4];
     for (side, (of_bars, of_cutout)) in covered.iter_mut().zip(sides) {
@@ -146,10 +172,20 @@ fn covered(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<Option<[i32; 4]>
 /// `getWindowManager().getDefaultDisplay().getRotation()`.
 fn rotation(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<i32> {
     let manager = env
-        .call_method(activity, jni_str!("getWindowManager"), jni_sig!("()Landroid/view/WindowManager;"), &[])?
+        .call_method(
+            activity,
+            jni_str!("getWindowManager"),
+            jni_sig!("()Landroid/view/WindowManager;"),
+            &[],
+        )?
         .l()?;
     let display = env
-        .call_method(&manager, jni_str!("getDefaultDisplay"), jni_sig!("()Landroid/view/Display;"), &[])?
+        .call_method(
+            &manager,
+            jni_str!("getDefaultDisplay"),
+            jni_sig!("()Landroid/view/Display;"),
+            &[],
+        )?
         .l()?;
     number(env, &display, jni_str!("getRotation"))
 }

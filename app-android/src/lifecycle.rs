@@ -72,7 +72,11 @@ fn take_input(app: &AndroidApp, stage: &mut Stage) {
         InputEvent::KeyEvent(event) if event.key_code() == Keycode::Back => {
             // Android leaves the activity where nobody takes its key.
             let is_taken = event.action() != KeyAction::Up || stage.back();
-            if is_taken { InputStatus::Handled } else { InputStatus::Unhandled }
+            if is_taken {
+                InputStatus::Handled
+            } else {
+                InputStatus::Unhandled
+            }
         }
         _ => InputStatus::Unhandled,
     };

@@ -63,7 +63,9 @@ impl Pace {
     pub fn is_due(&self, now: Duration) -> bool {
         let Some(drawn) = self.drawn else { return true };
         let step = Duration::from_secs_f64(SLEPT / f64::from(self.frames_per_s));
-        let is_led = self.camera.is_some_and(|camera| now.saturating_sub(camera) < CAMERA_LASTS);
+        let is_led = self
+            .camera
+            .is_some_and(|camera| now.saturating_sub(camera) < CAMERA_LASTS);
         let least = if self.is_news || !is_led { step } else { IDLE };
         now.saturating_sub(drawn) >= least
     }

@@ -10,10 +10,10 @@ use app_core::recording::PictureCodec;
 use app_core::toy::{Toy, ToyError};
 use app_shell::folders::Folders;
 use app_shell::losses::Losses;
-use app_shell::{kept, record};
 use app_shell::toys::BUNDLED;
 use app_shell::video::{MOTION_JPEG, VideoFormat};
 use app_shell::worker::{Outcome, Platform, Worker};
+use app_shell::{kept, record};
 use arcore::feed::Feed;
 use arcore::tracker::{Geometry, Run};
 
@@ -81,7 +81,10 @@ impl<P: Phone> Shell<P> {
             toys: phone.folder(),
             own: phone.own_folder(),
         };
-        let kept = folders.own.as_deref().and_then(|own| kept::text(own, CAMERA_FILE));
+        let kept = folders
+            .own
+            .as_deref()
+            .and_then(|own| kept::text(own, CAMERA_FILE));
         let mut shell = Self {
             live,
             phone,

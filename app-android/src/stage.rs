@@ -102,7 +102,10 @@ impl Stage {
     /// For how long the loop may sleep; none until an event.
     pub(crate) fn sleep(&mut self) -> Option<Duration> {
         let (now, draws) = (self.start.elapsed(), self.draws());
-        let slept = self.shell.as_mut().map_or(Duration::ZERO, |shell| shell.pace().sleep(now));
+        let slept = self
+            .shell
+            .as_mut()
+            .map_or(Duration::ZERO, |shell| shell.pace().sleep(now));
         draws.then_some(slept)
     }
 
@@ -128,7 +131,9 @@ impl Stage {
             None => {
                 let phone = Activity::new(self.app.clone());
                 // Before a driver is asked for anything.
-                let starts = phone.own_folder().map(|folder| starts::begin(&folder, cfg!(debug_assertions)));
+                let starts = phone
+                    .own_folder()
+                    .map(|folder| starts::begin(&folder, cfg!(debug_assertions)));
                 self.own = phone.own_folder();
                 self.trusts_pipelines = starts.as_ref().is_some_and(LaunchHistory::is_first_try);
                 let core = self.core_on(&window)?;

@@ -213,7 +213,12 @@ fn a_screen_is_measured_in_points_without_what_bars_cover() {
     };
     assert_eq!(with_bars.insets, insets);
     // A window that reaches below bars and a cut-out says nothing of them itself.
-    let edge_to_edge = screen([2400, 1080], Some(480), (Some([90, 0, 126, -3]), [0, 0, 2400, 1080]), 1.0);
+    let edge_to_edge = screen(
+        [2400, 1080],
+        Some(480),
+        (Some([90, 0, 126, -3]), [0, 0, 2400, 1080]),
+        1.0,
+    );
     let covered = Insets {
         left_px: 90.0,
         right_px: 126.0,
@@ -249,7 +254,11 @@ fn turns_a_second(pace: &mut Pace, camera_hz: u32, touch_hz: u32) -> (u32, u32) 
         let slept = pace.sleep(now);
         assert!(slept > Duration::from_millis(1), "it spins");
         // An event may wake the loop before.
-        let wake = if touch_hz > 0 { Duration::from_secs_f64(1.0 / f64::from(touch_hz)) } else { slept };
+        let wake = if touch_hz > 0 {
+            Duration::from_secs_f64(1.0 / f64::from(touch_hz))
+        } else {
+            slept
+        };
         now += slept.min(wake);
     }
     (n_turns, n_pictures)
@@ -258,11 +267,20 @@ fn turns_a_second(pace: &mut Pace, camera_hz: u32, touch_hz: u32) -> (u32, u32) 
 #[test]
 fn the_loop_waits_and_draws_a_picture_for_each_of_the_cameras() {
     let (n_turns, n_pictures) = turns_a_second(&mut Pace::default(), 0, 0);
-    assert!(n_turns <= 85 && (60..=85).contains(&n_pictures), "no camera: {n_turns} turns, {n_pictures} pictures");
+    assert!(
+        n_turns <= 85 && (60..=85).contains(&n_pictures),
+        "no camera: {n_turns} turns, {n_pictures} pictures"
+    );
     let (n_turns, n_pictures) = turns_a_second(&mut Pace::default(), 30, 0);
-    assert!(n_turns < 330 && (29..=31).contains(&n_pictures), "{n_turns} turns, {n_pictures} pictures");
+    assert!(
+        n_turns < 330 && (29..=31).contains(&n_pictures),
+        "{n_turns} turns, {n_pictures} pictures"
+    );
     let (_, n_pictures) = turns_a_second(&mut Pace::default(), 30, 240);
-    assert!((60..=85).contains(&n_pictures), "a finger is followed, no more often than the screen shows: {n_pictures}");
+    assert!(
+        (60..=85).contains(&n_pictures),
+        "a finger is followed, no more often than the screen shows: {n_pictures}"
+    );
     let mut slow = Pace::default();
     slow.set_rate(30);
     let (_, n_pictures) = turns_a_second(&mut slow, 60, 240);
@@ -283,7 +301,10 @@ fn the_size_of_pictures_that_come_is_kept_for_the_next_start() {
     shell.set_foreground(true);
     shell.tell(ShellEvent::User(UserAction::Begin));
     shell.tick();
-    assert!(calls().contains("mode=0"), "the one that came before, and not the largest");
+    assert!(
+        calls().contains("mode=0"),
+        "the one that came before, and not the largest"
+    );
     std::fs::remove_dir_all(own).expect("a folder");
 }
 

@@ -50,7 +50,10 @@ fn whatever_the_system_calls_is_guarded() {
 fn the_phone_is_held_by_either_hand() {
     let list = include_str!("../Info.plist");
     for side in ["Left", "Right"] {
-        assert!(list.contains(&format!("<string>UIInterfaceOrientationLandscape{side}</string>")), "{side}");
+        assert!(
+            list.contains(&format!("<string>UIInterfaceOrientationLandscape{side}</string>")),
+            "{side}"
+        );
     }
 }
 

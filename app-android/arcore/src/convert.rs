@@ -72,7 +72,12 @@ pub fn quarter_turns(of_sensor_raw: [f32; 7], of_display_raw: [f32; 7]) -> Optio
     let [right, up] = [DVec3::X, DVec3::Y].map(|axis| sensor_from_display.transform_vector3(axis));
     // What lies above in the picture is shown at the right after one turn clockwise.
     let is_along = |one: DVec3, other: DVec3| one.dot(other) > 0.99;
-    let turned = [(DVec3::X, DVec3::Y), (DVec3::Y, DVec3::NEG_X), (DVec3::NEG_X, DVec3::NEG_Y), (DVec3::NEG_Y, DVec3::X)];
+    let turned = [
+        (DVec3::X, DVec3::Y),
+        (DVec3::Y, DVec3::NEG_X),
+        (DVec3::NEG_X, DVec3::NEG_Y),
+        (DVec3::NEG_Y, DVec3::X),
+    ];
     (0..).zip(turned).find_map(|(turns, (of_right, of_up))| {
         (is_along(right, of_right) && is_along(up, of_up)).then_some(turns)
     })
@@ -152,7 +157,10 @@ mod tests {
             pose_raw(&DMat4::from_rotation_translation(rotation, DVec3::X))
         };
         let told = |degrees: f64| quarter_turns(raw(0.0), raw(degrees.to_radians()));
-        assert_eq!([0.0, 90.0, 180.0, 270.0].map(told), [Some(0), Some(1), Some(2), Some(3)]);
+        assert_eq!(
+            [0.0, 90.0, 180.0, 270.0].map(told),
+            [Some(0), Some(1), Some(2), Some(3)]
+        );
         assert_eq!([told(45.0), quarter_turns(raw(0.0), [0.0; 7])], [None, None]);
         // A display whose right is the picture's above shows the picture turned clockwise, as `Display` has it.
         let display = app_core::camera_frame::Display {

@@ -43,7 +43,11 @@ impl Feed {
     /// Takes what [`Feed::take_kept`] told in an earlier start. A text that says nothing is as none.
     #[must_use]
     pub fn with_kept(mut self, kept: &str) -> Self {
-        let sides: Vec<i32> = kept.trim().split('x').filter_map(|side| side.parse().ok().filter(|side| *side > 0)).collect();
+        let sides: Vec<i32> = kept
+            .trim()
+            .split('x')
+            .filter_map(|side| side.parse().ok().filter(|side| *side > 0))
+            .collect();
         if let ([width, height], Some(tracker)) = (sides.as_slice(), &mut self.tracker) {
             self.kept_px = Some([*width, *height]);
             tracker.limit([*width, *height]);
@@ -131,7 +135,12 @@ impl Feed {
     }
 
     /// Asks for the camera that something else had, and lets it go again: the app asks for it once it is told.
-    fn look_again(&mut self, phone: &mut dyn JavaHost, now: Duration, looked: Option<Duration>) -> Option<ShellEvent> {
+    fn look_again(
+        &mut self,
+        phone: &mut dyn JavaHost,
+        now: Duration,
+        looked: Option<Duration>,
+    ) -> Option<ShellEvent> {
         let is_due = looked.is_some_and(|looked| now.saturating_sub(looked) >= LOOK);
         if looked.is_none() || is_due {
             self.interrupted = Some(Some(now));

@@ -45,10 +45,18 @@ fn n_pixels([width, height]: [i32; 2]) -> i64 {
 /// was found not to deliver, unless all are.
 #[must_use]
 pub fn order_of(modes: &[CameraMode], at_most_px: Option<[i32; 2]>) -> Vec<usize> {
-    let mut order: Vec<(usize, &CameraMode)> = modes.iter().enumerate().filter(|(_, mode)| mode.faces_away).collect();
+    let mut order: Vec<(usize, &CameraMode)> = modes
+        .iter()
+        .enumerate()
+        .filter(|(_, mode)| mode.faces_away)
+        .collect();
     let rank = |mode: &CameraMode| {
         let is_small = mode.size_px.iter().all(|side| *side <= MAX_SIDE_PX);
-        let size = if is_small { -mode.n_pixels() } else { mode.n_pixels() };
+        let size = if is_small {
+            -mode.n_pixels()
+        } else {
+            mode.n_pixels()
+        };
         (!is_small, size, mode.size_px, (mode.hz - MAX_HZ).abs())
     };
     order.sort_by_key(|(_, mode)| rank(mode));
@@ -135,7 +143,9 @@ impl Modes {
             (api.ArSession_getSupportedCameraConfigsWithFilter)(raw, filter.as_ptr(), self.list.as_ptr());
             (api.ArCameraConfigList_getSize)(raw, self.list.as_ptr(), &raw mut n_modes);
         }
-        Ok((0..n_modes).map(|index| self.read((api, session), index)).collect())
+        Ok((0..n_modes)
+            .map(|index| self.read((api, session), index))
+            .collect())
     }
 
     /// Takes a mode of the list by its number, which is below the list's size.

@@ -80,7 +80,11 @@ pub(super) struct Session {
 /// Of the sensors of nearly all phones.
 const USUAL_TURNS: u8 = 1;
 
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 3")]
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "from 0 to 3"
+)]
 fn quarter(turns: i32) -> u8 {
     turns.rem_euclid(4) as u8
 }
@@ -164,7 +168,9 @@ impl Session {
                 configured => {
                     configured?;
                     if part != wished {
-                        eprintln!("arcore: of card (1) and autofocus (2), {wished} was refused and {part} is used");
+                        eprintln!(
+                            "arcore: of card (1) and autofocus (2), {wished} was refused and {part} is used"
+                        );
                         self.refused |= wished & !part;
                     }
                     self.focuses = part & FOCUS != 0;
@@ -186,7 +192,11 @@ impl Session {
         } else {
             NO_PLANES
         };
-        let focus = if part & FOCUS == 0 { FIXED_FOCUS } else { AUTO_FOCUS };
+        let focus = if part & FOCUS == 0 {
+            FIXED_FOCUS
+        } else {
+            AUTO_FOCUS
+        };
         // SAFETY: session, configuration and database live.
         Failure::check(unsafe {
             let config = config.as_ptr();
@@ -234,7 +244,8 @@ impl Session {
 
     /// The picture is shown by so many turns now: a display that is turned on is held against how the sensor lies.
     pub(super) fn learn_turns(&self, turns: u8) {
-        self.sensor_turns.set(quarter(i32::from(turns) + self.rotation.get()));
+        self.sensor_turns
+            .set(quarter(i32::from(turns) + self.rotation.get()));
     }
 
     pub(super) fn resume(&self) -> Result<(), Failure> {

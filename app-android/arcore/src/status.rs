@@ -195,7 +195,9 @@ pub fn told(failure: Failure) -> ShellEvent {
             let words = "Another app uses the camera. Close it, and it goes on here.";
             ShellEvent::ArTrouble(ArSession::Interrupted, words.to_owned())
         }
-        (_, Remedy::None | Remedy::UpdateApp) => ShellEvent::ArTrouble(ArSession::Unsupported, failure.words()),
+        (_, Remedy::None | Remedy::UpdateApp) => {
+            ShellEvent::ArTrouble(ArSession::Unsupported, failure.words())
+        }
         _ => ShellEvent::ArTrouble(ArSession::Failed, failure.words()),
     }
 }

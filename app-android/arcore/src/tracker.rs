@@ -232,7 +232,9 @@ impl Tracker {
     }
 
     fn picture_came(&mut self) -> Result<(), FrameError> {
-        let Some(session) = &self.session else { return Ok(()) };
+        let Some(session) = &self.session else {
+            return Ok(());
+        };
         if self.watch.n_pictures == 1 && self.at_most_px.is_some() {
             self.limited_px = self.at_most_px;
         }
@@ -257,7 +259,10 @@ impl Tracker {
         }
         if self.begin_anew(Session::next_mode)? {
             self.at_most_px = self.session.as_ref().and_then(Session::mode_px);
-            eprintln!("arcore: no picture comes: smaller ones are asked for, {:?} px", self.at_most_px);
+            eprintln!(
+                "arcore: no picture comes: smaller ones are asked for, {:?} px",
+                self.at_most_px
+            );
             return Ok(());
         }
         // Whatever is smaller does not come either: a later session may begin with the largest.
@@ -268,14 +273,22 @@ impl Tracker {
     }
 
     /// Pauses the session, changes it, and resumes it where there was something to change.
-    fn begin_anew(&mut self, change: impl FnOnce(&mut Session) -> Result<bool, Failure>) -> Result<bool, FrameError> {
-        let Some(session) = &mut self.session else { return Ok(false) };
-        let begun = session.pause().and_then(|()| change(session)).and_then(|is_changed| {
-            if is_changed {
-                session.resume()?;
-            }
-            Ok(is_changed)
-        });
+    fn begin_anew(
+        &mut self,
+        change: impl FnOnce(&mut Session) -> Result<bool, Failure>,
+    ) -> Result<bool, FrameError> {
+        let Some(session) = &mut self.session else {
+            return Ok(false);
+        };
+        let begun = session
+            .pause()
+            .and_then(|()| change(session))
+            .and_then(|is_changed| {
+                if is_changed {
+                    session.resume()?;
+                }
+                Ok(is_changed)
+            });
         self.watch.begin();
         if begun.is_err() {
             self.session = None;

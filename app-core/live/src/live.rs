@@ -332,7 +332,10 @@ impl Live {
         let tested = self_test::run(&mut self.core, self.preset);
         self.scene = None;
         let words = match &tested {
-            Ok(off) => format!("{:.2} codes off where it is worst, {:.3} in the mean", off.worst_codes, off.mean_codes),
+            Ok(off) => format!(
+                "{:.2} codes off where it is worst, {:.3} in the mean",
+                off.worst_codes, off.mean_codes
+            ),
             Err(error) => error.to_string(),
         };
         self.app.note_self_test(&words);

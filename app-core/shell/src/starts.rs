@@ -1,7 +1,7 @@
 //! What is kept from start to start, in a file of the app's own.
 
-use std::path::Path;
 use std::io;
+use std::path::Path;
 
 use app_core::app::LaunchHistory;
 

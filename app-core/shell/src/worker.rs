@@ -202,13 +202,15 @@ impl Worker {
             return;
         };
         let own = own.clone();
-        let kept = thread::Builder::new().name("pipelines".to_owned()).spawn(move || {
-            guarded("a thread", || {
-                if let Err(error) = pipelines::store(&own, &key, &data) {
-                    eprintln!("compiled pipelines are not kept: {error}");
-                }
-            })
-        });
+        let kept = thread::Builder::new()
+            .name("pipelines".to_owned())
+            .spawn(move || {
+                guarded("a thread", || {
+                    if let Err(error) = pipelines::store(&own, &key, &data) {
+                        eprintln!("compiled pipelines are not kept: {error}");
+                    }
+                })
+            });
         if let Err(error) = kept {
             eprintln!("compiled pipelines are not kept: {error}");
         }

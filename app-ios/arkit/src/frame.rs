@@ -326,7 +326,10 @@ mod tests {
         );
         assert_eq!(frame.exposure.and_then(|exposure| exposure.amount()), Some(0.005));
         assert_eq!((frame.anchors[0].id, frame.anchors.len()), (3, 1));
-        assert_eq!(frame.display.quarter_turns, 2, "the phone is held by the other hand");
+        assert_eq!(
+            frame.display.quarter_turns, 2,
+            "the phone is held by the other hand"
+        );
     }
 
     #[test]

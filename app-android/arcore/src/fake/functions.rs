@@ -170,7 +170,10 @@ pub(super) unsafe extern "C" fn config_create(session: *const ArSession, place: 
     });
 }
 
-pub(super) unsafe extern "C" fn filter_create(session: *const ArSession, place: *mut *mut ArCameraConfigFilter) {
+pub(super) unsafe extern "C" fn filter_create(
+    session: *const ArSession,
+    place: *mut *mut ArCameraConfigFilter,
+) {
     world(|world| {
         world.used("session", session);
         world.is_filtered = false;
@@ -198,7 +201,11 @@ filter! {
     filter_depth("depth", u32);
 }
 
-pub(super) unsafe extern "C" fn mode_facing(_: *const ArSession, mode: *const ArCameraConfig, facing: *mut i32) {
+pub(super) unsafe extern "C" fn mode_facing(
+    _: *const ArSession,
+    mode: *const ArCameraConfig,
+    facing: *mut i32,
+) {
     let index = world(|world| world.used("mode", mode));
     unsafe { *facing = world(|world| i32::from(world.fronts.contains(&index))) };
 }
@@ -395,7 +402,11 @@ pub(super) unsafe extern "C" fn camera_pose(_: *const ArSession, _: *const ArCam
     world(|world| world.alive.get_mut(&pose.addr()).expect("a pose").1 = 0);
 }
 
-pub(super) unsafe extern "C" fn camera_display_pose(_: *const ArSession, camera: *const ArCamera, pose: *mut ArPose) {
+pub(super) unsafe extern "C" fn camera_display_pose(
+    _: *const ArSession,
+    camera: *const ArCamera,
+    pose: *mut ArPose,
+) {
     world(|world| {
         world.used("camera", camera);
         world.alive.get_mut(&pose.addr()).expect("a pose").1 = DISPLAY;

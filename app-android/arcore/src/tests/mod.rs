@@ -170,7 +170,10 @@ fn whatever_step_of_a_beginning_fails_leaves_nothing_and_may_be_tried_again() {
 fn after_a_fatal_failure_a_new_session_begins() {
     let mut tracker = running();
     world(|world| world.fails.insert("update", -2));
-    assert!(matches!(update(&mut tracker), Err(FrameError::Failed(Failure(-2)))));
+    assert!(matches!(
+        update(&mut tracker),
+        Err(FrameError::Failed(Failure(-2)))
+    ));
     assert_clean();
     world(|world| world.fails.clear());
     calls();
@@ -205,10 +208,21 @@ fn the_camera_is_set_to_the_largest_picture_that_is_not_too_large_and_then_to_sm
     ];
     assert_eq!(order_of(&modes, None), [2, 4, 0, 3]);
     assert_eq!(order_of(&modes, Some([1280, 720])), [4, 0]);
-    assert_eq!(order_of(&modes, Some([1, 1])), [2, 4, 0, 3], "a limit that leaves none is none");
+    assert_eq!(
+        order_of(&modes, Some([1, 1])),
+        [2, 4, 0, 3],
+        "a limit that leaves none is none"
+    );
     modes[2].faces_away = false;
-    assert_eq!(order_of(&modes, None), [1, 4, 0, 3], "among equals never the one that faces the person");
-    assert_eq!(order_of(&[mode(4000, 3000, 30), mode(2560, 1440, 30)], None), [1, 0]);
+    assert_eq!(
+        order_of(&modes, None),
+        [1, 4, 0, 3],
+        "among equals never the one that faces the person"
+    );
+    assert_eq!(
+        order_of(&[mode(4000, 3000, 30), mode(2560, 1440, 30)], None),
+        [1, 0]
+    );
 }
 
 #[test]
@@ -300,9 +314,17 @@ fn one_place_is_held_at_a_time() {
 fn what_ends_tracking_is_told_by_what_helps() {
     for (number, expected, words) in [
         (-13, ArSession::Interrupted, "Another app uses the camera."),
-        (-101, ArSession::Unsupported, "This phone cannot run ARCore. Another phone is needed."),
+        (
+            -101,
+            ArSession::Unsupported,
+            "This phone cannot run ARCore. Another phone is needed.",
+        ),
         (-104, ArSession::Unsupported, "Update this app."),
-        (-105, ArSession::Failed, "Without Google Play Services for AR the app cannot see the table. Install"),
+        (
+            -105,
+            ArSession::Failed,
+            "Without Google Play Services for AR the app cannot see the table. Install",
+        ),
         (-2, ArSession::Failed, "ARCore failed and cannot go on."),
     ] {
         let ShellEvent::ArTrouble(told, said) = told(Failure(number)) else {
@@ -312,5 +334,8 @@ fn what_ends_tracking_is_told_by_what_helps() {
         assert!(said.contains(words), "{said}");
     }
     let denied = told(Failure(-9));
-    assert!(matches!(denied, ShellEvent::Permission(Permission::Denied)), "{denied:?}");
+    assert!(
+        matches!(denied, ShellEvent::Permission(Permission::Denied)),
+        "{denied:?}"
+    );
 }

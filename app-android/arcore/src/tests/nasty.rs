@@ -24,7 +24,9 @@ fn seconds(tracker: &mut Tracker, from_s: f64, n_s: f64) -> Vec<Result<bool, Str
         world(|world| world.time_ns += 1);
         let now = Duration::from_secs_f64(from_s + 0.1 * step as f64);
         let frame = tracker.update(now);
-        frame.map(|frame| frame.is_some()).map_err(|error| error.to_string())
+        frame
+            .map(|frame| frame.is_some())
+            .map_err(|error| error.to_string())
     });
     steps.collect()
 }
@@ -33,8 +35,14 @@ fn seconds(tracker: &mut Tracker, from_s: f64, n_s: f64) -> Vec<Result<bool, Str
 fn what_is_refused_is_done_without_one_thing_at_a_time() {
     let cases: [(&[(&str, i32)], &str); 4] = [
         (&[], "focus=1 images configure"),
-        (&[("images", 1)], "focus=1 images configure update=1 planes=1 texture=1 light=0 focus=1 configure"),
-        (&[("focus", 1)], "focus=1 configure update=1 planes=1 texture=1 light=0 focus=0 images configure"),
+        (
+            &[("images", 1)],
+            "focus=1 images configure update=1 planes=1 texture=1 light=0 focus=1 configure",
+        ),
+        (
+            &[("focus", 1)],
+            "focus=1 configure update=1 planes=1 texture=1 light=0 focus=0 images configure",
+        ),
         (
             &[("images", 1), ("focus", 1)],
             "focus=1 configure update=1 planes=1 texture=1 light=0 focus=0 images configure update=1 planes=1 texture=1 light=0 focus=0 configure",
@@ -45,11 +53,24 @@ fn what_is_refused_is_done_without_one_thing_at_a_time() {
         let mut tracker = tracker();
         assert_eq!(tracker.run(&mut Desk, WITH_CARD), Step::Ready, "{refuses:?}");
         let said = calls();
-        let configured = said.split(" display").next().unwrap_or_default().trim_end_matches(" resume");
+        let configured = said
+            .split(" display")
+            .next()
+            .unwrap_or_default()
+            .trim_end_matches(" resume");
         assert!(configured.ends_with(expected), "{refuses:?}: {said}");
         // What was refused is not asked for again.
         let n_before = world(|world| world.calls.len());
-        assert_eq!(tracker.run(&mut Desk, Run { finds_planes: false, ..WITH_CARD }), Step::Ready);
+        assert_eq!(
+            tracker.run(
+                &mut Desk,
+                Run {
+                    finds_planes: false,
+                    ..WITH_CARD
+                }
+            ),
+            Step::Ready
+        );
         let again = calls();
         assert_eq!(again.matches(" configure").count(), 1, "{again}");
         assert_eq!(n_before, 0);
@@ -105,7 +126,11 @@ fn a_camera_without_pictures_is_set_to_smaller_ones_and_that_is_kept() {
 fn a_camera_that_stops_is_begun_anew_and_one_that_never_comes_is_said() {
     world(|world| world.modes = vec![[1920, 1080, 30], [640, 480, 30]]);
     let mut tracker = running();
-    assert!(seconds(&mut tracker, 0.0, 1.0).iter().all(|step| step == &Ok(true)));
+    assert!(
+        seconds(&mut tracker, 0.0, 1.0)
+            .iter()
+            .all(|step| step == &Ok(true))
+    );
     calls();
     world(|world| world.silent = vec![0]);
     seconds(&mut tracker, 1.0, 3.2);
@@ -157,7 +182,10 @@ fn a_filter_that_finds_nothing_is_done_without_and_nobody_is_filmed() {
     assert!(calls().contains("facing=0 fps=1 depth=2 mode=0"));
     world(|world| world.filters_all = true);
     drop(running());
-    assert!(calls().contains("mode=0"), "the one that faces away, without a filter");
+    assert!(
+        calls().contains("mode=0"),
+        "the one that faces away, without a filter"
+    );
     world(|world| world.modes.clear());
     let mut tracker = running();
     assert!(!calls().contains("mode="), "as ARCore has it");
@@ -176,7 +204,10 @@ fn the_camera_of_another_app_is_asked_for_again_until_it_is_free() {
         feed.poll(&mut Desk, Duration::from_secs(s))
     };
     let told = poll(&mut feed, 0);
-    assert!(matches!(told, Some(ShellEvent::ArTrouble(ArSession::Interrupted, _))), "{told:?}");
+    assert!(
+        matches!(told, Some(ShellEvent::ArTrouble(ArSession::Interrupted, _))),
+        "{told:?}"
+    );
     // The app pauses what it has not.
     feed.pause();
     world(|world| world.fails.insert("resume", -13));
@@ -206,10 +237,20 @@ fn an_install_in_the_middle_is_told_and_waited_for() {
         other => panic!("{other:?}"),
     };
     let now = Duration::ZERO;
-    assert_eq!(said(feed.run(&mut Desk, LOOK)), "Looking for Google Play Services for AR.");
+    assert_eq!(
+        said(feed.run(&mut Desk, LOOK)),
+        "Looking for Google Play Services for AR."
+    );
     assert_eq!(said(feed.poll(&mut Desk, now)), "", "once");
-    assert_eq!(said(feed.poll(&mut Desk, now)), "Google Play Services for AR is being installed.");
-    assert_eq!(said(feed.poll(&mut Desk, now)), "", "and not asked for again while its screen is in front");
+    assert_eq!(
+        said(feed.poll(&mut Desk, now)),
+        "Google Play Services for AR is being installed."
+    );
+    assert_eq!(
+        said(feed.poll(&mut Desk, now)),
+        "",
+        "and not asked for again while its screen is in front"
+    );
     assert_eq!(calls(), "availability availability availability install=1");
     feed.pause();
     world(|world| world.availability = vec![203]);
@@ -232,7 +273,9 @@ fn spoil(index: u64) {
     });
     let pick = |kind: u64, of: &[i32]| of[usize::try_from(kind).expect("a kind")];
     world(|world| {
-        world.availability = [vec![203], vec![1, 203], vec![201], vec![0], vec![100]][usize::try_from(kinds[0]).expect("a kind")].clone();
+        world.availability = [vec![203], vec![1, 203], vec![201], vec![0], vec![100]]
+            [usize::try_from(kinds[0]).expect("a kind")]
+        .clone();
         world.install = [(0, 0), (0, 1), (-105, 0), (-2, 0)][usize::try_from(kinds[1]).expect("a kind")];
         for (name, status) in [
             ("create", pick(kinds[2], &[0, -9, -104, -2])),
@@ -243,7 +286,8 @@ fn spoil(index: u64) {
         }
         world.modes = vec![[1920, 1080, 30], [1280, 720, 30]];
         world.silent = [vec![], vec![0], vec![0, 1]][usize::try_from(kinds[5]).expect("a kind")].clone();
-        world.refuses = [vec![], vec![("focus", 1), ("images", 1)]][usize::try_from(kinds[6]).expect("a kind")].clone();
+        world.refuses =
+            [vec![], vec![("focus", 1), ("images", 1)]][usize::try_from(kinds[6]).expect("a kind")].clone();
     });
 }
 
@@ -295,7 +339,10 @@ fn in_every_combination_frames_come_or_it_is_said_why_not_and_a_healed_phone_goe
         let mut feed = Feed::new(Some(FUNCTIONS));
         feed.come_back();
         let (has_frame, state) = live(&mut feed, 0, 8);
-        assert!(has_frame || state.is_some(), "{index}: nothing comes, and nothing is said");
+        assert!(
+            has_frame || state.is_some(),
+            "{index}: nothing comes, and nothing is said"
+        );
         if has_frame {
             n_good += 1;
         } else {

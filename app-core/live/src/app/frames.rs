@@ -67,7 +67,11 @@ impl App {
     /// A tracker that looks for a place where nothing was chosen may look for ever, in another room: it begins anew.
     fn follow_relocalising(&mut self, elapsed_s: f64) {
         let is_in_vain = self.platform.tracking == Tracking::Relocalising && self.table.is_none();
-        self.relocalising_s = if is_in_vain { self.relocalising_s + elapsed_s } else { 0.0 };
+        self.relocalising_s = if is_in_vain {
+            self.relocalising_s + elapsed_s
+        } else {
+            0.0
+        };
         if self.relocalising_s >= RELOCALISING_S {
             self.relocalising_s = 0.0;
             self.start_over();

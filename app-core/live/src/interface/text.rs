@@ -58,10 +58,7 @@ pub(super) fn of_obstacle(obstacle: Obstacle) -> (&'static str, &'static str) {
             "Allow it in the system's settings, then come back.",
         ),
         Obstacle::TooHot => ("The phone is too hot", "Let it cool down. It goes on by itself."),
-        Obstacle::Installing => (
-            "One moment",
-            "What this phone needs for AR is looked for.",
-        ),
+        Obstacle::Installing => ("One moment", "What this phone needs for AR is looked for."),
         Obstacle::Interrupted => (
             "The camera is in use elsewhere",
             "It goes on here when that has ended.",

@@ -69,7 +69,9 @@ impl Profiler {
     /// It was handed to the display: where the device is behind, that took as long as the device needs for one.
     pub(super) fn presented(&mut self) {
         let now_ms = self.clock.as_ref().map(Clock::now_ms);
-        self.busy_ms = now_ms.zip(self.begun_ms).map(|(now_ms, begun_ms)| now_ms - begun_ms);
+        self.busy_ms = now_ms
+            .zip(self.begun_ms)
+            .map(|(now_ms, begun_ms)| now_ms - begun_ms);
     }
 
     /// How long the latest picture that was handed to the display took; none without a clock, or where nothing is.

@@ -33,7 +33,10 @@ fn buttons(app: &App) -> Vec<String> {
     let mut interface = Interface::default();
     interface.actions(app, &screen);
     interface.actions(app, &screen);
-    let buttons = interface.widgets().iter().filter(|widget| widget.role == "Button");
+    let buttons = interface
+        .widgets()
+        .iter()
+        .filter(|widget| widget.role == "Button");
     buttons.map(|widget| widget.label.clone()).collect()
 }
 
@@ -64,7 +67,13 @@ fn every_sheet_has_a_way_out() {
             app
         })
         .collect();
-    for tracking in [Tracking::Starting, Tracking::TooFast, Tracking::TooPlain, Tracking::TooDark, Tracking::Relocalising] {
+    for tracking in [
+        Tracking::Starting,
+        Tracking::TooFast,
+        Tracking::TooPlain,
+        Tracking::TooDark,
+        Tracking::Relocalising,
+    ] {
         let mut app = looking();
         let _ = frame_at(&mut app, 1, 0.0, tracking);
         apps.push(app);
@@ -87,7 +96,13 @@ fn what_the_platform_says_of_ar_is_read_and_it_can_be_tried_again() {
     assert!(interface.widgets().iter().any(|widget| widget.label == words));
     let commands = app.event(ShellEvent::User(UserAction::TryAgain));
     let runs = commands.iter().any(|command| {
-        matches!(command, ShellCommand::Platform(PlatformCommand::RunTracking { is_new_world: true, .. }))
+        matches!(
+            command,
+            ShellCommand::Platform(PlatformCommand::RunTracking {
+                is_new_world: true,
+                ..
+            })
+        )
     });
     assert!(runs && app.ar_words().is_none(), "{commands:?}");
     // What is being installed is asked for all the same, so that it goes on by itself.
@@ -104,7 +119,13 @@ fn a_place_that_is_looked_for_in_vain_is_given_up_after_ten_seconds_and_only_bef
             id += 1;
             let commands = frame_at(app, id, 1.0 + 0.1 * f64::from(tenth), Tracking::Relocalising);
             let is_anew = |command: &ShellCommand| {
-                matches!(command, ShellCommand::Platform(PlatformCommand::RunTracking { is_new_world: true, .. }))
+                matches!(
+                    command,
+                    ShellCommand::Platform(PlatformCommand::RunTracking {
+                        is_new_world: true,
+                        ..
+                    })
+                )
             };
             commands.iter().any(is_anew).then_some(tenth)
         })
@@ -114,7 +135,11 @@ fn a_place_that_is_looked_for_in_vain_is_given_up_after_ten_seconds_and_only_bef
     assert!((99..=101).contains(&after), "{after} tenths of a second");
     assert_eq!(app.step(), Step::FindTable);
     let mut placed = world::at_ghost();
-    assert_eq!(starts_anew(&mut placed), None, "a place that was chosen is waited for");
+    assert_eq!(
+        starts_anew(&mut placed),
+        None,
+        "a place that was chosen is waited for"
+    );
 }
 
 #[test]
@@ -126,11 +151,17 @@ fn the_card_is_looked_for_where_a_person_has_one() {
         })
     };
     let mut app = world::app();
-    let begun: Vec<ShellCommand> = world::opening().into_iter().flat_map(|event| app.event(event)).collect();
+    let begun: Vec<ShellCommand> = world::opening()
+        .into_iter()
+        .flat_map(|event| app.event(event))
+        .collect();
     assert_eq!(finds_card(&begun), Some(false));
     let _ = frame_at(&mut app, 1, 0.0, Tracking::Normal);
     assert!(buttons(&app).contains(&"I have the card".to_owned()));
-    assert_eq!(finds_card(&app.event(ShellEvent::User(UserAction::UseCard(true)))), Some(true));
+    assert_eq!(
+        finds_card(&app.event(ShellEvent::User(UserAction::UseCard(true)))),
+        Some(true)
+    );
     assert!(!buttons(&app).contains(&"I have the card".to_owned()));
 }
 
@@ -167,10 +198,16 @@ fn a_package_for_engineers_counts_nothing_tests_each_start_and_never_falls_back(
     app.note_self_test("12.00 codes off");
     let _ = app.self_tested("one", Err("it is off".to_owned()));
     assert_eq!(app.preset(Preset::Balanced), Preset::Balanced);
-    assert!(app.log().text().contains("12.00 codes off"), "{}", app.log().text());
+    assert!(
+        app.log().text().contains("12.00 codes off"),
+        "{}",
+        app.log().text()
+    );
     for is_there in [false, true] {
         let commands = app.event(ShellEvent::Foreground(is_there));
-        let remembers = commands.iter().any(|command| matches!(command, ShellCommand::Work(WorkCommand::Remember(_))));
+        let remembers = commands
+            .iter()
+            .any(|command| matches!(command, ShellCommand::Work(WorkCommand::Remember(_))));
         assert!(!remembers, "stopping it in front counts for nothing");
     }
 }
@@ -191,7 +228,11 @@ fn a_surface_waits_for_the_display_whatever_is_offered_first() {
             view_formats: Vec::new(),
         };
         let shown = as_shown(offered);
-        assert_eq!((shown.present_mode, shown.format), (Fifo, wgpu::TextureFormat::Bgra8Unorm), "{present_mode:?}");
+        assert_eq!(
+            (shown.present_mode, shown.format),
+            (Fifo, wgpu::TextureFormat::Bgra8Unorm),
+            "{present_mode:?}"
+        );
     }
 }
 
@@ -232,7 +273,11 @@ impl Moving {
             moving.tell(event);
         }
         moving.picture();
-        for action in [UserAction::Tap(DVec2::new(32.0, 24.0)), UserAction::SkipPlate, UserAction::Placed] {
+        for action in [
+            UserAction::Tap(DVec2::new(32.0, 24.0)),
+            UserAction::SkipPlate,
+            UserAction::Placed,
+        ] {
             moving.tell(ShellEvent::User(action));
         }
         moving
@@ -250,7 +295,12 @@ impl Moving {
     fn picture(&mut self) {
         self.n_frames += 1;
         let time_ns = i64::try_from(self.n_frames).unwrap() * 33_000_000;
-        self.tell(ShellEvent::Frame(Box::new(world::frame(self.n_frames, time_ns, 0, Tracking::Normal))));
+        self.tell(ShellEvent::Frame(Box::new(world::frame(
+            self.n_frames,
+            time_ns,
+            0,
+            Tracking::Normal,
+        ))));
         if let Some(job) = self.jobs.pop() {
             let alignment = world::alignment(job.input(), Some(0.1));
             self.tell(ShellEvent::Aligned(Some(Box::new(job.known(alignment)))));
@@ -277,7 +327,11 @@ fn heat_turns_everything_down_and_then_leads_to_the_fast_preset_and_back() {
         moving.live.preset() == Preset::Fast
     };
     let reached = (0..2000).any(|_| log());
-    assert!(reached, "still {} after {n_pictures} pictures", moving.live.preset());
+    assert!(
+        reached,
+        "still {} after {n_pictures} pictures",
+        moving.live.preset()
+    );
     assert!(n_pictures > 900, "steps come first: {n_pictures}");
     assert!(moving.live.app().log().text().contains("preset fast"));
     // Cool for two minutes, it has its preset back.
