@@ -5,13 +5,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use android_activity::{AndroidApp, WindowManagerFlags};
-use android_media::media_store;
+use android_media::{display, media_store};
 use app_core::app::Permission;
 use arcore::java::{Java, JavaHost};
 use jni::errors::Result;
 use jni::objects::{JObject, JValue};
 use jni::refs::Global;
-use jni::strings::JNIStr;
 use jni::{Env, JavaVM, jni_sig, jni_str};
 
 use crate::heat::Thermometer;
@@ -24,9 +23,6 @@ const DETAILS: &str = "android.settings.APPLICATION_DETAILS_SETTINGS";
 const GRANTED: i32 = 0;
 /// Comes back with an answer that a native activity never hears; the permission is looked at when it resumes.
 const REQUEST: i32 = 1;
-
-/// `Toast.LENGTH_LONG`.
-const LONG: i32 = 1;
 
 /// The phone by its activity.
 pub(crate) struct Activity {
@@ -57,7 +53,7 @@ impl Activity {
     fn look_at_insets(&self) {
         let (app, told) = (self.app.clone(), Arc::clone(&self.insets_px));
         self.app.run_on_java_main_thread(Box::new(move || {
-            let insets_px = guarded("a call of Java", || with_java(&app, covered));
+            let insets_px = guarded("a call of Java", || with_java(&app, display::covered));
             if let Some(Ok(insets_px)) = insets_px {
                 *told.lock().unwrap_or_else(PoisonError::into_inner) = insets_px;
             }
@@ -104,116 +100,9 @@ fn with_java<T>(app: &AndroidApp, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -
     })
 }
 
-/// A number that a method without arguments returns.
-fn number(env: &mut Env<'_>, of: &JObject<'_>, method: &JNIStr) -> Result<i32> {
-    env.call_method(of, method, jni_sig!("()I"), &[])?.i()
-}
-
-/// `getWindow().getDecorView().getRootWindowInsets()` and its `getDisplayCutout()`: what bars and cut-outs cover, none while the window
-/// is not shown. Both are there since Android 9.
-fn covered(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<Option<[i32; 4]>> {
-    let window = env
-        .call_method(
-            activity,
-            jni_str!("getWindow"),
-            jni_sig!("()Landroid/view/Window;"),
-            &[],
-        )?
-        .l()?;
-    let view = env
-        .call_method(
-            &window,
-            jni_str!("getDecorView"),
-            jni_sig!("()Landroid/view/View;"),
-            &[],
-        )?
-        .l()?;
-    let insets = env
-        .call_method(
-            &view,
-            jni_str!("getRootWindowInsets"),
-            jni_sig!("()Landroid/view/WindowInsets;"),
-            &[],
-        )?
-        .l()?;
-    if insets.is_null() {
-        return Ok(None);
-    }
-    let cutout = env
-        .call_method(
-            &insets,
-            jni_str!("getDisplayCutout"),
-            jni_sig!("()Landroid/view/DisplayCutout;"),
-            &[],
-        )?
-        .l()?;
-    let sides = [
-        (jni_str!("getSystemWindowInsetLeft"), jni_str!("getSafeInsetLeft")),
-        (jni_str!("getSystemWindowInsetTop"), jni_str!("getSafeInsetTop")),
-        (
-            jni_str!("getSystemWindowInsetRight"),
-            jni_str!("getSafeInsetRight"),
-        ),
-        (
-            jni_str!("getSystemWindowInsetBottom"),
-            jni_str!("getSafeInsetBottom"),
-        ),
-    ];
-    let mut covered = [0; 4];
-    for (side, (of_bars, of_cutout)) in covered.iter_mut().zip(sides) {
-        *side = number(env, &insets, of_bars)?;
-        if !cutout.is_null() {
-            *side = number(env, &cutout, of_cutout)?.max(*side);
-        }
-    }
-    Ok(Some(covered))
-}
-
-/// `getWindowManager().getDefaultDisplay().getRotation()`.
-fn rotation(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<i32> {
-    let manager = env
-        .call_method(
-            activity,
-            jni_str!("getWindowManager"),
-            jni_sig!("()Landroid/view/WindowManager;"),
-            &[],
-        )?
-        .l()?;
-    let display = env
-        .call_method(
-            &manager,
-            jni_str!("getDefaultDisplay"),
-            jni_sig!("()Landroid/view/Display;"),
-            &[],
-        )?
-        .l()?;
-    number(env, &display, jni_str!("getRotation"))
-}
-
-/// How much larger than usual the person wants letters to be: `getResources().getConfiguration().fontScale`. Android makes the activity
-/// anew where that changes.
+/// How much larger than usual the person wants letters to be.
 pub(crate) fn font_scale(app: &AndroidApp) -> f32 {
-    let scale = with_java(app, |env, activity| {
-        let resources = env
-            .call_method(
-                activity,
-                jni_str!("getResources"),
-                jni_sig!("()Landroid/content/res/Resources;"),
-                &[],
-            )?
-            .l()?;
-        let configuration = env
-            .call_method(
-                &resources,
-                jni_str!("getConfiguration"),
-                jni_sig!("()Landroid/content/res/Configuration;"),
-                &[],
-            )?
-            .l()?;
-        env.get_field(&configuration, jni_str!("fontScale"), jni_sig!("F"))?
-            .f()
-    });
-    scale.unwrap_or(1.0)
+    with_java(app, display::font_scale).unwrap_or(1.0)
 }
 
 /// Shows a few words over whatever is on the screen, also when the activity is gone: `Toast.makeText(…).show()`.
@@ -221,30 +110,12 @@ pub(crate) fn say(app: &AndroidApp, words: &'static str) {
     let of_java = app.clone();
     app.run_on_java_main_thread(Box::new(move || {
         let said = guarded("a call of Java", || {
-            with_java(&of_java, |env, activity| toast(env, activity, words))
+            with_java(&of_java, |env, activity| display::toast(env, activity, words))
         });
         if let Some(Err(error)) = said {
             eprintln!("app-android: Java refused: {error}");
         }
     }));
-}
-
-fn toast(env: &mut Env<'_>, activity: &JObject<'_>, words: &str) -> Result<()> {
-    let words = env.new_string(words)?;
-    let toast = env
-        .call_static_method(
-            jni_str!("android/widget/Toast"),
-            jni_str!("makeText"),
-            jni_sig!("(Landroid/content/Context;Ljava/lang/CharSequence;I)Landroid/widget/Toast;"),
-            &[
-                JValue::Object(activity),
-                JValue::Object(&words),
-                JValue::Int(LONG),
-            ],
-        )?
-        .l()?;
-    env.call_method(&toast, jni_str!("show"), jni_sig!("()V"), &[])?;
-    Ok(())
 }
 
 /// Whether the camera may be used, and whether Android would have a reason for it explained.
@@ -355,7 +226,7 @@ impl Phone for Activity {
         // Asked several times a second, as long as there is a window.
         self.look_at_insets();
         // The activity is made for landscape.
-        with_java(&self.app, rotation).unwrap_or(1)
+        with_java(&self.app, display::rotation).unwrap_or(1)
     }
 
     fn folder(&self) -> Option<PathBuf> {

@@ -1,7 +1,7 @@
 //! The Android shell: a native activity over the app that both phones share, `app_core::live::Live`.
 //!
 //! `shell` tells the app what happens and does what it asks for: by the `arcore` package, its camera, by the worker of `app_shell`,
-//! and by `phone`, everything else; `input` knows Android's fingers and screen, and `pace` says when a picture is drawn.
+//! and by `phone`, everything else; `input` knows Android's fingers and screen, and `app_shell::pace` says when a picture is drawn.
 //! All of these run in desktop tests, with a fake of ARCore's library and of the phone.
 //! Only on Android are compiled: `lifecycle`, the activity's event loop; `stage`, which lends the app the activity's window;
 //! `java`, the camera's permission and the system's settings through JNI. Videos are encoded, and files copied to where other apps
@@ -19,7 +19,6 @@
 //! [`android_main`]: https://docs.rs/android-activity/0.6/android_activity/#main-thread-entrypoint-android_main
 
 pub mod input;
-pub mod pace;
 pub mod phone;
 pub mod shell;
 

@@ -10,6 +10,7 @@ use app_core::recording::PictureCodec;
 use app_core::toy::{Toy, ToyError};
 use app_shell::folders::Folders;
 use app_shell::losses::Losses;
+use app_shell::pace::Pace;
 use app_shell::toys::BUNDLED;
 use app_shell::video::{MOTION_JPEG, VideoFormat};
 use app_shell::worker::{Outcome, Platform, Worker};
@@ -17,7 +18,6 @@ use app_shell::{kept, record};
 use arcore::feed::Feed;
 use arcore::tracker::{Geometry, Run};
 
-use crate::pace::Pace;
 use crate::phone::{self, Phone};
 
 /// Of the camera, whose pictures a frame is made for each of.

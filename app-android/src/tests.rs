@@ -10,6 +10,7 @@ use app_core::app::{
 use app_core::interface::{Insets, TouchPhase};
 use app_core::live::Live;
 use app_core::preset::Preset;
+use app_shell::pace::Pace;
 use app_shell::worker::Outcome;
 use arcore::fake::{FUNCTIONS, FakePlane, world};
 use arcore::feed::Feed;
@@ -17,7 +18,6 @@ use arcore::java::{Java, JavaHost};
 use glam::DVec2;
 
 use crate::input::{Finger, Motion, screen, touches};
-use crate::pace::Pace;
 use crate::phone::{Phone, permission, thermal};
 use crate::shell::{Shell, bundled_toy};
 

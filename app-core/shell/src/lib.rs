@@ -11,6 +11,7 @@ pub mod guard;
 pub mod kept;
 pub mod losses;
 mod motion_jpeg;
+pub mod pace;
 pub mod pipelines;
 pub mod record;
 pub mod save;

@@ -11,8 +11,8 @@
 //! - **Without device times** a frame that is ready early looks like any other, so that only frames that come late tell
 //!   anything: a step down where one in five of `LATE_WINDOW` is late, two where half of them are. A step up is a trial,
 //!   after `BLIND_UP_FRAMES` frames of which hardly one was late.
-//! - **The end**: where all steps are taken and frames are slow for `END_FRAMES[0]` of them, or the phone is warm for
-//!   `END_FRAMES[1]`, [`Governor::exhausted`] says so: a cheaper preset is what is left.
+//! - **The end**: where all steps are taken and frames are slow for `END_FRAMES[0]` of them, or the phone has been too warm for
+//!   `END_FRAMES[1]` since the latest step, [`Governor::exhausted`] says so: a cheaper preset is what is left.
 //! - **Heat** narrows what a frame may take at once, and widens it only after `COOL_FRAMES` frames; there is no step up
 //!   above [`Thermal::Fair`].
 //!
@@ -47,7 +47,7 @@ const BLIND_UP_FRAMES: u32 = 600;
 /// Frames that a phone must be cooler for until it counts.
 const COOL_FRAMES: u32 = 3600;
 
-/// Frames at the end of the ladder that are too slow, or that are made while the phone is too warm, before more is to be done.
+/// Frames at the end of the ladder that are too slow, or since the latest step while the phone is too warm, before more is to be done.
 const END_FRAMES: [u32; 2] = [90, 900];
 
 /// Interval over that of the screen from which a frame is late.
@@ -128,7 +128,7 @@ pub struct Governor {
     before: Option<(usize, f64)>,
     thermal: Thermal,
     cooler_frames: u32,
-    /// Frames at the ladder's end, all of them too slow, or made while the phone was too warm.
+    /// Frames at the ladder's end that were all too slow, and since the latest step, all made while the phone was too warm.
     end_frames: [u32; 2],
 }
 
@@ -163,7 +163,7 @@ impl Governor {
         }
     }
 
-    /// Why all steps of the ladder are not enough; none while there are more, or they are. What helps then is a cheaper preset.
+    /// Why the steps of the ladder are not enough; none while there are more, or they are. What helps then is a cheaper preset.
     #[must_use]
     pub fn exhausted(&self) -> Option<Exhausted> {
         let [is_slow, is_warm] = [0, 1].map(|index| self.end_frames[index] >= END_FRAMES[index]);
@@ -174,13 +174,14 @@ impl Governor {
         }
     }
 
-    /// Counts frames at the ladder's end.
-    fn count_end(&mut self) {
+    /// Counts frames that nothing helps any more.
+    fn count_end(&mut self, thermal: Thermal) {
         let is_slow = self.loads.median().is_some_and(|load| load > HIGH)
             || self.lates.mean().is_some_and(|late| late >= MANY_LATE[0]);
-        let is_warm = self.thermal >= Thermal::Serious;
-        for (frames, goes_on) in self.end_frames.iter_mut().zip([is_slow, is_warm]) {
-            let is_end = self.level == self.ladder.len() && goes_on;
+        let is_slow_at_end = is_slow && self.level == self.ladder.len();
+        // Whatever steps were taken for it: each begins the count anew.
+        let is_warm = thermal >= Thermal::Serious;
+        for (frames, is_end) in self.end_frames.iter_mut().zip([is_slow_at_end, is_warm]) {
             *frames = if is_end { frames.saturating_add(1) } else { 0 };
         }
     }
@@ -227,7 +228,7 @@ impl Governor {
                 self.by_lateness()
             }
         };
-        self.count_end();
+        self.count_end(frame.thermal);
         to.map(|to| self.go(to))
     }
 
@@ -332,6 +333,7 @@ impl Governor {
         // Where the rate of frames changes, a load is over another time: it is what that step says.
         self.before = self.loads.median().map(|load| (from, load));
         self.level = to;
+        self.end_frames = [0; 2];
         self.age = 0;
         self.low_frames = 0;
         self.loads.clear();

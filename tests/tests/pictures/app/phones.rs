@@ -93,6 +93,7 @@ fn what_the_platform_says_of_ar_is_read_and_it_can_be_tried_again() {
     let _ = app.event(ShellEvent::ArTrouble(ArSession::Unsupported, words.to_owned()));
     let mut interface = Interface::default();
     interface.actions(&app, &world::screen(844, 390));
+    interface.actions(&app, &world::screen(844, 390));
     assert!(interface.widgets().iter().any(|widget| widget.label == words));
     let commands = app.event(ShellEvent::User(UserAction::TryAgain));
     let runs = commands.iter().any(|command| {
@@ -194,7 +195,10 @@ fn a_package_for_engineers_counts_nothing_tests_each_start_and_never_falls_back(
     assert_eq!(history.text(), "unfinished 0\npassed one\n");
     let mut app = world::app();
     let commands = app.event(ShellEvent::Started(history));
-    assert!(commands.is_empty() && app.wants_self_test("one"), "{commands:?}");
+    assert!(
+        !remembers(&commands) && app.wants_self_test("one"),
+        "{commands:?}"
+    );
     app.note_self_test("12.00 codes off");
     let _ = app.self_tested("one", Err("it is off".to_owned()));
     assert_eq!(app.preset(Preset::Balanced), Preset::Balanced);
@@ -205,11 +209,13 @@ fn a_package_for_engineers_counts_nothing_tests_each_start_and_never_falls_back(
     );
     for is_there in [false, true] {
         let commands = app.event(ShellEvent::Foreground(is_there));
-        let remembers = commands
-            .iter()
-            .any(|command| matches!(command, ShellCommand::Work(WorkCommand::Remember(_))));
-        assert!(!remembers, "stopping it in front counts for nothing");
+        assert!(!remembers(&commands), "stopping it in front counts for nothing");
     }
+}
+
+fn remembers(commands: &[ShellCommand]) -> bool {
+    let mut commands = commands.iter();
+    commands.any(|command| matches!(command, ShellCommand::Work(WorkCommand::Remember(_))))
 }
 
 #[test]
