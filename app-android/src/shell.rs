@@ -111,6 +111,7 @@ impl<P: Phone> Shell<P> {
     }
 
     /// The phone.
+    #[cfg(any(test, target_os = "android"))]
     pub(crate) fn phone(&self) -> &P {
         &self.phone
     }

@@ -34,12 +34,17 @@ fn compiled_pipelines_are_handed_from_device_to_device_and_nothing_else_is() {
         return;
     };
     let first = first.expect("an empty cache");
-    let again = compiled(Some(&first)).expect("the same driver").expect("what it has handed out");
+    let again = compiled(Some(&first))
+        .expect("the same driver")
+        .expect("what it has handed out");
     assert_eq!(again.len(), first.len(), "what was known is not kept once more");
     let mut of_another = first;
     // In the head, which names wgpu's version, the device and its driver.
     of_another[12] ^= 0xff;
     let refused = compiled(Some(&of_another)).expect("the same driver");
     assert!(refused.is_err(), "{refused:?}");
-    assert!(harness::open_core().pipeline_data().is_none(), "nobody asked for it");
+    assert!(
+        harness::open_core().pipeline_data().is_none(),
+        "nobody asked for it"
+    );
 }

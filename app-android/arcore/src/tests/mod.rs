@@ -10,7 +10,6 @@ use app_core::camera_frame::CameraFrame;
 use glam::{DMat4, DVec3};
 
 use super::fake::{FUNCTIONS, alive, world};
-use super::feed::Feed;
 use super::ffi::{Functions, SIGNATURES};
 use super::frame::FrameError;
 use super::modes::{CameraMode, order_of};

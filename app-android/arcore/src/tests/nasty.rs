@@ -19,15 +19,16 @@ const WITH_CARD: Run = Run {
 
 /// Lets time go on, with a new frame each tenth of a second.
 fn seconds(tracker: &mut Tracker, from_s: f64, n_s: f64) -> Vec<Result<bool, String>> {
-    let n_steps = (n_s * 10.0) as u64;
-    let steps = (0..n_steps).map(|step| {
-        world(|world| world.time_ns += 1);
-        let now = Duration::from_secs_f64(from_s + 0.1 * step as f64);
-        let frame = tracker.update(now);
-        frame
-            .map(|frame| frame.is_some())
-            .map_err(|error| error.to_string())
-    });
+    let steps = (0..)
+        .take_while(|step| 0.1 * f64::from(*step) < n_s - 1e-9)
+        .map(|step: u32| {
+            world(|world| world.time_ns += 1);
+            let now = Duration::from_secs_f64(from_s + 0.1 * f64::from(step));
+            let frame = tracker.update(now);
+            frame
+                .map(|frame| frame.is_some())
+                .map_err(|error| error.to_string())
+        });
     steps.collect()
 }
 
@@ -221,6 +222,28 @@ fn the_camera_of_another_app_is_asked_for_again_until_it_is_free() {
     assert!(matches!(poll(&mut feed, 9), Some(ShellEvent::Frame(_))));
     drop(feed);
     assert_clean();
+}
+
+#[test]
+fn a_package_without_arcore_says_so() {
+    let told = Feed::new(None).come_back();
+    assert!(
+        matches!(&told, Some(ShellEvent::ArTrouble(ArSession::Unsupported, words)) if words.contains("without ARCore")),
+        "{told:?}"
+    );
+    // What had the camera may have let it go while the app was away.
+    let mut feed = Feed::new(Some(FUNCTIONS));
+    world(|world| world.fails.insert("resume", -13));
+    let told = feed.run(&mut Desk, LOOK);
+    assert!(
+        matches!(told, Some(ShellEvent::ArTrouble(ArSession::Interrupted, _))),
+        "{told:?}"
+    );
+    assert!(matches!(
+        feed.come_back(),
+        Some(ShellEvent::ArSession(ArSession::Able))
+    ));
+    assert!(feed.come_back().is_none(), "once");
 }
 
 #[test]
