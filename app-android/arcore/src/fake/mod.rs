@@ -5,6 +5,7 @@
 
 mod functions;
 mod images;
+mod modes;
 mod table;
 
 use std::cell::RefCell;

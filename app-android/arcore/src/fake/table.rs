@@ -3,6 +3,7 @@
 use super::super::ffi::Functions;
 use super::functions::*;
 use super::images::*;
+use super::modes::*;
 
 /// The fake's functions.
 pub const FUNCTIONS: Functions = Functions {

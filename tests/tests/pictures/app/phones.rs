@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use app_core::Core;
 use app_core::app::{
     AlignJob, App, ArSession, GraphicsState, LaunchHistory, Permission, PlatformCommand, ShellCommand,
     ShellEvent, Step, Thermal, UserAction, WorkCommand,
@@ -263,7 +264,7 @@ struct Moving {
 
 impl Moving {
     fn new() -> Self {
-        let mut live = Live::new(harness::open_core(), world::toy(), Preset::Balanced);
+        let mut live = Live::new(Core::counting(), world::toy(), Preset::Balanced);
         let now_ms = Arc::new(AtomicU64::new(0));
         let clock = Arc::clone(&now_ms);
         // Each look takes as long as the device is said to need.
@@ -313,7 +314,7 @@ impl Moving {
         }
         self.now_ms.fetch_add(33, Ordering::SeqCst);
         let time_s = self.now_ms.load(Ordering::SeqCst) as f64 / 1e3;
-        let (_, commands) = self.live.screenshot(&world::screen(64, 48), time_s).unwrap();
+        let commands = self.live.present(&world::screen(64, 48), time_s).unwrap();
         drop(commands);
     }
 }
