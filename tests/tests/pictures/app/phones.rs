@@ -41,9 +41,9 @@ fn buttons(app: &App) -> Vec<String> {
     buttons.map(|widget| widget.label.clone()).collect()
 }
 
-/// A frame after so many seconds.
-fn frame_at(app: &mut App, id: u64, s: f64, tracking: Tracking) -> Vec<ShellCommand> {
-    let frame = world::frame(id, (s * 1e9) as i64, 0, tracking);
+/// A frame after so many tenths of a second.
+fn frame_at(app: &mut App, id: u64, tenths: u32, tracking: Tracking) -> Vec<ShellCommand> {
+    let frame = world::frame(id, 100_000_000 * i64::from(tenths), 0, tracking);
     app.event(ShellEvent::Frame(Box::new(frame)))
 }
 
@@ -76,7 +76,7 @@ fn every_sheet_has_a_way_out() {
         Tracking::Relocalising,
     ] {
         let mut app = looking();
-        let _ = frame_at(&mut app, 1, 0.0, tracking);
+        let _ = frame_at(&mut app, 1, 0, tracking);
         apps.push(app);
     }
     for app in &apps {
@@ -117,9 +117,9 @@ fn what_the_platform_says_of_ar_is_read_and_it_can_be_tried_again() {
 fn a_place_that_is_looked_for_in_vain_is_given_up_after_ten_seconds_and_only_before_it_was_chosen() {
     let starts_anew = |app: &mut App| {
         let mut id = 10;
-        (0..120).find_map(|tenth| {
+        (0..120_u32).find(|tenth| {
             id += 1;
-            let commands = frame_at(app, id, 1.0 + 0.1 * f64::from(tenth), Tracking::Relocalising);
+            let commands = frame_at(app, id, 10 + tenth, Tracking::Relocalising);
             let is_anew = |command: &ShellCommand| {
                 matches!(
                     command,
@@ -129,7 +129,7 @@ fn a_place_that_is_looked_for_in_vain_is_given_up_after_ten_seconds_and_only_bef
                     })
                 )
             };
-            commands.iter().any(is_anew).then_some(tenth)
+            commands.iter().any(is_anew)
         })
     };
     let mut app = looking();
@@ -158,7 +158,7 @@ fn the_card_is_looked_for_where_a_person_has_one() {
         .flat_map(|event| app.event(event))
         .collect();
     assert_eq!(finds_card(&begun), Some(false));
-    let _ = frame_at(&mut app, 1, 0.0, Tracking::Normal);
+    let _ = frame_at(&mut app, 1, 0, Tracking::Normal);
     assert!(buttons(&app).contains(&"I have the card".to_owned()));
     assert_eq!(
         finds_card(&app.event(ShellEvent::User(UserAction::UseCard(true)))),
