@@ -52,13 +52,27 @@ pub fn touches(motion: Motion, fingers: &[Finger]) -> Vec<Touch> {
 
 /// The screen of a window of so many pixels.
 ///
-/// `content_px` is what no bar or notch covers: left, top, right and bottom from the window's top left corner. Android tells an
-/// empty one before it knows. Letters are `text_scale` times as large as usual, or as usual where that is no scale.
+/// `insets_px` is what bars and cut-outs cover at the left, the top, the right and the bottom; none before Android tells. Then
+/// `content_px` counts, what a bar leaves free: left, top, right and bottom from the window's top left corner; an empty one is as none.
+/// Of a window that reaches below the bars, as every one does since Android 15, it is all. Letters are `text_scale` times as large as usual, or as usual where that is no scale.
 #[must_use]
-pub fn screen(size_px: [u32; 2], density_dpi: Option<u32>, content_px: [i32; 4], text_scale: f32) -> Screen {
+pub fn screen(
+    size_px: [u32; 2],
+    density_dpi: Option<u32>,
+    (insets_px, content_px): (Option<[i32; 4]>, [i32; 4]),
+    text_scale: f32,
+) -> Screen {
     let [left, top, right, bottom] = content_px.map(f64::from);
     let [width, height] = size_px.map(f64::from);
-    let insets = if right > left && bottom > top {
+    let insets = if let Some(insets) = insets_px {
+        let [left_px, top_px, right_px, bottom_px] = insets.map(|inset| f64::from(inset.max(0)));
+        Insets {
+            left_px,
+            top_px,
+            right_px,
+            bottom_px,
+        }
+    } else if right > left && bottom > top {
         Insets {
             left_px: left.max(0.0),
             top_px: top.max(0.0),

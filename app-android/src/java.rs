@@ -1,10 +1,11 @@
 //! What only Java can do: the camera's permission, the system's settings, and the pointers that ARCore asks for.
 
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use android_activity::{AndroidApp, WindowManagerFlags};
-use android_media::media_store;
+use android_media::{display, media_store};
 use app_core::app::Permission;
 use arcore::java::{Java, JavaHost};
 use jni::errors::Result;
@@ -23,13 +24,12 @@ const GRANTED: i32 = 0;
 /// Comes back with an answer that a native activity never hears; the permission is looked at when it resumes.
 const REQUEST: i32 = 1;
 
-/// `Toast.LENGTH_LONG`.
-const LONG: i32 = 1;
-
 /// The phone by its activity.
 pub(crate) struct Activity {
     app: AndroidApp,
     was_asked: bool,
+    /// What bars and cut-outs cover, as Java's own thread has told last.
+    insets_px: Arc<Mutex<Option<[i32; 4]>>>,
     thermometer: Option<Thermometer>,
 }
 
@@ -39,8 +39,25 @@ impl Activity {
         Self {
             app,
             was_asked: false,
+            insets_px: Arc::default(),
             thermometer: Thermometer::find(),
         }
+    }
+
+    /// What bars and cut-outs cover, at the left, the top, the right and the bottom; none before Android tells.
+    pub(crate) fn insets_px(&self) -> Option<[i32; 4]> {
+        *self.insets_px.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Has it told anew.
+    fn look_at_insets(&self) {
+        let (app, told) = (self.app.clone(), Arc::clone(&self.insets_px));
+        self.app.run_on_java_main_thread(Box::new(move || {
+            let insets_px = guarded("a call of Java", || with_java(&app, display::covered));
+            if let Some(Ok(insets_px)) = insets_px {
+                *told.lock().unwrap_or_else(PoisonError::into_inner) = insets_px;
+            }
+        }));
     }
 
     /// Lets `act` call Java on the thread that activities live on, and writes to the log where it fails.
@@ -83,30 +100,9 @@ fn with_java<T>(app: &AndroidApp, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -
     })
 }
 
-/// How much larger than usual the person wants letters to be: `getResources().getConfiguration().fontScale`. Android makes the activity
-/// anew where that changes.
+/// How much larger than usual the person wants letters to be.
 pub(crate) fn font_scale(app: &AndroidApp) -> f32 {
-    let scale = with_java(app, |env, activity| {
-        let resources = env
-            .call_method(
-                activity,
-                jni_str!("getResources"),
-                jni_sig!("()Landroid/content/res/Resources;"),
-                &[],
-            )?
-            .l()?;
-        let configuration = env
-            .call_method(
-                &resources,
-                jni_str!("getConfiguration"),
-                jni_sig!("()Landroid/content/res/Configuration;"),
-                &[],
-            )?
-            .l()?;
-        env.get_field(&configuration, jni_str!("fontScale"), jni_sig!("F"))?
-            .f()
-    });
-    scale.unwrap_or(1.0)
+    with_java(app, display::font_scale).unwrap_or(1.0)
 }
 
 /// Shows a few words over whatever is on the screen, also when the activity is gone: `Toast.makeText(…).show()`.
@@ -114,30 +110,12 @@ pub(crate) fn say(app: &AndroidApp, words: &'static str) {
     let of_java = app.clone();
     app.run_on_java_main_thread(Box::new(move || {
         let said = guarded("a call of Java", || {
-            with_java(&of_java, |env, activity| toast(env, activity, words))
+            with_java(&of_java, |env, activity| display::toast(env, activity, words))
         });
         if let Some(Err(error)) = said {
             eprintln!("app-android: Java refused: {error}");
         }
     }));
-}
-
-fn toast(env: &mut Env<'_>, activity: &JObject<'_>, words: &str) -> Result<()> {
-    let words = env.new_string(words)?;
-    let toast = env
-        .call_static_method(
-            jni_str!("android/widget/Toast"),
-            jni_str!("makeText"),
-            jni_sig!("(Landroid/content/Context;Ljava/lang/CharSequence;I)Landroid/widget/Toast;"),
-            &[
-                JValue::Object(activity),
-                JValue::Object(&words),
-                JValue::Int(LONG),
-            ],
-        )?
-        .l()?;
-    env.call_method(&toast, jni_str!("show"), jni_sig!("()V"), &[])?;
-    Ok(())
 }
 
 /// Whether the camera may be used, and whether Android would have a reason for it explained.
@@ -242,6 +220,13 @@ impl Phone for Activity {
 
     fn thermal_status(&mut self) -> Option<i32> {
         self.thermometer.as_ref().map(Thermometer::status)
+    }
+
+    fn rotation(&mut self) -> i32 {
+        // Asked several times a second, as long as there is a window.
+        self.look_at_insets();
+        // The activity is made for landscape.
+        with_java(&self.app, display::rotation).unwrap_or(1)
     }
 
     fn folder(&self) -> Option<PathBuf> {

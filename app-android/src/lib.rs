@@ -1,7 +1,7 @@
 //! The Android shell: a native activity over the app that both phones share, `app_core::live::Live`.
 //!
 //! `shell` tells the app what happens and does what it asks for: by the `arcore` package, its camera, by the worker of `app_shell`,
-//! and by `phone`, everything else; `input` knows Android's fingers and screen.
+//! and by `phone`, everything else; `input` knows Android's fingers and screen, and `app_shell::pace` says when a picture is drawn.
 //! All of these run in desktop tests, with a fake of ARCore's library and of the phone.
 //! Only on Android are compiled: `lifecycle`, the activity's event loop; `stage`, which lends the app the activity's window;
 //! `java`, the camera's permission and the system's settings through JNI. Videos are encoded, and files copied to where other apps
@@ -12,7 +12,7 @@
 //! streams of video, which nothing on the desktop reads without a C library. Photos, videos, recordings, the log and
 //! times are written into the app's own folder, from which the gallery gets copies and whoever files are shared with; toys of the
 //! person's own are read from there.
-//! ARCore keeps exposure and frame rate to itself, so neither is held or set, and no lens is photographed.
+//! ARCore keeps exposure, white balance and focus to itself, so none of them is held, and no lens is photographed.
 //!
 //! Nothing is kept in statics: Android may destroy the activity and run [`android_main`] again in the same process.
 //!

@@ -4,9 +4,7 @@
 //! waits in it for `android_main` to return (winit issue 4303), refuses to be created a second time in one process
 //! (3325), and hides `onPause` and `onResume`, which an ARCore session must follow.
 
-use std::time::Duration;
-
-use android_activity::input::{InputEvent, MotionAction, MotionEvent};
+use android_activity::input::{InputEvent, KeyAction, Keycode, MotionAction, MotionEvent};
 use android_activity::{AndroidApp, InputStatus, MainEvent, PollEvent};
 
 use crate::input::{Finger, Motion, touches};
@@ -21,8 +19,8 @@ pub(crate) fn run(app: &AndroidApp) -> Result<(), StageError> {
     let mut stage = Stage::new(app.clone());
     let mut is_destroyed = false;
     loop {
-        // While drawing, the wait for the display inside `present` sets the pace; otherwise sleep until an event.
-        let timeout = stage.draws().then_some(Duration::ZERO);
+        // While drawing, until the next picture may be due; otherwise until an event.
+        let timeout = stage.sleep();
         let mut outcome = Ok(());
         app.poll_events(timeout, |event| {
             if let PollEvent::Main(event) = event {
@@ -71,6 +69,15 @@ fn take_input(app: &AndroidApp, stage: &mut Stage) {
     };
     let mut take = |event: &InputEvent<'_>| match event {
         InputEvent::MotionEvent(event) => take_motion(event, stage),
+        InputEvent::KeyEvent(event) if event.key_code() == Keycode::Back => {
+            // Android leaves the activity where nobody takes its key.
+            let is_taken = event.action() != KeyAction::Up || stage.back();
+            if is_taken {
+                InputStatus::Handled
+            } else {
+                InputStatus::Unhandled
+            }
+        }
         _ => InputStatus::Unhandled,
     };
     while events.next(&mut take) {}

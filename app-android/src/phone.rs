@@ -17,6 +17,8 @@ pub trait Phone: JavaHost {
     fn keep_awake(&mut self, is_awake: bool);
     /// How hot the phone is, as an `AThermalStatus`; none where Android does not tell.
     fn thermal_status(&mut self) -> Option<i32>;
+    /// How the display is turned, as `Surface.ROTATION_*`.
+    fn rotation(&mut self) -> i32;
     /// Where files go that people get at, with a computer at least.
     fn folder(&self) -> Option<PathBuf>;
     /// Has the gallery show a copy of a photo or a video.

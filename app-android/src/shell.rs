@@ -9,18 +9,25 @@ use app_core::live::Live;
 use app_core::recording::PictureCodec;
 use app_core::toy::{Toy, ToyError};
 use app_shell::folders::Folders;
-use app_shell::record;
+use app_shell::losses::Losses;
+use app_shell::pace::Pace;
 use app_shell::toys::BUNDLED;
 use app_shell::video::{MOTION_JPEG, VideoFormat};
 use app_shell::worker::{Outcome, Platform, Worker};
+use app_shell::{kept, record};
 use arcore::feed::Feed;
 use arcore::tracker::{Geometry, Run};
 
 use crate::phone::{self, Phone};
 
-/// `Surface.ROTATION_90`: the manifest keeps the activity in landscape.
-const LANDSCAPE: i32 = 1;
-
+/// Of the camera, whose pictures a frame is made for each of.
+const CAMERA_HZ: u32 = 30;
+/// Google's own words for apps that use ARCore.
+const DISCLOSURE: &str = "This application runs on Google Play Services for AR (ARCore), which is provided by Google and governed by the Google Privacy Policy (policies.google.com/privacy).";
+/// Where the size of the camera's pictures is kept, if larger ones do not come.
+const CAMERA_FILE: &str = "camera.txt";
+/// Time after which the display's turn is looked at anew: half a turn is told by nothing.
+const TURN: Duration = Duration::from_millis(250);
 /// Time after which heat is looked at anew.
 const LOOK: Duration = Duration::from_secs(1);
 /// Of videos, the better first.
@@ -44,14 +51,24 @@ pub struct Shell<P> {
     feed: Feed,
     worker: Worker,
     wants_device: bool,
-    /// When heat was looked at.
+    wants_surface: bool,
+    losses: Losses,
+    size_px: Option<[u32; 2]>,
+    pace: Pace,
+    start: Instant,
+    /// When heat, and when the display's turn was looked at.
     looked: Option<Instant>,
+    turned: Option<Instant>,
+    /// As the app asks for them.
+    frames_per_s: u32,
 }
 
 impl<P: Phone> Shell<P> {
     /// A shell that has just been started.
     pub fn new(mut live: Live, phone: P, feed: Feed) -> Self {
         live.set_clock(record::clock());
+        live.set_target_fps(CAMERA_HZ);
+        live.disclose(DISCLOSURE);
         let platform = Platform {
             app: concat!("app-android ", env!("CARGO_PKG_VERSION")),
             videos: VIDEOS,
@@ -64,13 +81,24 @@ impl<P: Phone> Shell<P> {
             toys: phone.folder(),
             own: phone.own_folder(),
         };
+        let kept = folders
+            .own
+            .as_deref()
+            .and_then(|own| kept::text(own, CAMERA_FILE));
         let mut shell = Self {
             live,
             phone,
-            feed,
+            feed: feed.with_kept(kept.as_deref().unwrap_or_default()),
             worker: Worker::new(platform, folders),
             wants_device: false,
+            wants_surface: false,
+            losses: Losses::default(),
+            size_px: None,
+            pace: Pace::default(),
+            start: Instant::now(),
             looked: None,
+            turned: None,
+            frames_per_s: 60,
         };
         let event = shell.feed.come_back();
         shell.tell_some(event);
@@ -83,7 +111,7 @@ impl<P: Phone> Shell<P> {
     }
 
     /// The phone.
-    #[cfg(test)]
+    #[cfg(any(test, target_os = "android"))]
     pub(crate) fn phone(&self) -> &P {
         &self.phone
     }
@@ -107,13 +135,32 @@ impl<P: Phone> Shell<P> {
 
     /// There is a window of so many pixels, or none.
     pub fn set_surface(&mut self, size_px: Option<[u32; 2]>) {
-        if let Some([width, height]) = size_px.map(|size| size.map(|side| i32::try_from(side).unwrap_or(0))) {
+        self.size_px = size_px;
+        self.follow_display();
+        self.pace.touched();
+        self.tell(ShellEvent::Surface(size_px));
+    }
+
+    /// Tells ARCore how the display lies.
+    fn follow_display(&mut self) {
+        if let Some(size_px) = self.size_px {
             self.feed.set_display(Geometry {
-                quarter_turns: LANDSCAPE,
-                size_px: [width, height],
+                quarter_turns: self.phone.rotation(),
+                size_px: size_px.map(|side| i32::try_from(side).unwrap_or(0)),
             });
         }
-        self.tell(ShellEvent::Surface(size_px));
+    }
+
+    /// When pictures are drawn.
+    pub fn pace(&mut self) -> &mut Pace {
+        &mut self.pace
+    }
+
+    /// The phone's own way back; whether it led anywhere within the app.
+    pub fn back(&mut self) -> bool {
+        let commands = self.live.back();
+        self.pace.touched();
+        commands.map(|commands| self.obey(commands)).is_some()
     }
 
     /// Tells what other threads have done, and the camera's latest frame.
@@ -127,22 +174,43 @@ impl<P: Phone> Shell<P> {
                 self.tell(ShellEvent::Thermal(phone::thermal(status)));
             }
         }
-        let event = self.feed.poll(&mut self.phone);
+        if self.turned.is_none_or(|turned| turned.elapsed() >= TURN) {
+            self.turned = Some(Instant::now());
+            self.follow_display();
+        }
+        let event = self.feed.poll(&mut self.phone, self.start.elapsed());
+        if matches!(event, Some(ShellEvent::Frame(_))) {
+            self.pace.camera_came(self.start.elapsed());
+        }
         self.tell_some(event);
+        if let (Some(text), Some(own)) = (self.feed.take_kept(), self.phone.own_folder()) {
+            kept::store_or_say(&own, CAMERA_FILE, text.as_bytes());
+        }
+        self.pace.set_rate(self.frames_per_s);
     }
 
     /// Draws on the core's surface. A device or surface that is lost is to be brought anew.
     pub fn present(&mut self, screen: &Screen, time_s: f64) {
         match self.live.present(screen, time_s) {
             Ok(commands) => {
+                self.losses.shown();
                 self.worker.drawn(&self.live, time_s);
                 self.obey(commands);
             }
             Err(error) => {
                 eprintln!("app-android: nothing drawn: {error}");
-                self.tell(ShellEvent::Graphics(GraphicsState::Lost));
+                if self.losses.is_of_surface(&error) {
+                    self.wants_surface = true;
+                } else {
+                    self.tell(ShellEvent::Graphics(GraphicsState::Lost));
+                }
             }
         }
+    }
+
+    /// Whether another surface is to be made of the window; asked once.
+    pub fn take_wants_surface(&mut self) -> bool {
+        std::mem::take(&mut self.wants_surface)
     }
 
     /// Whether another core is to be brought; asked once.
@@ -179,10 +247,12 @@ impl<P: Phone> Shell<P> {
             PlatformCommand::OpenSettings => self.phone.open_settings(),
             PlatformCommand::RunTracking {
                 finds_planes,
+                finds_card,
                 is_new_world,
             } => {
                 let run = Run {
                     finds_planes,
+                    finds_card,
                     is_new_world,
                 };
                 let event = self.feed.run(&mut self.phone, run);
@@ -196,10 +266,9 @@ impl<P: Phone> Shell<P> {
             PlatformCommand::KeepAwake(is_awake) => self.phone.keep_awake(is_awake),
             PlatformCommand::ReopenDevice => self.wants_device = true,
             PlatformCommand::Announce(step) => eprintln!("app-android: {step:?}"),
-            // ARCore keeps exposure and frame rate to itself.
-            PlatformCommand::LockExposure(_)
-            | PlatformCommand::Underexpose(_)
-            | PlatformCommand::FrameRate(_) => {}
+            PlatformCommand::FrameRate(frames_per_s) => self.frames_per_s = frames_per_s,
+            // ARCore keeps exposure to itself.
+            PlatformCommand::LockExposure(_) | PlatformCommand::Underexpose(_) => {}
         }
     }
 }

@@ -1,16 +1,17 @@
 //! The shell and the window it draws on: the app is created with the first window, then moved from window to window.
 
-use std::time::Instant;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use android_activity::AndroidApp;
-use app_core::app::{Panics, ShellEvent};
+use app_core::app::{LaunchHistory, Panics, ShellEvent};
 use app_core::interface::{CLOSED, Touch, of_no_graphics};
 use app_core::live::Live;
 use app_core::preset::Preset;
 use app_core::toy::ToyError;
 use app_core::wgpu::{self, rwh};
 use app_core::{Core, CoreError};
-use app_shell::starts;
+use app_shell::{pipelines, starts};
 use arcore::feed::Feed;
 use arcore::library;
 use ndk::native_window::NativeWindow;
@@ -59,6 +60,9 @@ pub(crate) struct Stage {
     is_foreground: bool,
     panics: Panics,
     is_restarted: bool,
+    /// The folder of what is the app's own, and whether compiled pipelines of an earlier start are taken from there.
+    own: Option<PathBuf>,
+    trusts_pipelines: bool,
 }
 
 impl Stage {
@@ -75,6 +79,8 @@ impl Stage {
             is_foreground: false,
             panics: Panics::default(),
             is_restarted: false,
+            own: None,
+            trusts_pipelines: false,
         }
     }
 
@@ -91,6 +97,21 @@ impl Stage {
         } else {
             Err(StageError::Panics)
         }
+    }
+
+    /// For how long the loop may sleep; none until an event.
+    pub(crate) fn sleep(&mut self) -> Option<Duration> {
+        let (now, draws) = (self.start.elapsed(), self.draws());
+        let slept = self
+            .shell
+            .as_mut()
+            .map_or(Duration::ZERO, |shell| shell.pace().sleep(now));
+        draws.then_some(slept)
+    }
+
+    /// The phone's own way back; whether it led anywhere within the app.
+    pub(crate) fn back(&mut self) -> bool {
+        self.shell.as_mut().is_some_and(Shell::back)
     }
 
     /// Whether pictures are to be drawn.
@@ -110,8 +131,12 @@ impl Stage {
             None => {
                 let phone = Activity::new(self.app.clone());
                 // Before a driver is asked for anything.
-                let starts = phone.own_folder().map(|folder| starts::begin(&folder));
-                let core = core_on(&self.instance, &window)?;
+                let starts = phone
+                    .own_folder()
+                    .map(|folder| starts::begin(&folder, cfg!(debug_assertions)));
+                self.own = phone.own_folder();
+                self.trusts_pipelines = starts.as_ref().is_some_and(LaunchHistory::is_first_try);
+                let core = self.core_on(&window)?;
                 let live = Live::new(core, bundled_toy()?, Preset::default());
                 let api = library::load();
                 let api = api.inspect_err(|error| eprintln!("app-android: no ARCore: {error}"));
@@ -171,6 +196,7 @@ impl Stage {
     pub(crate) fn touch(&mut self, touch: Touch) {
         if let Some(shell) = &mut self.shell {
             shell.live().touch(touch);
+            shell.pace().touched();
         }
     }
 
@@ -179,26 +205,59 @@ impl Stage {
         if let (None, Some(window)) = (&self.shell, self.window.clone()) {
             self.attach(window)?;
         }
-        let (Some(shell), Some(window)) = (&mut self.shell, &self.window) else {
+        let (Some(mut shell), Some(window)) = (self.shell.take(), self.window.clone()) else {
             return Ok(());
         };
+        // A panic on the way drops the app, as it has to.
+        let drawn = self.draw(&mut shell, &window);
+        self.shell = Some(shell);
+        drawn
+    }
+
+    fn draw(&mut self, shell: &mut Shell<Activity>, window: &NativeWindow) -> Result<(), StageError> {
         if shell.take_wants_device() {
             // A window has one surface at a time.
             shell.live().core_mut().suspend();
-            let core = core_on(&self.instance, window)?;
+            let core = self.core_on(window)?;
             shell.live().reopen(core);
+        } else if shell.take_wants_surface() {
+            shell.live().core_mut().suspend();
+            let surface = surface_on(&self.instance, window)?;
+            shell.live().core_mut().resume(surface, size_px(window))?;
         }
         shell.tick();
+        let now = self.start.elapsed();
+        if !shell.pace().is_due(now) {
+            return Ok(());
+        }
+        shell.pace().draw(now);
         let content = self.app.content_rect();
         let content_px = [content.left, content.top, content.right, content.bottom];
         let screen = screen(
             size_px(window),
             self.app.config().density(),
-            content_px,
+            (shell.phone().insets_px(), content_px),
             self.text_scale,
         );
         shell.present(&screen, self.start.elapsed().as_secs_f64());
         Ok(())
+    }
+
+    fn core_on(&self, window: &NativeWindow) -> Result<Core, StageError> {
+        let surface = surface_on(&self.instance, window)?;
+        let core = pollster::block_on(Core::on_surface(&self.instance, surface, size_px(window)))?;
+        if let (Some(own), Some(device), Some(key)) = (&self.own, core.device(), core.pipelines_key()) {
+            let data = pipelines::read(own, &key).filter(|_| self.trusts_pipelines);
+            let descriptor = wgpu::PipelineCacheDescriptor {
+                label: Some("kept"),
+                data: data.as_deref(),
+                fallback: true,
+            };
+            // SAFETY: the data are what wgpu returned to an earlier start, by the same version, device and driver, and whole: they are
+            // stored with a sum of theirs.
+            core.set_pipeline_cache(unsafe { device.raw().create_pipeline_cache(&descriptor) });
+        }
+        Ok(core)
     }
 }
 
@@ -209,12 +268,6 @@ fn surface_on(
 ) -> Result<wgpu::Surface<'static>, StageError> {
     let target = wgpu::SurfaceTarget::from_window_without_display(window.clone());
     Ok(instance.create_surface(target)?)
-}
-
-fn core_on(instance: &wgpu::Instance, window: &NativeWindow) -> Result<Core, StageError> {
-    let surface = surface_on(instance, window)?;
-    let core = Core::on_surface(instance, surface, size_px(window));
-    Ok(pollster::block_on(core)?)
 }
 
 /// Width and height, at least one pixel each: the window answers a question at a bad moment with a negative number,

@@ -1,6 +1,7 @@
 //! The shell over the fake of ARCore, with an app whose core counts and draws nothing.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use app_core::Core;
 use app_core::app::{
@@ -9,6 +10,7 @@ use app_core::app::{
 use app_core::interface::{Insets, TouchPhase};
 use app_core::live::Live;
 use app_core::preset::Preset;
+use app_shell::pace::Pace;
 use app_shell::worker::Outcome;
 use arcore::fake::{FUNCTIONS, FakePlane, world};
 use arcore::feed::Feed;
@@ -24,6 +26,8 @@ use crate::shell::{Shell, bundled_toy};
 struct Desk {
     allows: bool,
     thermal_status: Option<i32>,
+    rotation: i32,
+    own: Option<PathBuf>,
     /// Names of files that were shown in the gallery, and handed on.
     shown: Vec<String>,
     shared: Vec<String>,
@@ -56,6 +60,10 @@ impl Phone for Desk {
         self.thermal_status
     }
 
+    fn rotation(&mut self) -> i32 {
+        self.rotation
+    }
+
     fn folder(&self) -> Option<PathBuf> {
         None
     }
@@ -69,7 +77,7 @@ impl Phone for Desk {
     }
 
     fn own_folder(&self) -> Option<PathBuf> {
-        None
+        self.own.clone()
     }
 }
 
@@ -107,7 +115,10 @@ fn from_the_first_button_to_a_table() {
             outline: vec![0.5, 0.5, -0.5, 0.5, -0.5, -0.5, 0.5, -0.5],
         }];
     });
-    let mut shell = shell();
+    let mut shell = shell_on(Desk {
+        rotation: 3,
+        ..Desk::default()
+    });
     shell.set_surface(Some([2400, 1080]));
     shell.set_foreground(true);
     shell.tick();
@@ -118,7 +129,7 @@ fn from_the_first_button_to_a_table() {
     shell.set_foreground(false);
     shell.set_foreground(true);
     assert_eq!(shell.live().app().step(), Step::FindTable);
-    assert!(calls().contains("display=1,2400,1080 resume"));
+    assert!(calls().contains("display=3,2400,1080 resume"));
     shell.tick();
     shell.tell(ShellEvent::User(UserAction::Tap(DVec2::new(2.0, 1.0))));
     assert_eq!(shell.live().app().step(), Step::TakePlate);
@@ -191,7 +202,7 @@ fn fingers_are_told_apart() {
 
 #[test]
 fn a_screen_is_measured_in_points_without_what_bars_cover() {
-    let with_bars = screen([2400, 1080], Some(480), [100, 60, 2300, 1080], 1.5);
+    let with_bars = screen([2400, 1080], Some(480), (None, [100, 60, 2300, 1080]), 1.5);
     assert_eq!(with_bars.text_scale.to_bits(), 1.5_f64.to_bits());
     assert_eq!(with_bars.pixels_per_point.to_bits(), 3.0_f64.to_bits());
     let insets = Insets {
@@ -201,10 +212,114 @@ fn a_screen_is_measured_in_points_without_what_bars_cover() {
         bottom_px: 0.0,
     };
     assert_eq!(with_bars.insets, insets);
-    let unknown = screen([2400, 1080], None, [0; 4], f32::NAN);
+    // A window that reaches below bars and a cut-out says nothing of them itself.
+    let edge_to_edge = screen(
+        [2400, 1080],
+        Some(480),
+        (Some([90, 0, 126, -3]), [0, 0, 2400, 1080]),
+        1.0,
+    );
+    let covered = Insets {
+        left_px: 90.0,
+        right_px: 126.0,
+        top_px: 0.0,
+        bottom_px: 0.0,
+    };
+    assert_eq!(edge_to_edge.insets, covered);
+    let unknown = screen([2400, 1080], None, (None, [0; 4]), f32::NAN);
     assert_eq!(unknown.text_scale.to_bits(), 1.0_f64.to_bits());
     assert_eq!(unknown.insets, Insets::default());
     assert_eq!(unknown.pixels_per_point.to_bits(), 1.0_f64.to_bits());
+}
+
+/// Turns of the loop and pictures in a second of a clock that only sleeping moves on, where drawing takes no time: the worst of displays.
+fn turns_a_second(pace: &mut Pace, camera_hz: u32, touch_hz: u32) -> (u32, u32) {
+    let (mut now, end) = (Duration::from_secs(5), Duration::from_secs(6));
+    let (mut n_turns, mut n_pictures, mut n_camera, mut n_touches) = (0, 0, 0, 0);
+    while now < end {
+        n_turns += 1;
+        let passed = (now - Duration::from_secs(5)).as_secs_f64();
+        if passed * f64::from(camera_hz) >= f64::from(n_camera) && camera_hz > 0 {
+            n_camera += 1;
+            pace.camera_came(now);
+        }
+        if passed * f64::from(touch_hz) >= f64::from(n_touches) && touch_hz > 0 {
+            n_touches += 1;
+            pace.touched();
+        }
+        if pace.is_due(now) {
+            n_pictures += 1;
+            pace.draw(now);
+        }
+        let slept = pace.sleep(now);
+        assert!(slept > Duration::from_millis(1), "it spins");
+        // An event may wake the loop before.
+        let wake = if touch_hz > 0 {
+            Duration::from_secs_f64(1.0 / f64::from(touch_hz))
+        } else {
+            slept
+        };
+        now += slept.min(wake);
+    }
+    (n_turns, n_pictures)
+}
+
+#[test]
+fn the_loop_waits_and_draws_a_picture_for_each_of_the_cameras() {
+    let (n_turns, n_pictures) = turns_a_second(&mut Pace::default(), 0, 0);
+    assert!(
+        n_turns <= 85 && (60..=85).contains(&n_pictures),
+        "no camera: {n_turns} turns, {n_pictures} pictures"
+    );
+    let (n_turns, n_pictures) = turns_a_second(&mut Pace::default(), 30, 0);
+    assert!(
+        n_turns < 330 && (29..=31).contains(&n_pictures),
+        "{n_turns} turns, {n_pictures} pictures"
+    );
+    let (_, n_pictures) = turns_a_second(&mut Pace::default(), 30, 240);
+    assert!(
+        (60..=85).contains(&n_pictures),
+        "a finger is followed, no more often than the screen shows: {n_pictures}"
+    );
+    let mut slow = Pace::default();
+    slow.set_rate(30);
+    let (_, n_pictures) = turns_a_second(&mut slow, 60, 240);
+    assert!((30..=42).contains(&n_pictures), "{n_pictures}");
+}
+
+#[test]
+fn the_size_of_pictures_that_come_is_kept_for_the_next_start() {
+    let own = std::env::temp_dir().join(format!("app-android-{}", std::process::id()));
+    std::fs::create_dir_all(&own).expect("a folder");
+    std::fs::write(own.join("camera.txt"), "640x480").expect("a file");
+    let mut shell = shell_on(Desk {
+        allows: true,
+        own: Some(own.clone()),
+        ..Desk::default()
+    });
+    shell.set_surface(Some([2400, 1080]));
+    shell.set_foreground(true);
+    shell.tell(ShellEvent::User(UserAction::Begin));
+    shell.tick();
+    assert!(
+        calls().contains("mode=0"),
+        "the one that came before, and not the largest"
+    );
+    std::fs::remove_dir_all(own).expect("a folder");
+}
+
+#[test]
+fn back_leads_back_and_out_at_last() {
+    world(|world| world.availability = vec![100]);
+    let mut shell = shell();
+    assert!(!shell.back(), "the first screen is the last");
+    shell.set_foreground(true);
+    shell.tell(ShellEvent::User(UserAction::Begin));
+    shell.set_foreground(true);
+    let words = shell.live().app().ar_words().unwrap_or_default().to_owned();
+    assert!(words.starts_with("This phone cannot run ARCore."), "{words}");
+    assert!(shell.back());
+    assert_eq!(shell.live().app().step(), Step::Welcome);
 }
 
 #[test]

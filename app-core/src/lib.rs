@@ -67,14 +67,14 @@ pub use app_scene::{camera_frame, card, grain, lens, scene, sharpness, things, t
 
 /// The one object that an app holds.
 pub mod core {
-    pub use app_pipeline::core::{Canvas, Core, CoreError, WarmUp};
+    pub use app_pipeline::core::{Canvas, Core, CoreError, WarmUp, as_shown};
 }
 
 /// The device, and textures that a platform lends on it.
 pub mod gpu {
     pub use app_pipeline::gpu::{
-        AdapterChoice, DeviceHandle, GpuError, LentError, LentTextures, ShaderTexts, fault_on_surfaces,
-        phone_limits,
+        AdapterChoice, DeviceHandle, GpuError, LentError, LentTextures, ShaderTexts,
+        fault_of_pipeline_caches, fault_on_surfaces, phone_limits,
     };
 }
 

@@ -11,6 +11,7 @@ use app_core::app::{
 };
 use app_core::interface::Screen;
 use app_shell::folders::Folders;
+use app_shell::losses::Losses;
 use app_shell::starts;
 use app_shell::video::MOTION_JPEG;
 use app_shell::worker::{Outcome, Platform, Worker};
@@ -40,6 +41,7 @@ pub(crate) struct Shell {
     permission: Option<Permission>,
     thermal: Option<Thermal>,
     wants_device: bool,
+    losses: Losses,
     frames_per_s: u32,
     /// For the share sheet.
     shared: Vec<PathBuf>,
@@ -66,6 +68,7 @@ impl Shell {
             permission: None,
             thermal: None,
             wants_device: false,
+            losses: Losses::default(),
             frames_per_s: 60,
             shared: Vec::new(),
             held_exposure: None,
@@ -80,7 +83,7 @@ impl Shell {
     pub(crate) fn fit(&mut self, layer: &CALayer, size_px: [u32; 2]) -> Result<(), StageError> {
         if self.stage.live().is_none() && self.history.is_none() {
             // Before a driver is asked for anything.
-            self.history = Some(starts::begin(&own_folder()));
+            self.history = Some(starts::begin(&own_folder(), cfg!(debug_assertions)));
         }
         if self.stage.fit(layer, size_px)? == Fitted::Anew {
             self.lend();
@@ -134,21 +137,34 @@ impl Shell {
         };
         match live.present(screen, time_s) {
             Ok(commands) => {
+                self.losses.shown();
                 self.worker.drawn(live, time_s);
                 self.obey(commands);
             }
             Err(error) => {
                 eprintln!("app-ios: {error}");
-                self.inbox.tell(ShellEvent::Graphics(GraphicsState::Lost));
+                if self.losses.is_of_surface(&error) {
+                    // The next layout or picture makes another on the same device.
+                    self.stage.suspend();
+                    self.stage.fit(layer, screen.size_px)?;
+                } else {
+                    self.inbox.tell(ShellEvent::Graphics(GraphicsState::Lost));
+                }
             }
         }
         self.settle();
         Ok(())
     }
 
-    /// Pictures a second that the app asks for.
-    pub(crate) fn frames_per_s(&self) -> u32 {
-        self.frames_per_s
+    /// Pictures a second that the app asks for, or fewer where they take too long.
+    pub(crate) fn frames_per_s(&mut self) -> u32 {
+        let governed = self.stage.live().and_then(|live| live.frames_per_s());
+        governed.map_or(self.frames_per_s, |governed| governed.min(self.frames_per_s))
+    }
+
+    /// Follows the screen, as a `UIInterfaceOrientation`.
+    pub(crate) fn set_orientation(&self, orientation: isize) {
+        self.session.set_orientation(orientation);
     }
 
     /// Files that wait for the share sheet.
@@ -238,8 +254,9 @@ impl Shell {
             PlatformCommand::OpenSettings => self.open_settings(),
             PlatformCommand::RunTracking {
                 finds_planes,
+                finds_card,
                 is_new_world,
-            } => self.session.run(finds_planes, is_new_world),
+            } => self.session.run((finds_planes, finds_card), is_new_world),
             PlatformCommand::PauseTracking => self.session.pause(),
             PlatformCommand::LockExposure(is_held) => camera::hold_exposure(is_held),
             PlatformCommand::Underexpose(true) => self.held_exposure = camera::underexpose(),

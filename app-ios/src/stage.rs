@@ -13,6 +13,9 @@ use objc2::Message;
 use objc2::rc::Retained;
 use objc2_quartz_core::{CALayer, CAMetalLayer};
 
+/// Of the camera and of the screen.
+const FRAMES_PER_S: u32 = 60;
+
 /// Why there is nothing to draw with.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum StageError {
@@ -71,6 +74,7 @@ impl Stage {
                 let core = core_on(&self.instance, layer, size_px)?;
                 let mut live = Live::new(core, toy, Preset::default());
                 live.set_clock(clock());
+                live.set_target_fps(FRAMES_PER_S);
                 self.live = Some(live);
                 fitted = Fitted::Anew;
             }

@@ -47,6 +47,17 @@ fn whatever_the_system_calls_is_guarded() {
 }
 
 #[test]
+fn the_phone_is_held_by_either_hand() {
+    let list = include_str!("../Info.plist");
+    for side in ["Left", "Right"] {
+        assert!(
+            list.contains(&format!("<string>UIInterfaceOrientationLandscape{side}</string>")),
+            "{side}"
+        );
+    }
+}
+
+#[test]
 fn the_property_list_names_the_scene_delegate() {
     let named_in_property_list = include_str!("../Info.plist")
         .split_once("<key>UISceneDelegateClassName</key>")

@@ -171,6 +171,9 @@ impl MetalView {
         let Some(screen) = self.screen() else {
             return Ok(());
         };
+        if let Some(scene) = self.window().and_then(|window| window.windowScene()) {
+            shell.set_orientation(scene.effectiveGeometry().interfaceOrientation().0);
+        }
         if shell.begins_anew() {
             self.fit(shell)?;
         }

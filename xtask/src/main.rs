@@ -18,7 +18,7 @@ use anyhow::{Context, Result, bail};
 use lexopt::Arg::{Long, Short, Value};
 use lexopt::{Parser, ValueExt};
 
-use crate::phone::{ANDROID, Action, Arcore, IOS, Phone};
+use crate::phone::{ANDROID, Action, Arcore, IOS, IphoneApp, Phone, Profile};
 use crate::toolchain::Toolchain;
 
 /// What the demo runs.
@@ -54,8 +54,8 @@ const COMMANDS: [(&str, &str); 7] = [
     ("fmt", "Format every source file"),
     ("size [--record]", "Package both shells and hold their sizes against the budgets; or take the sizes anew, within them"),
     ("calls", "Write the table of what the shells call of their platforms"),
-    ("ios check|build|package", "The iPhone shell: lints, the library, an app (on a Mac; elsewhere one that shows that it links)"),
-    ("android check|build|package [--arcore AAR --sha256 HEX]", "The Android shell: lints, the library (by the NDK), a package (with NDK, SDK and ARCore's archive, com.google.ar:core, whose SHA-256 is HEX, one to install)"),
+    ("ios check|build|package|log [--first-phone] [--device NAME] [--bundle ID]", "The iPhone shell: lints, the library, an app (on a Mac; elsewhere one that shows that it links), for engineers with --first-phone; or what a phone has written"),
+    ("android check|build|package|log [--first-phone] [--arcore AAR --sha256 HEX]", "The Android shell: lints, the library (by the NDK), a package (with NDK, SDK and ARCore's archive, com.google.ar:core, whose SHA-256 is HEX, one to install), for engineers with --first-phone; or what a phone has written"),
 ];
 
 /// What is left to do once all arguments are read.
@@ -169,11 +169,15 @@ fn parsed(command: &str, args: &mut Parser) -> Result<Work> {
 
 fn phone_action(phone: &'static Phone, args: &mut Parser) -> Result<Work> {
     let (mut action, mut archive, mut sha256) = (None, None, None);
+    let (mut profile, mut app) = (Profile::default(), IphoneApp::default());
     while let Some(arg) = args.next()? {
         match arg {
             Value(word) if action.is_none() => action = Some(word.string()?),
             Long("arcore") if phone.is_android() => archive = Some(PathBuf::from(args.value()?)),
             Long("sha256") if phone.is_android() => sha256 = Some(args.value()?.string()?),
+            Long("first-phone") => profile = Profile::FirstPhone,
+            Long("device") if !phone.is_android() => app.device = Some(args.value()?.string()?),
+            Long("bundle") if !phone.is_android() => app.bundle = Some(args.value()?.string()?),
             other => return Err(other.unexpected().into()),
         }
     }
@@ -182,12 +186,15 @@ fn phone_action(phone: &'static Phone, args: &mut Parser) -> Result<Work> {
         (None, None) => None,
         _ => bail!("--arcore and --sha256 go together"),
     };
-    let action = match action.as_deref().context("check, build or package?")? {
-        "package" => Action::Package(arcore),
-        _ if arcore.is_some() => bail!("--arcore is for a package"),
+    let action = match action.as_deref().context("check, build, package or log?")? {
+        "package" => Action::Package(arcore, profile),
+        _ if arcore.is_some() || profile != Profile::default() => {
+            bail!("--arcore and --first-phone are for a package")
+        }
+        "log" => Action::Log(app),
         "check" => Action::Check,
         "build" => Action::Build,
-        other => bail!("\"{other}\" is none of check, build and package"),
+        other => bail!("\"{other}\" is none of check, build, package and log"),
     };
     Ok(Box::new(move |toolchain| {
         phone::run(toolchain, phone, action).map(|()| ExitCode::SUCCESS)
@@ -196,7 +203,7 @@ fn phone_action(phone: &'static Phone, args: &mut Parser) -> Result<Work> {
 
 fn size(toolchain: &Toolchain, record: bool) -> Result<ExitCode> {
     for phone in [&IOS, &ANDROID] {
-        phone::run(toolchain, phone, Action::Package(None))?;
+        phone::run(toolchain, phone, Action::Package(None, Profile::Release))?;
     }
     phone::size::hold(&toolchain.root, record)?;
     Ok(ExitCode::SUCCESS)

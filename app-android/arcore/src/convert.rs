@@ -62,6 +62,27 @@ pub fn rectangle(world_from_centre: DMat4, outline_m: &[f32]) -> Option<(DMat4, 
     })
 }
 
+/// Quarter turns, clockwise, that the sensor's picture is shown by: by the camera's pose in the sensor's axes and in the display's, which
+/// differ by that about the line of sight. `None` where they differ by anything else.
+#[must_use]
+pub fn quarter_turns(of_sensor_raw: [f32; 7], of_display_raw: [f32; 7]) -> Option<u8> {
+    let world_from_sensor = world_from_camera(of_sensor_raw)?;
+    let sensor_from_display = world_from_sensor.inverse() * world_from_camera(of_display_raw)?;
+    // Where the display's right and up lie in the sensor's picture.
+    let [right, up] = [DVec3::X, DVec3::Y].map(|axis| sensor_from_display.transform_vector3(axis));
+    // What lies above in the picture is shown at the right after one turn clockwise.
+    let is_along = |one: DVec3, other: DVec3| one.dot(other) > 0.99;
+    let turned = [
+        (DVec3::X, DVec3::Y),
+        (DVec3::Y, DVec3::NEG_X),
+        (DVec3::NEG_X, DVec3::NEG_Y),
+        (DVec3::NEG_Y, DVec3::X),
+    ];
+    (0..).zip(turned).find_map(|(turns, (of_right, of_up))| {
+        (is_along(right, of_right) && is_along(up, of_up)).then_some(turns)
+    })
+}
+
 /// The seven numbers of `ArPose_create` of a rigid transform of ours; the inverse of [`world_from_camera`].
 #[allow(clippy::cast_possible_truncation, reason = "ARCore takes single precision")]
 pub fn pose_raw(rigid: &DMat4) -> [f32; 7] {
@@ -126,6 +147,29 @@ mod tests {
         ] {
             assert_eq!(rectangle(turned, without_area), None, "{without_area:?}");
         }
+    }
+
+    #[test]
+    fn a_sensor_lies_in_the_phone_by_quarter_turns() {
+        let held = DQuat::from_euler(glam::EulerRot::YXZ, 0.7, -0.4, 0.2);
+        let raw = |turned_rad: f64| {
+            let rotation = held * DQuat::from_rotation_z(turned_rad);
+            pose_raw(&DMat4::from_rotation_translation(rotation, DVec3::X))
+        };
+        let told = |degrees: f64| quarter_turns(raw(0.0), raw(degrees.to_radians()));
+        assert_eq!(
+            [0.0, 90.0, 180.0, 270.0].map(told),
+            [Some(0), Some(1), Some(2), Some(3)]
+        );
+        assert_eq!([told(45.0), quarter_turns(raw(0.0), [0.0; 7])], [None, None]);
+        // A display whose right is the picture's above shows the picture turned clockwise, as `Display` has it.
+        let display = app_core::camera_frame::Display {
+            quarter_turns: 1,
+            ..app_core::camera_frame::Display::default()
+        };
+        let image_from_screen = display.image_from_screen([640, 480], [480, 640]);
+        let above = image_from_screen.transform_vector2(DVec2::X);
+        assert!(above.abs_diff_eq(DVec2::NEG_Y, 1e-9), "{above}");
     }
 
     #[test]

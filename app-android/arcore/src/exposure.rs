@@ -11,6 +11,10 @@ use super::status::Failure;
 const EXPOSURE_TIME: u32 = 14 << 16;
 /// `ACAMERA_SENSOR_SENSITIVITY`: ISO speed, 32 bits.
 const SENSITIVITY: u32 = (14 << 16) + 2;
+/// `ACAMERA_CONTROL_AF_MODE`: a byte, 0 where the lens stays where it is.
+const FOCUS_MODE: u32 = (1 << 16) + 7;
+/// `ACAMERA_TYPE_BYTE`.
+const BYTE: u8 = 0;
 /// `ACAMERA_TYPE_INT32`.
 const INT32: u8 = 1;
 /// `ACAMERA_TYPE_INT64`.
@@ -19,17 +23,7 @@ const INT64: u8 = 3;
 impl Session {
     /// Of the frame of the last update; none where the camera does not tell.
     pub(super) fn exposure(&self) -> Option<Exposure> {
-        let (api, raw) = (&self.api, self.raw());
-        let mut status = 0;
-        // SAFETY: session and frame live; metadata that were acquired are ours to release.
-        let metadata = unsafe {
-            Owned::new(
-                |place| status = (api.ArFrame_acquireImageMetadata)(raw, self.frame.as_ptr(), place),
-                api.ArImageMetadata_release,
-            )
-        };
-        Failure::check(status).ok()?;
-        let metadata = metadata?;
+        let metadata = self.metadata()?;
         let (time, speed) = (
             self.entry(&metadata, EXPOSURE_TIME, INT64)?,
             self.entry(&metadata, SENSITIVITY, INT32)?,
@@ -45,6 +39,29 @@ impl Session {
         let iso = f64::from(iso);
         let exposure = Exposure { duration_s, iso };
         exposure.amount().map(|_| exposure)
+    }
+
+    /// Whether the camera moves its lens by itself; none where it does not tell.
+    pub(super) fn focuses_by_itself(&self) -> Option<bool> {
+        let metadata = self.metadata()?;
+        let mode = self.entry(&metadata, FOCUS_MODE, BYTE)?;
+        // SAFETY: the entry has at least one byte, until the metadata are released.
+        Some(unsafe { mode.read() } != 0)
+    }
+
+    /// What the camera says of the frame of the last update.
+    fn metadata(&self) -> Option<Owned<ArImageMetadata>> {
+        let (api, raw) = (&self.api, self.raw());
+        let mut status = 0;
+        // SAFETY: session and frame live; metadata that were acquired are ours to release.
+        let metadata = unsafe {
+            Owned::new(
+                |place| status = (api.ArFrame_acquireImageMetadata)(raw, self.frame.as_ptr(), place),
+                api.ArImageMetadata_release,
+            )
+        };
+        Failure::check(status).ok()?;
+        metadata
     }
 
     /// Where the numbers of an entry are, if there are any of that type.

@@ -1,5 +1,7 @@
 //! The camera as the app asks for it: its commands to the tracker, and what it is told of the tracker.
 
+use std::time::Duration;
+
 use app_core::app::{ArSession, ShellEvent};
 use glam::DMat4;
 
@@ -9,12 +11,20 @@ use super::status::{Failure, told};
 use super::tracker::{Geometry, Run, Step, Tracker, Wait};
 use crate::java::JavaHost;
 
+/// Time after which a camera that something else has is asked for again.
+const LOOK: Duration = Duration::from_secs(2);
+
 /// A tracker, where ARCore's library is there.
 pub struct Feed {
     tracker: Option<Tracker>,
-    /// What is tried again while ARCore is being looked for.
-    waiting: Option<Run>,
-    is_interrupted: bool,
+    /// As the app asked last.
+    asked: Option<Run>,
+    /// What is told the app until frames can come.
+    waiting: Option<Wait>,
+    /// Something else has the camera, and when that was looked at; none before the first look.
+    interrupted: Option<Option<Duration>>,
+    /// As kept for later starts, and as told to be kept.
+    kept_px: Option<[i32; 2]>,
 }
 
 impl Feed {
@@ -23,28 +33,57 @@ impl Feed {
     pub fn new(api: Option<Functions>) -> Self {
         Self {
             tracker: api.map(Tracker::new),
+            asked: None,
             waiting: None,
-            is_interrupted: false,
+            interrupted: None,
+            kept_px: None,
         }
+    }
+
+    /// Takes what [`Feed::take_kept`] told in an earlier start. A text that says nothing is as none.
+    #[must_use]
+    pub fn with_kept(mut self, kept: &str) -> Self {
+        let sides: Vec<i32> = kept
+            .trim()
+            .split('x')
+            .filter_map(|side| side.parse().ok().filter(|side| *side > 0))
+            .collect();
+        if let ([width, height], Some(tracker)) = (sides.as_slice(), &mut self.tracker) {
+            self.kept_px = Some([*width, *height]);
+            tracker.limit([*width, *height]);
+        }
+        self
+    }
+
+    /// What is to be kept for later starts, where that has changed: the size of the pictures that come.
+    #[must_use]
+    pub fn take_kept(&mut self) -> Option<String> {
+        let limited = self.tracker.as_ref().and_then(Tracker::limited_to);
+        (std::mem::replace(&mut self.kept_px, limited) != limited)
+            .then(|| limited.map_or(String::new(), |[width, height]| format!("{width}x{height}")))
     }
 
     /// What the app is told when it starts, and when it comes to the front.
     pub fn come_back(&mut self) -> Option<ShellEvent> {
         if self.tracker.is_none() {
-            return Some(ShellEvent::ArSession(ArSession::Unsupported));
+            let words = "This package was made without ARCore, or with one of another version.";
+            return Some(ShellEvent::ArTrouble(ArSession::Unsupported, words.to_owned()));
         }
         // Whatever had the camera may have let it go.
-        std::mem::take(&mut self.is_interrupted).then_some(ShellEvent::ArSession(ArSession::Able))
+        self.interrupted.take().map(|_| able())
     }
 
     /// Asks for frames; what the app is told if there will be none.
     pub fn run(&mut self, phone: &mut dyn JavaHost, run: Run) -> Option<ShellEvent> {
-        self.waiting = None;
+        self.asked = Some(run);
+        self.interrupted = None;
+        let was_waiting = self.waiting.take();
         match self.tracker.as_mut()?.run(phone, run) {
-            Step::Ready | Step::Waiting(Wait::Install) => None,
-            Step::Waiting(Wait::Answer) => {
-                self.waiting = Some(run);
-                None
+            Step::Ready => was_waiting.map(|_| able()),
+            Step::Waiting(wait) => {
+                self.waiting = Some(wait);
+                let is_news = was_waiting != Some(wait);
+                is_news.then(|| ShellEvent::ArTrouble(ArSession::Installing, wait.to_string()))
             }
             Step::Refused(failure) => Some(self.fail(failure)),
         }
@@ -52,7 +91,7 @@ impl Feed {
 
     /// Asks for no more.
     pub fn pause(&mut self) {
-        self.waiting = None;
+        self.asked = None;
         if let Some(tracker) = &mut self.tracker {
             tracker.pause();
         }
@@ -76,25 +115,92 @@ impl Feed {
         }
     }
 
-    /// The latest frame, if it is new, or why there will be none.
-    pub fn poll(&mut self, phone: &mut dyn JavaHost) -> Option<ShellEvent> {
-        if let Some(run) = self.waiting {
-            return self.run(phone, run);
+    /// The latest frame, if it is new, or why there will be none. `now` is of a clock that goes on.
+    pub fn poll(&mut self, phone: &mut dyn JavaHost, now: Duration) -> Option<ShellEvent> {
+        if let Some(looked) = self.interrupted {
+            return self.look_again(phone, now, looked);
         }
-        match self.tracker.as_mut()?.update() {
+        if let (Some(Wait::Answer), Some(run)) = (self.waiting, self.asked) {
+            return self.run(phone, again(run));
+        }
+        match self.tracker.as_mut()?.update(now) {
             Ok(frame) => frame.map(|frame| ShellEvent::Frame(Box::new(frame))),
             Err(FrameError::Failed(failure)) => Some(self.fail(failure)),
             Err(error) => {
                 eprintln!("arcore: no frame: {error}");
-                Some(ShellEvent::ArSession(ArSession::Failed))
+                let words = format!("{}. Close other apps, then start over.", sentence(&error));
+                Some(ShellEvent::ArTrouble(ArSession::Failed, words))
             }
+        }
+    }
+
+    /// Asks for the camera that something else had, and lets it go again: the app asks for it once it is told.
+    fn look_again(
+        &mut self,
+        phone: &mut dyn JavaHost,
+        now: Duration,
+        looked: Option<Duration>,
+    ) -> Option<ShellEvent> {
+        let is_due = looked.is_some_and(|looked| now.saturating_sub(looked) >= LOOK);
+        if looked.is_none() || is_due {
+            self.interrupted = Some(Some(now));
+        }
+        if !is_due {
+            return None;
+        }
+        let run = Run {
+            finds_planes: true,
+            finds_card: false,
+            is_new_world: false,
+        };
+        let tracker = self.tracker.as_mut()?;
+        let step = tracker.run(phone, run);
+        tracker.pause();
+        match step {
+            Step::Ready => {
+                self.interrupted = None;
+                Some(able())
+            }
+            Step::Refused(failure) => match self.fail(failure) {
+                // As before.
+                ShellEvent::ArTrouble(ArSession::Interrupted, _) => {
+                    self.interrupted = Some(Some(now));
+                    None
+                }
+                other => {
+                    self.interrupted = None;
+                    Some(other)
+                }
+            },
+            Step::Waiting(_) => None,
         }
     }
 
     fn fail(&mut self, failure: Failure) -> ShellEvent {
         eprintln!("arcore: no frames: {failure}");
         let event = told(failure);
-        self.is_interrupted = matches!(event, ShellEvent::ArSession(ArSession::Interrupted));
+        let is_interrupted = matches!(event, ShellEvent::ArTrouble(ArSession::Interrupted, _));
+        self.interrupted = is_interrupted.then_some(None);
         event
     }
+}
+
+fn able() -> ShellEvent {
+    ShellEvent::ArSession(ArSession::Able)
+}
+
+/// A run that was begun goes on in its world.
+fn again(run: Run) -> Run {
+    Run {
+        is_new_world: false,
+        ..run
+    }
+}
+
+/// With a capital letter.
+fn sentence(error: &FrameError) -> String {
+    let words = error.to_string();
+    let mut letters = words.chars();
+    let first = letters.next().map(|first| first.to_ascii_uppercase());
+    first.into_iter().chain(letters).collect()
 }

@@ -20,7 +20,7 @@ macro_rules! opaque {
 
 opaque! {
     ArAnchor ArAugmentedImage ArAugmentedImageDatabase ArCamera ArCameraConfig ArCameraConfigFilter ArCameraConfigList ArCameraIntrinsics ArConfig ArFrame ArImage
-    ArImageMetadata ArLightEstimate ArPlane ArPose ArSession ArTrackable ArTrackableList
+    ArImageMetadata ArPlane ArPose ArSession ArTrackable ArTrackableList
 }
 
 /// `AR_TRACKING_STATE_TRACKING`.
@@ -50,7 +50,7 @@ macro_rules! enumeration {
 }
 
 enumeration! {
-    ArAugmentedImageTrackingMethod ArAvailability ArImageFormat ArInstallStatus ArLightEstimateState ArLightEstimationMode ArPlaneFindingMode
+    ArAugmentedImageTrackingMethod ArAvailability ArCameraConfigFacingDirection ArFocusMode ArImageFormat ArInstallStatus ArLightEstimationMode ArPlaneFindingMode
     ArPlaneType ArStatus ArTextureUpdateMode ArTrackableType ArTrackingFailureReason ArTrackingState ArUpdateMode
 }
 
@@ -145,6 +145,9 @@ functions! {
 
     fn ArCameraConfigFilter_create(*const ArSession, *mut *mut ArCameraConfigFilter);
     fn ArCameraConfigFilter_destroy(*mut ArCameraConfigFilter);
+    fn ArCameraConfigFilter_setFacingDirection(*const ArSession, *mut ArCameraConfigFilter, ArCameraConfigFacingDirection);
+    fn ArCameraConfigFilter_setTargetFps(*const ArSession, *mut ArCameraConfigFilter, u32);
+    fn ArCameraConfigFilter_setDepthSensorUsage(*const ArSession, *mut ArCameraConfigFilter, u32);
     fn ArCameraConfigList_create(*const ArSession, *mut *mut ArCameraConfigList);
     fn ArCameraConfigList_destroy(*mut ArCameraConfigList);
     fn ArCameraConfigList_getSize(*const ArSession, *const ArCameraConfigList, *mut i32);
@@ -153,12 +156,14 @@ functions! {
     fn ArCameraConfig_destroy(*mut ArCameraConfig);
     fn ArCameraConfig_getImageDimensions(*const ArSession, *const ArCameraConfig, *mut i32, *mut i32);
     fn ArCameraConfig_getFpsRange(*const ArSession, *const ArCameraConfig, *mut i32, *mut i32);
+    fn ArCameraConfig_getFacingDirection(*const ArSession, *const ArCameraConfig, *mut ArCameraConfigFacingDirection);
 
     fn ArConfig_create(*const ArSession, *mut *mut ArConfig);
     fn ArConfig_destroy(*mut ArConfig);
     fn ArConfig_setUpdateMode(*const ArSession, *mut ArConfig, ArUpdateMode);
     fn ArConfig_setPlaneFindingMode(*const ArSession, *mut ArConfig, ArPlaneFindingMode);
     fn ArConfig_setLightEstimationMode(*const ArSession, *mut ArConfig, ArLightEstimationMode);
+    fn ArConfig_setFocusMode(*const ArSession, *mut ArConfig, ArFocusMode);
     fn ArConfig_setAugmentedImageDatabase(*const ArSession, *mut ArConfig, *const ArAugmentedImageDatabase);
     fn ArConfig_setTextureUpdateMode(*const ArSession, *mut ArConfig, ArTextureUpdateMode);
 
@@ -168,10 +173,10 @@ functions! {
     fn ArFrame_acquireCamera(*const ArSession, *const ArFrame, *mut *mut ArCamera);
     fn ArFrame_acquireCameraImage(*mut ArSession, *mut ArFrame, *mut *mut ArImage) -> ArStatus;
     fn ArFrame_acquireImageMetadata(*const ArSession, *const ArFrame, *mut *mut ArImageMetadata) -> ArStatus;
-    fn ArFrame_getLightEstimate(*const ArSession, *const ArFrame, *mut ArLightEstimate);
 
     fn ArCamera_release(*mut ArCamera);
     fn ArCamera_getPose(*const ArSession, *const ArCamera, *mut ArPose);
+    fn ArCamera_getDisplayOrientedPose(*const ArSession, *const ArCamera, *mut ArPose);
     fn ArCamera_getTrackingState(*const ArSession, *const ArCamera, *mut ArTrackingState);
     fn ArCamera_getTrackingFailureReason(*const ArSession, *const ArCamera, *mut ArTrackingFailureReason);
     fn ArCamera_getImageIntrinsics(*const ArSession, *const ArCamera, *mut ArCameraIntrinsics);
@@ -196,13 +201,6 @@ functions! {
 
     fn ArImageMetadata_release(*mut ArImageMetadata);
     fn ArImageMetadata_getConstEntry(*const ArSession, *const ArImageMetadata, u32, *mut ArImageMetadata_const_entry) -> ArStatus;
-
-    fn ArLightEstimate_create(*const ArSession, *mut *mut ArLightEstimate);
-    fn ArLightEstimate_destroy(*mut ArLightEstimate);
-    fn ArLightEstimate_getState(*const ArSession, *const ArLightEstimate, *mut ArLightEstimateState);
-    fn ArLightEstimate_getEnvironmentalHdrMainLightDirection(*const ArSession, *const ArLightEstimate, *mut f32);
-    fn ArLightEstimate_getEnvironmentalHdrMainLightIntensity(*const ArSession, *const ArLightEstimate, *mut f32);
-    fn ArLightEstimate_getEnvironmentalHdrAmbientSphericalHarmonics(*const ArSession, *const ArLightEstimate, *mut f32);
 
     fn ArTrackableList_create(*const ArSession, *mut *mut ArTrackableList);
     fn ArTrackableList_destroy(*mut ArTrackableList);

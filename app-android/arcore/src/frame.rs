@@ -4,8 +4,8 @@ use app_core::camera_frame::{
     CameraFrame, CameraImage, CodeRange, Display, LumaCoefficients, PlanarImage, Plane, PlaneError, Planes,
     Stamp, Tracking, YcbcrEncoding,
 };
-use app_core::scene::{Intrinsics, LightEstimate};
-use glam::{DMat4, DVec3};
+use app_core::scene::Intrinsics;
+use glam::DMat4;
 use rustix::time::{ClockId, clock_gettime};
 
 use super::ffi::{ArAugmentedImage, ArCamera, ArImage, ArPose, ArTrackable, STOPPED, TRACKING};
@@ -22,8 +22,6 @@ const YUV_420: i32 = 0x23;
 const IMAGES: i32 = 0x4152_0104;
 /// `AR_AUGMENTED_IMAGE_TRACKING_METHOD_FULL_TRACKING`: it is seen in this frame.
 const IS_SEEN: i32 = 1;
-/// `AR_LIGHT_ESTIMATE_STATE_VALID`.
-const VALID: i32 = 1;
 /// What Android's pictures for the processor are by default; ARCore does not tell.
 const ENCODING: YcbcrEncoding = YcbcrEncoding {
     coefficients: LumaCoefficients::Bt601,
@@ -47,6 +45,9 @@ pub enum FrameError {
     /// Numbers that no camera has.
     #[error("the camera's focal length is {0:?} px, its picture {1:?} px")]
     Camera([f32; 2], [i32; 2]),
+    /// None came in any mode of the camera.
+    #[error("the camera gives no picture, of whatever size")]
+    NoPictures,
 }
 
 /// Nanoseconds in a second.
@@ -76,7 +77,6 @@ impl Session {
 
     /// The frame of the last update; none where its picture is not there, as at the start and under load.
     ///
-    /// The picture is shown as it is: the activity lies as the sensor does.
     pub(super) fn read(&self, stamp: Stamp) -> Result<Option<CameraFrame>, FrameError> {
         let Some(image) = self.image()? else {
             return Ok(None);
@@ -100,6 +100,9 @@ impl Session {
         let pose = (state == TRACKING).then(|| convert::world_from_camera(self.pose_raw(&self.pose)));
         let world_from_camera = pose.flatten();
         let is_tracking = world_from_camera.is_some();
+        if is_tracking {
+            self.follow_turns(&camera);
+        }
         Ok(Some(CameraFrame {
             stamp,
             age_ms: age_ms(stamp),
@@ -115,9 +118,26 @@ impl Session {
             planes: if is_tracking { self.planes() } else { Vec::new() }.into(),
             anchors: self.held().filter(|_| is_tracking).into_iter().collect(),
             world_from_card: if is_tracking { self.card() } else { None },
-            light_estimate: self.light(),
-            display: Display::default(),
+            // ARCore's would cost it time with each picture, and helped no session that was measured.
+            light_estimate: None,
+            display: Display {
+                quarter_turns: self.quarter_turns(),
+                ..Display::default()
+            },
         }))
+    }
+
+    /// Learns how the sensor lies in the phone, by the camera's pose as the display shows it beside that of the sensor.
+    fn follow_turns(&self, camera: &Owned<ArCamera>) {
+        let of_sensor = self.pose_raw(&self.pose);
+        // SAFETY: session, camera and pose live.
+        unsafe {
+            let get = self.api.ArCamera_getDisplayOrientedPose;
+            get(self.raw(), camera.as_ptr(), self.pose.as_ptr());
+        }
+        if let Some(turns) = convert::quarter_turns(of_sensor, self.pose_raw(&self.pose)) {
+            self.learn_turns(turns);
+        }
     }
 
     pub(super) fn pose_raw(&self, pose: &Owned<ArPose>) -> [f32; 7] {
@@ -209,37 +229,6 @@ impl Session {
             row_stride,
             pixel_stride,
         }
-    }
-
-    fn light(&self) -> Option<LightEstimate> {
-        if !self.has_light() {
-            return None;
-        }
-        let (api, raw, light) = (&self.api, self.raw(), self.light.as_ptr());
-        let (mut state, mut direction, mut intensity, mut harmonics) = (0, [0.0; 3], [0.0; 3], [0.0; 27]);
-        // SAFETY: session, frame and estimate live, and the arrays have the lengths that the functions' names state.
-        unsafe {
-            (api.ArFrame_getLightEstimate)(raw, self.frame.as_ptr(), light);
-            (api.ArLightEstimate_getState)(raw, light, &raw mut state);
-            (api.ArLightEstimate_getEnvironmentalHdrMainLightDirection)(raw, light, direction.as_mut_ptr());
-            (api.ArLightEstimate_getEnvironmentalHdrMainLightIntensity)(raw, light, intensity.as_mut_ptr());
-            (api.ArLightEstimate_getEnvironmentalHdrAmbientSphericalHarmonics)(
-                raw,
-                light,
-                harmonics.as_mut_ptr(),
-            );
-        }
-        let is_finite = direction
-            .iter()
-            .chain(&intensity)
-            .chain(&harmonics)
-            .all(|number: &f32| number.is_finite());
-        (state == VALID && is_finite).then(|| LightEstimate {
-            direction_to_light_in_world: DVec3::from(direction.map(f64::from)).try_normalize(),
-            intensity: Some(intensity.map(f64::from)),
-            spherical_harmonics: Some(harmonics.map(f64::from)),
-            ..LightEstimate::default()
-        })
     }
 
     /// Where the card is, while it is seen.

@@ -19,6 +19,7 @@ pub mod library;
 mod anchors;
 mod card;
 mod exposure;
+pub mod modes;
 mod owned;
 mod planes;
 

@@ -1,11 +1,13 @@
 //! One session of ARCore: its objects, how it is configured, and the calls that may fail.
 
+use std::cell::Cell;
+
 use super::card;
 use super::ffi::{
-    ArAnchor, ArAugmentedImageDatabase, ArCameraConfig, ArCameraConfigFilter, ArCameraConfigList,
-    ArCameraIntrinsics, ArConfig, ArFrame, ArLightEstimate, ArLightEstimationMode, ArPose, ArSession,
-    ArTrackableList, Functions,
+    ArAnchor, ArAugmentedImageDatabase, ArCameraIntrinsics, ArConfig, ArFocusMode, ArFrame,
+    ArLightEstimationMode, ArPose, ArSession, ArTrackableList, Functions,
 };
+use super::modes::Modes;
 use super::owned::Owned;
 use super::status::{Failure, NOTHING, UNSUPPORTED_CONFIGURATION};
 use crate::java::Java;
@@ -20,34 +22,31 @@ const LEVEL_PLANES: i32 = 1;
 const WITHOUT_GL: i32 = 1;
 /// `AR_LIGHT_ESTIMATION_MODE_DISABLED`.
 const NO_LIGHT: ArLightEstimationMode = 0;
-/// `AR_LIGHT_ESTIMATION_MODE_ENVIRONMENTAL_HDR`.
-const HDR_LIGHT: ArLightEstimationMode = 2;
+/// `AR_FOCUS_MODE_FIXED`: to a few metres.
+const FIXED_FOCUS: ArFocusMode = 0;
+/// `AR_FOCUS_MODE_AUTO`: a toy stands nearer than a fixed focus reaches.
+const AUTO_FOCUS: ArFocusMode = 1;
 
-/// Most pixels of a camera's picture that is asked for, along its longer side.
-const MAX_SIDE_PX: i32 = 1920;
-/// Frames a second beyond which a phone grows hot.
-const MAX_HZ: i32 = 30;
+/// What a session can do without, as bits: all of it is asked for at first, and less where ARCore refuses the configuration.
+const CARD: u8 = 1;
+const FOCUS: u8 = 2;
+const ALL: u8 = CARD | FOCUS;
 
-/// What a camera can be set to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct CameraMode {
-    /// Width and height of the picture that the processor gets.
-    pub size_px: [i32; 2],
-    /// Most frames a second.
-    pub hz: i32,
+/// The parts of what is wished for, in the order in which they are tried: all of it, then one thing less at a time, the card first.
+fn less_and_less(wished: u8) -> Vec<u8> {
+    let mut parts: Vec<u8> = (0..=ALL).filter(|part| part & !wished == 0).collect();
+    parts.sort_by_key(|part| {
+        let dropped = wished & !part;
+        (dropped.count_ones(), dropped)
+    });
+    parts
 }
 
-/// The mode that is taken: the largest picture within 1920 pixels, of those the one nearest to 30 Hz; the smallest where
-/// all are larger. None of none.
-#[must_use]
-pub fn best_mode(modes: &[CameraMode]) -> Option<usize> {
-    let n_pixels = |mode: &CameraMode| i64::from(mode.size_px[0]) * i64::from(mode.size_px[1]);
-    let rank = |mode: &CameraMode| {
-        let is_small = mode.size_px.iter().all(|side| *side <= MAX_SIDE_PX);
-        let size = if is_small { n_pixels(mode) } else { -n_pixels(mode) };
-        (is_small, size, -(mode.hz - MAX_HZ).abs())
-    };
-    (0..modes.len()).max_by_key(|index| modes.get(*index).map(rank))
+/// What is looked for in the camera's picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Finds {
+    pub(super) planes: bool,
+    pub(super) card: bool,
 }
 
 /// An anchor and the number that it was asked for by.
@@ -59,22 +58,47 @@ pub(super) struct HeldAnchor {
 /// A session with the objects that each of its frames is read into. They are given back before it, in this order.
 pub(super) struct Session {
     pub(super) anchor: Option<HeldAnchor>,
-    pub(super) light: Owned<ArLightEstimate>,
     pub(super) trackables: Owned<ArTrackableList>,
     pub(super) intrinsics: Owned<ArCameraIntrinsics>,
     pub(super) pose: Owned<ArPose>,
     pub(super) frame: Owned<ArFrame>,
-    /// What the card is known by; none where ARCore does not take it.
+    /// What the card is known by; none where nobody has one, or ARCore does not take it.
     card: Option<Owned<ArAugmentedImageDatabase>>,
+    modes: Modes,
     session: Owned<ArSession>,
     pub(super) api: Functions,
-    has_light: bool,
-    finds_planes: bool,
+    finds: Finds,
+    /// What ARCore was found to refuse.
+    refused: u8,
+    focuses: bool,
+    /// `Surface.ROTATION_*`.
+    rotation: Cell<i32>,
+    /// Quarter turns of the picture where the display is not rotated: how the sensor lies in the phone.
+    sensor_turns: Cell<u8>,
+}
+
+/// Of the sensors of nearly all phones.
+const USUAL_TURNS: u8 = 1;
+
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "from 0 to 3"
+)]
+fn quarter(turns: i32) -> u8 {
+    turns.rem_euclid(4) as u8
 }
 
 impl Session {
     /// Creates and configures a session, which is then paused.
-    pub(super) fn create(api: Functions, java: Java, finds_planes: bool) -> Result<Self, Failure> {
+    ///
+    /// Pictures are no larger than `at_most_px`, where the phone was found not to deliver such.
+    pub(super) fn create(
+        api: Functions,
+        java: Java,
+        finds: Finds,
+        at_most_px: Option<[i32; 2]>,
+    ) -> Result<Self, Failure> {
         let mut status = 0;
         // SAFETY: the pointers are those of this thread and of a living activity, as the shell has them from Android; a
         // session that was created is ours to destroy.
@@ -103,20 +127,21 @@ impl Session {
         };
         let mut session = Self {
             anchor: None,
-            light: create!(ArLightEstimate_create, ArLightEstimate_destroy),
             trackables: create!(ArTrackableList_create, ArTrackableList_destroy),
             intrinsics: create!(ArCameraIntrinsics_create, ArCameraIntrinsics_destroy),
             pose: pose.ok_or(NOTHING)?,
             frame: create!(ArFrame_create, ArFrame_destroy),
-            card: card::database(&api, &session)
-                .inspect_err(|failure| eprintln!("arcore: the card is not looked for: {failure}"))
-                .ok(),
+            card: None,
+            modes: Modes::of((&api, &session), at_most_px)?,
             session,
             api,
-            has_light: true,
-            finds_planes,
+            finds,
+            refused: 0,
+            focuses: false,
+            rotation: Cell::new(i32::from(USUAL_TURNS)),
+            sensor_turns: Cell::new(USUAL_TURNS),
         };
-        session.choose_camera()?;
+        session.next_mode()?;
         session.configure()?;
         Ok(session)
     }
@@ -125,104 +150,102 @@ impl Session {
         self.session.as_ptr()
     }
 
-    /// Whether light is estimated, which not every phone does.
-    pub(super) fn has_light(&self) -> bool {
-        self.has_light
-    }
-
-    /// Sets the camera to the best of its modes; where it names none, it stays as ARCore has it.
-    fn choose_camera(&self) -> Result<(), Failure> {
-        let (api, raw) = (&self.api, self.raw());
-        // SAFETY: the session lives, and what it creates is ours to destroy.
-        let (filter, list, mode) = unsafe {
-            let filter: Option<Owned<ArCameraConfigFilter>> = Owned::new(
-                |place| (api.ArCameraConfigFilter_create)(raw, place),
-                api.ArCameraConfigFilter_destroy,
-            );
-            let list: Option<Owned<ArCameraConfigList>> = Owned::new(
-                |place| (api.ArCameraConfigList_create)(raw, place),
-                api.ArCameraConfigList_destroy,
-            );
-            let mode: Option<Owned<ArCameraConfig>> = Owned::new(
-                |place| (api.ArCameraConfig_create)(raw, place),
-                api.ArCameraConfig_destroy,
-            );
-            (filter.ok_or(NOTHING)?, list.ok_or(NOTHING)?, mode.ok_or(NOTHING)?)
-        };
-        let mut n_modes = 0;
-        // SAFETY: session, filter and list live, and the count is a place of ours.
-        unsafe {
-            (api.ArSession_getSupportedCameraConfigsWithFilter)(raw, filter.as_ptr(), list.as_ptr());
-            (api.ArCameraConfigList_getSize)(raw, list.as_ptr(), &raw mut n_modes);
-        }
-        // SAFETY: session, list and mode live, and the index is below the list's size.
-        let get =
-            |index| unsafe { (api.ArCameraConfigList_getItem)(raw, list.as_ptr(), index, mode.as_ptr()) };
-        let modes: Vec<CameraMode> = (0..n_modes)
-            .map(|index| {
-                get(index);
-                let ([mut width, mut height], [mut slowest, mut hz]) = ([0; 2], [0; 2]);
-                // SAFETY: session and mode live, and the numbers are places of ours.
-                unsafe {
-                    let config = mode.as_ptr();
-                    (api.ArCameraConfig_getImageDimensions)(raw, config, &raw mut width, &raw mut height);
-                    (api.ArCameraConfig_getFpsRange)(raw, config, &raw mut slowest, &raw mut hz);
-                }
-                let size_px = [width, height];
-                CameraMode { size_px, hz }
-            })
-            .collect();
-        let Some(best) = best_mode(&modes).and_then(|index| i32::try_from(index).ok()) else {
-            return Ok(());
-        };
-        get(best);
-        // SAFETY: session and mode live; the session has not been resumed yet.
-        Failure::check(unsafe { (api.ArSession_setCameraConfig)(raw, mode.as_ptr()) })
-    }
-
-    /// Asks for light, and does without where the phone has none.
+    /// Configures what is wished, and less of it where ARCore refuses; what it has refused is not wished again.
     fn configure(&mut self) -> Result<(), Failure> {
-        match self.configure_with(HDR_LIGHT) {
-            Err(Failure(UNSUPPORTED_CONFIGURATION)) => {
-                self.has_light = false;
-                self.configure_with(NO_LIGHT)
+        if self.finds.card && self.card.is_none() && self.refused & CARD == 0 {
+            match card::database(&self.api, &self.session) {
+                Ok(card) => self.card = Some(card),
+                Err(failure) => {
+                    eprintln!("arcore: the card is not looked for: {failure}");
+                    self.refused |= CARD;
+                }
             }
-            result => result,
         }
+        let wished = if self.finds.card { ALL } else { FOCUS } & !self.refused;
+        for part in less_and_less(wished) {
+            match self.configure_with(part) {
+                Err(Failure(UNSUPPORTED_CONFIGURATION)) => {}
+                configured => {
+                    configured?;
+                    if part != wished {
+                        eprintln!(
+                            "arcore: of card (1) and autofocus (2), {wished} was refused and {part} is used"
+                        );
+                        self.refused |= wished & !part;
+                    }
+                    self.focuses = part & FOCUS != 0;
+                    return Ok(());
+                }
+            }
+        }
+        Err(Failure(UNSUPPORTED_CONFIGURATION))
     }
 
-    fn configure_with(&self, light: ArLightEstimationMode) -> Result<(), Failure> {
+    fn configure_with(&self, part: u8) -> Result<(), Failure> {
         let (api, raw) = (&self.api, self.raw());
         // SAFETY: the session lives, and what it creates is ours to destroy.
         let config: Option<Owned<ArConfig>> =
             unsafe { Owned::new(|place| (api.ArConfig_create)(raw, place), api.ArConfig_destroy) };
         let config = config.ok_or(NOTHING)?;
-        // SAFETY: session and configuration live.
+        let planes = if self.finds.planes {
+            LEVEL_PLANES
+        } else {
+            NO_PLANES
+        };
+        let focus = if part & FOCUS == 0 {
+            FIXED_FOCUS
+        } else {
+            AUTO_FOCUS
+        };
+        // SAFETY: session, configuration and database live.
         Failure::check(unsafe {
             let config = config.as_ptr();
             (api.ArConfig_setUpdateMode)(raw, config, LATEST_IMAGE);
-            let planes = if self.finds_planes {
-                LEVEL_PLANES
-            } else {
-                NO_PLANES
-            };
             (api.ArConfig_setPlaneFindingMode)(raw, config, planes);
             (api.ArConfig_setTextureUpdateMode)(raw, config, WITHOUT_GL);
-            (api.ArConfig_setLightEstimationMode)(raw, config, light);
-            if let Some(card) = &self.card {
+            (api.ArConfig_setLightEstimationMode)(raw, config, NO_LIGHT);
+            (api.ArConfig_setFocusMode)(raw, config, focus);
+            if let Some(card) = self.card.as_ref().filter(|_| part & CARD != 0) {
                 (api.ArConfig_setAugmentedImageDatabase)(raw, config, card.as_ptr());
             }
             (api.ArSession_configure)(raw, config)
         })
     }
 
-    /// Looks for level planes from now on, or no longer; those that were found stay.
-    pub(super) fn find_planes(&mut self, finds_planes: bool) -> Result<(), Failure> {
-        if self.finds_planes == finds_planes {
+    /// Looks for this from now on, and for nothing else; what was found stays.
+    pub(super) fn find(&mut self, finds: Finds) -> Result<(), Failure> {
+        if self.finds == finds {
             return Ok(());
         }
-        self.finds_planes = finds_planes;
-        self.configure_with(if self.has_light { HDR_LIGHT } else { NO_LIGHT })
+        self.finds = finds;
+        self.configure()
+    }
+
+    /// Whether the camera was asked to focus by itself and says that it does not, as some phones until they are paused and resumed
+    /// (arcore-android-sdk issues 1300 and 1543).
+    pub(super) fn is_focus_stuck(&self) -> bool {
+        self.focuses && self.focuses_by_itself() == Some(false)
+    }
+
+    /// Sets the camera of a paused session to the next smaller of its modes; whether there is one.
+    pub(super) fn next_mode(&mut self) -> Result<bool, Failure> {
+        self.modes.next((&self.api, &self.session))
+    }
+
+    /// Width and height of the camera's picture, as it was chosen.
+    pub(super) fn mode_px(&self) -> Option<[i32; 2]> {
+        Some(self.modes.used?.size_px)
+    }
+
+    /// Quarter turns that the picture is shown by, as far as the session knows.
+    pub(super) fn quarter_turns(&self) -> u8 {
+        quarter(i32::from(self.sensor_turns.get()) - self.rotation.get())
+    }
+
+    /// The picture is shown by so many turns now: a display that is turned on is held against how the sensor lies.
+    pub(super) fn learn_turns(&self, turns: u8) {
+        self.sensor_turns
+            .set(quarter(i32::from(turns) + self.rotation.get()));
     }
 
     pub(super) fn resume(&self) -> Result<(), Failure> {
@@ -243,6 +266,7 @@ impl Session {
 
     /// Tells the display's quarter turns, as `Surface.ROTATION_*` counts them, and its size.
     pub(super) fn set_display(&self, quarter_turns: i32, [width, height]: [i32; 2]) {
+        self.rotation.set(quarter_turns);
         // SAFETY: the session lives.
         unsafe { (self.api.ArSession_setDisplayGeometry)(self.raw(), quarter_turns, width, height) }
     }

@@ -40,6 +40,21 @@ pub enum Remedy {
     Report,
 }
 
+impl Remedy {
+    /// In words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Return => "Start over, or leave the app and come back.",
+            Self::AllowCamera => "Allow it in the system's settings.",
+            Self::Install => "Install or update it from the Play Store: start over, and it is offered again.",
+            Self::UpdateApp => "Update this app.",
+            Self::None => "Another phone is needed.",
+            Self::Report => "Start over. If that does not help, hand on the log from the menu.",
+        }
+    }
+}
+
 /// Every `ArStatus` but success: its number, its name in C, what to tell, and what can be done.
 #[rustfmt::skip]
 pub const STATUSES: &[(ArStatus, &str, &str, Remedy)] = &[
@@ -92,6 +107,19 @@ impl Failure {
 
     fn entry(self) -> Option<&'static (ArStatus, &'static str, &'static str, Remedy)> {
         STATUSES.iter().find(|entry| entry.0 == self.0)
+    }
+
+    /// What is told of it, and what helps.
+    #[must_use]
+    pub fn words(self) -> String {
+        let told = match self.entry() {
+            Some((_, _, message, _)) => (*message).to_owned(),
+            None => self.to_string(),
+        };
+        match self.remedy().words() {
+            "" => told,
+            help => format!("{told} {help}"),
+        }
     }
 
     /// What can be done about it.
@@ -162,8 +190,14 @@ pub fn tracking_without_pose(reason: ArTrackingFailureReason) -> Tracking {
 pub fn told(failure: Failure) -> ShellEvent {
     match (failure, failure.remedy()) {
         (Failure(PERMISSION_NOT_GRANTED), _) => ShellEvent::Permission(Permission::Denied),
-        (Failure(CAMERA_NOT_AVAILABLE), _) => ShellEvent::ArSession(ArSession::Interrupted),
-        (_, Remedy::None | Remedy::UpdateApp) => ShellEvent::ArSession(ArSession::Unsupported),
-        _ => ShellEvent::ArSession(ArSession::Failed),
+        (Failure(CAMERA_NOT_AVAILABLE), _) => {
+            // It is looked for again by itself.
+            let words = "Another app uses the camera. Close it, and it goes on here.";
+            ShellEvent::ArTrouble(ArSession::Interrupted, words.to_owned())
+        }
+        (_, Remedy::None | Remedy::UpdateApp) => {
+            ShellEvent::ArTrouble(ArSession::Unsupported, failure.words())
+        }
+        _ => ShellEvent::ArTrouble(ArSession::Failed, failure.words()),
     }
 }

@@ -10,13 +10,14 @@
 //! The camera's permission is the app's concern: it asks for frames only where it was given.
 
 use std::fmt;
+use std::time::Duration;
 
 use app_core::camera_frame::{CameraFrame, Stamp};
 use glam::DMat4;
 
 use super::ffi::Functions;
 use super::frame::FrameError;
-use super::session::Session;
+use super::session::{Finds, Session};
 use super::status::{Availability, Failure, availability};
 use crate::java::{Java, JavaHost};
 
@@ -32,6 +33,8 @@ const FATAL: Failure = Failure(-2);
 pub struct Run {
     /// Whether level planes are looked for.
     pub finds_planes: bool,
+    /// Whether the printed card is, which takes ARCore longer with each picture.
+    pub finds_card: bool,
     /// Whether the world begins anew.
     pub is_new_world: bool,
 }
@@ -77,6 +80,31 @@ pub struct Geometry {
     pub size_px: [i32; 2],
 }
 
+/// Pictures that the camera has not delivered for so long are given up.
+const PATIENCE: Duration = Duration::from_secs(3);
+/// Pictures after which a camera that was asked to focus by itself has begun to.
+const N_FOCUSED: u32 = 10;
+
+/// What has come of the pictures that were asked for.
+#[derive(Clone, Copy, Debug, Default)]
+struct Watch {
+    /// When the camera was begun, or the latest picture came.
+    since: Option<Duration>,
+    /// Pictures since it was begun.
+    n_pictures: u32,
+    /// It was begun anew as it was, since pictures had come and then stopped.
+    is_second_try: bool,
+    /// It was begun anew for its focus, once in a session.
+    has_refocused: bool,
+}
+
+impl Watch {
+    /// The camera is begun.
+    fn begin(&mut self) {
+        (self.since, self.n_pictures) = (None, 0);
+    }
+}
+
 /// Keeps a session and reads its frames.
 pub struct Tracker {
     api: Functions,
@@ -85,6 +113,11 @@ pub struct Tracker {
     is_running: bool,
     has_asked_for_install: bool,
     display: Option<Geometry>,
+    watch: Watch,
+    /// Pictures are no larger, since larger ones did not come.
+    at_most_px: Option<[i32; 2]>,
+    /// The same once such pictures have come.
+    limited_px: Option<[i32; 2]>,
     latest_ns: i64,
     n_frames: u64,
     /// Each session has a world of its own.
@@ -102,11 +135,25 @@ impl Tracker {
             is_running: false,
             has_asked_for_install: false,
             display: None,
+            watch: Watch::default(),
+            at_most_px: None,
+            limited_px: None,
             latest_ns: 0,
             n_frames: 0,
             n_sessions: 0,
             n_missed: 0,
         }
+    }
+
+    /// As an earlier start has found: pictures that are larger do not come.
+    pub fn limit(&mut self, at_most_px: [i32; 2]) {
+        (self.at_most_px, self.limited_px) = (Some(at_most_px), Some(at_most_px));
+    }
+
+    /// Width and height of the pictures that come where larger ones did not, for later starts.
+    #[must_use]
+    pub fn limited_to(&self) -> Option<[i32; 2]> {
+        self.limited_px
     }
 
     /// Frames whose pictures were not there when they were asked for.
@@ -123,7 +170,11 @@ impl Tracker {
             // The person starts over, and may think otherwise of what was declined.
             self.has_asked_for_install = false;
         }
-        match self.begin(phone, run.finds_planes) {
+        let finds = Finds {
+            planes: run.finds_planes,
+            card: run.finds_card,
+        };
+        match self.begin(phone, finds) {
             Ok(()) => Step::Ready,
             Err(Halt::Wait(wait)) => Step::Waiting(wait),
             Err(Halt::Refused(failure)) => Step::Refused(failure),
@@ -159,11 +210,94 @@ impl Tracker {
         }
     }
 
-    /// The camera's latest frame; none if there is no later one than the last, or none whose picture is there.
+    /// The camera's latest frame; none if there is no later one than the last, or none whose picture is there. `now` is of any clock that
+    /// goes on: a camera whose pictures do not come is begun anew, then set to smaller ones.
     ///
     /// # Errors
     /// What ARCore or the frame says. After a fatal failure the next `run` begins a new session.
-    pub fn update(&mut self) -> Result<Option<CameraFrame>, FrameError> {
+    pub fn update(&mut self, now: Duration) -> Result<Option<CameraFrame>, FrameError> {
+        if !self.is_running {
+            return Ok(None);
+        }
+        let frame = self.latest_frame()?;
+        let since = *self.watch.since.get_or_insert(now);
+        if frame.is_some() {
+            self.watch.since = Some(now);
+            self.watch.n_pictures = self.watch.n_pictures.saturating_add(1);
+            self.picture_came()?;
+        } else if now.saturating_sub(since) >= PATIENCE {
+            self.begin_smaller()?;
+        }
+        Ok(frame)
+    }
+
+    fn picture_came(&mut self) -> Result<(), FrameError> {
+        let Some(session) = &self.session else {
+            return Ok(());
+        };
+        if self.watch.n_pictures == 1 && self.at_most_px.is_some() {
+            self.limited_px = self.at_most_px;
+        }
+        if self.watch.n_pictures >= N_FOCUSED {
+            self.watch.is_second_try = false;
+        }
+        if self.watch.n_pictures == N_FOCUSED && !self.watch.has_refocused && session.is_focus_stuck() {
+            eprintln!("arcore: the camera does not focus by itself: paused and resumed");
+            self.watch.has_refocused = true;
+            self.begin_anew(|_| Ok(true))?;
+        }
+        Ok(())
+    }
+
+    /// No picture has come for too long: the camera is begun anew as it was where some had come before, else with the next mode.
+    fn begin_smaller(&mut self) -> Result<(), FrameError> {
+        let is_same = self.watch.n_pictures > 0 && !self.watch.is_second_try;
+        self.watch.is_second_try = is_same;
+        if is_same {
+            eprintln!("arcore: the camera's pictures have stopped: it is begun anew");
+            return self.begin_anew(|_| Ok(true)).map(drop);
+        }
+        if self.begin_anew(Session::next_mode)? {
+            self.at_most_px = self.session.as_ref().and_then(Session::mode_px);
+            eprintln!(
+                "arcore: no picture comes: smaller ones are asked for, {:?} px",
+                self.at_most_px
+            );
+            return Ok(());
+        }
+        // Whatever is smaller does not come either: a later session may begin with the largest.
+        (self.at_most_px, self.limited_px) = (None, None);
+        self.session = None;
+        self.is_running = false;
+        Err(FrameError::NoPictures)
+    }
+
+    /// Pauses the session, changes it, and resumes it where there was something to change.
+    fn begin_anew(
+        &mut self,
+        change: impl FnOnce(&mut Session) -> Result<bool, Failure>,
+    ) -> Result<bool, FrameError> {
+        let Some(session) = &mut self.session else {
+            return Ok(false);
+        };
+        let begun = session
+            .pause()
+            .and_then(|()| change(session))
+            .and_then(|is_changed| {
+                if is_changed {
+                    session.resume()?;
+                }
+                Ok(is_changed)
+            });
+        self.watch.begin();
+        if begun.is_err() {
+            self.session = None;
+            self.is_running = false;
+        }
+        Ok(begun?)
+    }
+
+    fn latest_frame(&mut self) -> Result<Option<CameraFrame>, FrameError> {
         let Some(session) = self.session.as_ref().filter(|_| self.is_running) else {
             return Ok(None);
         };
@@ -194,12 +328,14 @@ impl Tracker {
         Ok(frame)
     }
 
-    fn begin(&mut self, phone: &mut dyn JavaHost, finds_planes: bool) -> Result<(), Halt> {
+    fn begin(&mut self, phone: &mut dyn JavaHost, finds: Finds) -> Result<(), Halt> {
         match &mut self.session {
-            Some(session) => session.find_planes(finds_planes)?,
+            Some(session) => session.find(finds)?,
             None => {
                 self.ensure_installed(phone.java())?;
-                self.session = Some(Session::create(self.api, phone.java(), finds_planes)?);
+                let session = Session::create(self.api, phone.java(), finds, self.at_most_px)?;
+                self.session = Some(session);
+                self.watch = Watch::default();
                 self.n_sessions += 1;
                 self.latest_ns = 0;
                 self.tell_display();
@@ -207,6 +343,7 @@ impl Tracker {
         }
         if let Some(session) = self.session.as_ref().filter(|_| !self.is_running) {
             session.resume()?;
+            self.watch.begin();
         }
         self.is_running = true;
         Ok(())

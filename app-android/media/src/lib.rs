@@ -1,11 +1,13 @@
-//! Videos by Android's own encoder, and copies of files where other apps find them.
+//! Videos by Android's own encoder, copies of files where other apps find them, and what the display tells.
 //!
-//! `yuv`, the layout of samples that encoders take, and `stored`, where a file belongs, run in desktop tests; `video` and `media_store`
+//! `yuv`, the layout of samples that encoders take, and `stored`, where a file belongs, run in desktop tests; `video`, `media_store` and `display`
 //! are compiled for Android alone.
 
 pub mod stored;
 pub mod yuv;
 
+#[cfg(target_os = "android")]
+pub mod display;
 #[cfg(target_os = "android")]
 pub mod media_store;
 #[cfg(target_os = "android")]

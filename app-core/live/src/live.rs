@@ -14,7 +14,7 @@ use crate::interface::{Interface, Painter, Painting, Screen, Touch, Widget};
 use crate::self_test;
 use app_pipeline::core::{Canvas, Core, CoreError, WarmUp};
 use app_pipeline::frame::{Clock, Warning};
-use app_pipeline::governor::{BALANCED_QUALITY_LADDER, Governor, Measured};
+use app_pipeline::governor::{BALANCED_QUALITY_LADDER, Exhausted, Governor, Measured, Thermal};
 use app_pipeline::gpu::ShaderTexts;
 use app_pipeline::preset::Preset;
 use app_pipeline::profile::{About, Profile};
@@ -43,10 +43,18 @@ pub struct Live {
     /// Frames a second that are aimed at.
     target_fps: Option<u32>,
     governor: Option<Governor>,
+    /// Why `fast` takes the place of `balanced`: all that could be turned down was, and did not suffice.
+    lowered: Option<Exhausted>,
+    /// Seconds for which a phone that was too warm has been cool.
+    cool_s: f64,
     profiler: Profiler,
+    n_warm_ups: u32,
     /// Of the latest picture.
     time_s: f64,
 }
+
+/// A phone that was too warm for a preset has it again when it was cool for so long.
+const COOL_S: f64 = 120.0;
 
 impl Live {
     /// An app that draws with `core`, and a toy to begin with.
@@ -65,13 +73,16 @@ impl Live {
             warnings: Vec::new(),
             target_fps: None,
             governor: None,
+            lowered: None,
+            cool_s: 0.0,
             profiler: Profiler::default(),
+            n_warm_ups: 0,
             time_s: 0.0,
         }
     }
 
-    /// Aims at so many frames a second from now on, by turning settings of preset `balanced` down where they take too long; the others
-    /// stay as they are.
+    /// Aims at so many frames a second from now on, by turning settings of preset `balanced` down where they take too long, and in the end
+    /// by `fast` in its place; the others stay as they are.
     pub fn set_target_fps(&mut self, fps: u32) {
         self.target_fps = Some(fps);
         self.govern_preset();
@@ -139,6 +150,7 @@ impl Live {
         self.core.present_with(self.display, |canvas| {
             paint(painter, interface, canvas, &painting, LoadOp::Load);
         })?;
+        self.profiler.presented();
         Ok(commands)
     }
 
@@ -197,6 +209,47 @@ impl Live {
         self.interface.widgets()
     }
 
+    /// The phone's own way back, such as a button or a gesture: what is to be done; none where it leads out of the app.
+    #[must_use]
+    pub fn back(&mut self) -> Option<Vec<ShellCommand>> {
+        if self.interface.close_menu() {
+            return Some(Vec::new());
+        }
+        let action = self.app.back()?;
+        Some(self.app.event(ShellEvent::User(action)))
+    }
+
+    /// Says this on the first screen, by the terms of what the app runs on.
+    pub fn disclose(&mut self, words: &'static str) {
+        self.app.disclose(words);
+    }
+
+    /// Pictures a second that are worth drawing: as many as are aimed at, or fewer where the governor says so; none where no number was
+    /// aimed at.
+    #[must_use]
+    pub fn frames_per_s(&self) -> Option<u32> {
+        let governed = self.governor.as_ref().map(Governor::frames_per_second);
+        governed.or(self.target_fps)
+    }
+
+    /// How often all that a preset needs was compiled: what the driver keeps of it has grown where this has.
+    #[must_use]
+    pub fn n_warm_ups(&self) -> u32 {
+        self.n_warm_ups
+    }
+
+    /// The core.
+    #[must_use]
+    pub fn core(&self) -> &Core {
+        &self.core
+    }
+
+    /// The preset that is used.
+    #[must_use]
+    pub fn preset(&self) -> Preset {
+        self.preset
+    }
+
     /// The logic.
     #[must_use]
     pub fn app(&self) -> &App {
@@ -216,6 +269,7 @@ impl Live {
 
     /// What the person does with the interface, and the picture below it.
     fn prepare(&mut self, screen: &Screen, time_s: f64) -> Result<(Vec<ShellCommand>, Painting), CoreError> {
+        self.profiler.begin_picture();
         let mut commands = self.follow_preset();
         commands.extend(self.compile_next()?);
         let profile = self.profile();
@@ -239,6 +293,7 @@ impl Live {
             return Ok(Vec::new());
         }
         self.warm_up = None;
+        self.n_warm_ups = self.n_warm_ups.saturating_add(1);
         let mut commands: Vec<_> = self.test_device().map(ShellCommand::from).into_iter().collect();
         commands.extend(self.app.event(ShellEvent::Graphics(GraphicsState::Ready)));
         Ok(commands)
@@ -246,7 +301,10 @@ impl Live {
 
     /// Uses another preset where the app wants one.
     fn follow_preset(&mut self) -> Vec<ShellCommand> {
-        let preset = self.app.preset(self.chosen);
+        let is_lowered = self.lowered.is_some() && self.chosen == Preset::Balanced;
+        let preset = self
+            .app
+            .preset(if is_lowered { Preset::Fast } else { self.chosen });
         if preset == self.preset {
             return Vec::new();
         }
@@ -273,6 +331,14 @@ impl Live {
         }
         let tested = self_test::run(&mut self.core, self.preset);
         self.scene = None;
+        let words = match &tested {
+            Ok(off) => format!(
+                "{:.2} codes off where it is worst, {:.3} in the mean",
+                off.worst_codes, off.mean_codes
+            ),
+            Err(error) => error.to_string(),
+        };
+        self.app.note_self_test(&words);
         let outcome = tested.map(|_| ()).map_err(|error| error.to_string());
         self.app.self_tested(&device, outcome)
     }
@@ -280,20 +346,36 @@ impl Live {
     /// Turns settings down or up by how long pictures take while the toy moves.
     fn govern(&mut self, time_s: f64) -> Result<(), CoreError> {
         let interval_ms = 1e3 * (time_s - self.time_s);
+        self.cool_down(time_s - self.time_s);
         self.time_s = time_s;
         let is_moving = self.scene.is_some() && matches!(self.app.show(), Show::Toy { .. });
         let Some(governor) = self.governor.as_mut().filter(|_| is_moving) else {
             return Ok(());
         };
         let turned = governor.take(&Measured {
-            gpu_ms: None,
-            interval_ms,
+            gpu_ms: self.profiler.gpu_ms(),
+            // A shell that draws a picture for each of the camera's waits for that; it is not the device that takes so long.
+            interval_ms: self.profiler.busy_ms().unwrap_or(interval_ms),
             thermal: self.app.thermal(),
         });
+        if let Some(exhausted) = governor.exhausted() {
+            self.lowered = Some(exhausted);
+            self.app.note_lowered(exhausted);
+        }
         if turned.is_some() {
             self.core.set_quality_reductions(governor.turned_down())?;
         }
         Ok(())
+    }
+
+    /// Goes back to the preset that was chosen, where heat alone has lowered it and has gone.
+    fn cool_down(&mut self, elapsed_s: f64) {
+        let is_cooling = self.lowered == Some(Exhausted::Warm) && self.app.thermal() == Thermal::Nominal;
+        self.cool_s = if is_cooling { self.cool_s + elapsed_s } else { 0.0 };
+        if self.cool_s >= COOL_S {
+            self.lowered = None;
+            self.cool_s = 0.0;
+        }
     }
 
     /// Whether it is one of the moving toy.

@@ -48,6 +48,11 @@ pub(crate) fn shown_name(path: &Path) -> String {
         .into_owned()
 }
 
+/// Writes the log into the folder.
+pub(crate) fn write_log(live: &Live, folder: &Path) -> Saved {
+    save::bytes(&folder.join("log.txt"), live.app().log().text().as_bytes())
+}
+
 /// What people hand on, as files of the folder: the log, the times, and `recording` or else the latest of earlier starts, as far as
 /// there are any.
 #[must_use]

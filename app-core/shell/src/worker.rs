@@ -28,10 +28,13 @@ use crate::folders::{self, Folders};
 use crate::guard::guarded;
 use crate::toys::{self, ToyFile};
 use crate::video::{Video, VideoFormat};
-use crate::{record, save, starts};
+use crate::{pipelines, record, save, starts};
 
 /// Time after which free space is looked at anew.
 const LOOK: Duration = Duration::from_secs(1);
+
+/// Time after which a log that has grown is written anew.
+const WRITE_LOG: Duration = Duration::from_secs(2);
 
 /// What differs from shell to shell.
 #[derive(Clone)]
@@ -83,6 +86,10 @@ pub struct Worker {
     outcomes: (Sender<Outcome>, Receiver<Outcome>),
     /// When free space was looked at.
     looked: Option<Instant>,
+    /// How often all was compiled when the driver's pipelines were kept last.
+    n_warm_ups: u32,
+    /// When the log was written, and how many lines it had.
+    logged: Option<(Instant, u64)>,
 }
 
 impl Worker {
@@ -101,6 +108,8 @@ impl Worker {
             n_files: 0,
             outcomes: channel(),
             looked: None,
+            n_warm_ups: 0,
+            logged: None,
         }
     }
 
@@ -159,6 +168,8 @@ impl Worker {
 
     /// Takes the picture that was just drawn, for a video.
     pub fn drawn(&mut self, live: &Live, time_s: f64) {
+        self.keep_pipelines(live);
+        self.keep_log(live);
         let video = self.video.as_mut().filter(|video| video.is_due(time_s));
         if let Some(video) = video
             && let Ok(picture) = live.read_picture()
@@ -179,6 +190,43 @@ impl Worker {
                 .for_each(|free| self.tell(ShellEvent::FreeSpace(free)));
         }
         self.outcomes.1.try_recv().ok()
+    }
+
+    /// Keeps what the driver has compiled, once all of it is.
+    fn keep_pipelines(&mut self, live: &Live) {
+        let (Some(own), true) = (&self.folders.own, live.n_warm_ups() != self.n_warm_ups) else {
+            return;
+        };
+        self.n_warm_ups = live.n_warm_ups();
+        let (Some(key), Some(data)) = (live.core().pipelines_key(), live.core().pipeline_data()) else {
+            return;
+        };
+        let own = own.clone();
+        let kept = thread::Builder::new()
+            .name("pipelines".to_owned())
+            .spawn(move || {
+                guarded("a thread", || {
+                    if let Err(error) = pipelines::store(&own, &key, &data) {
+                        eprintln!("compiled pipelines are not kept: {error}");
+                    }
+                })
+            });
+        if let Err(error) = kept {
+            eprintln!("compiled pipelines are not kept: {error}");
+        }
+    }
+
+    /// Writes the log where people get at it while the app runs: whoever looks for a fault need not ask the app for it.
+    fn keep_log(&mut self, live: &Live) {
+        let n_lines = live.app().log().n_lines();
+        let is_due = self
+            .logged
+            .is_none_or(|(written, n_written)| written.elapsed() >= WRITE_LOG && n_written != n_lines);
+        let (Some(folder), true, Pace::Live) = (&self.folders.shared, is_due, self.pace) else {
+            return;
+        };
+        self.logged = Some((Instant::now(), n_lines));
+        record::write_log(live, folder);
     }
 
     fn tell(&self, event: ShellEvent) {

@@ -62,6 +62,39 @@ pub fn permission(status: isize) -> Permission {
     }
 }
 
+/// What is done about a session of ARKit that failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AfterFailure {
+    /// It is run again without the picture of the card: the one thing that is asked for and can be left out.
+    RunWithoutCard,
+    /// The app is told.
+    Tell(ArSession),
+}
+
+/// What is done after a session failed with an `ARErrorCode`, which `had_card` to look for.
+///
+/// One picture or object that ARKit refuses (300, 301, 302) fails the whole run, and each one after it; so may a configuration that the
+/// phone does not have (100).
+pub fn after_failure(code: isize, had_card: bool) -> AfterFailure {
+    match code {
+        100 | 300..=302 if had_card => AfterFailure::RunWithoutCard,
+        code => AfterFailure::Tell(failed_session(code)),
+    }
+}
+
+/// Quarter turns, clockwise, that the sensor's picture is shown by in a `UIInterfaceOrientation`: it is upright where the phone's lower end
+/// is at the right.
+pub fn quarter_turns(orientation: isize) -> u8 {
+    match orientation {
+        // Portrait, upside down, landscape with the lower end at the left.
+        1 => 1,
+        2 => 3,
+        4 => 2,
+        // With the lower end at the right, and what is not known.
+        _ => 0,
+    }
+}
+
 /// What a session of ARKit is after it failed with an `ARErrorCode`.
 pub fn failed_session(code: isize) -> ArSession {
     match code {
@@ -84,6 +117,26 @@ mod tests {
             [100, 102, 103, 200].map(failed_session),
             [unsupported, failed, failed, failed]
         );
+    }
+
+    #[test]
+    fn what_arkit_refuses_is_left_out_before_anything_is_said() {
+        let tell = |ar_session| AfterFailure::Tell(ar_session);
+        for code in [100, 300, 301, 302] {
+            assert_eq!(after_failure(code, true), AfterFailure::RunWithoutCard, "{code}");
+        }
+        // The run without it failed as well.
+        assert_eq!(after_failure(100, false), tell(ArSession::Unsupported));
+        assert_eq!(after_failure(300, false), tell(ArSession::Failed));
+        // Sensors and the camera itself have nothing to do with it.
+        for code in [101, 102, 103, 200] {
+            assert_eq!(after_failure(code, true), tell(ArSession::Failed), "{code}");
+        }
+    }
+
+    #[test]
+    fn the_picture_is_upright_in_all_four_orientations() {
+        assert_eq!([0, 1, 2, 3, 4].map(quarter_turns), [0, 1, 3, 0, 2]);
     }
 
     #[test]

@@ -72,6 +72,8 @@ pub struct RawFrame<'a> {
     pub card: Option<[[f32; 4]; 4]>,
     /// The anchor that is held, by the number it was asked for, and the columns of its `transform`.
     pub anchor: Option<(u64, [[f32; 4]; 4])>,
+    /// `UIInterfaceOrientation` of the screen that it is shown on.
+    pub orientation: isize,
 }
 
 /// What the shell counts for a frame, which ARKit does not.
@@ -145,8 +147,10 @@ pub fn camera_frame(
             color_temperature_k: Some(kelvin).filter(|kelvin| kelvin.is_finite() && *kelvin > 0.0),
             ..LightEstimate::default()
         }),
-        // The interface has the one orientation in which the sensor's picture is upright.
-        display: Display::default(),
+        display: Display {
+            quarter_turns: convert::quarter_turns(raw.orientation),
+            ..Display::default()
+        },
     })
 }
 
@@ -285,6 +289,7 @@ mod tests {
             }],
             card: Some(UPRIGHT),
             anchor: Some((3, UPRIGHT)),
+            orientation: 4,
         }
     }
 
@@ -321,7 +326,10 @@ mod tests {
         );
         assert_eq!(frame.exposure.and_then(|exposure| exposure.amount()), Some(0.005));
         assert_eq!((frame.anchors[0].id, frame.anchors.len()), (3, 1));
-        assert_eq!(frame.display.quarter_turns, 0);
+        assert_eq!(
+            frame.display.quarter_turns, 2,
+            "the phone is held by the other hand"
+        );
     }
 
     #[test]

@@ -21,10 +21,10 @@ const MAX_CORNERS: usize = 4096;
 /// Lets `take` see what `frame` holds, and its picture where `textures` lend it; else the pixels may be read until it returns. None
 /// where the pixels cannot be.
 ///
-/// `held` is the anchor to look for: the number it was asked for by, and the bytes of its identifier.
+/// `held` is the anchor to look for: the number it was asked for by, and the bytes of its identifier. `orientation` is that of the screen.
 pub(super) fn with_raw<T>(
     frame: &ARFrame,
-    held: Option<(u64, [u8; 16])>,
+    (held, orientation): (Option<(u64, [u8; 16])>, isize),
     textures: Option<&TextureCache>,
     take: impl FnOnce(&RawFrame<'_>, Option<PlanarImage>) -> T,
 ) -> Option<T> {
@@ -73,6 +73,7 @@ pub(super) fn with_raw<T>(
         surfaces: surfaces.map(|anchor| surface(&anchor)).collect(),
         card: anchors.iter().find_map(|anchor| card(&anchor)),
         anchor,
+        orientation,
     };
     Some(take(&raw, lent))
 }

@@ -20,7 +20,7 @@ use objc2_foundation::{NSError, NSObjectProtocol, NSProcessInfo, NSSet};
 use super::frame::{Count, camera_frame};
 use super::textures::TextureCache;
 use super::{card, read, shim};
-use crate::convert;
+use crate::convert::{self, AfterFailure};
 use app_shell::guard::guarded;
 
 /// An anchor that is held.
@@ -39,11 +39,81 @@ struct Shared {
     /// None until there is a device.
     textures: RefCell<Option<TextureCache>>,
     is_interrupted: Cell<bool>,
+    /// `UIInterfaceOrientation` of the screen.
+    orientation: Cell<isize>,
+    /// What the latest run looks for.
+    finds: Cell<Finds>,
+    /// What the card is known by; none before anybody has one, or where ARKit has refused it.
+    card: RefCell<Card>,
     /// A frame was refused, and why was written.
     is_refusing: Cell<bool>,
 }
 
+/// What is looked for in the camera's picture.
+#[derive(Clone, Copy, Default)]
+struct Finds {
+    planes: bool,
+    card: bool,
+}
+
+/// The card's picture, made where somebody has one.
+#[derive(Default)]
+enum Card {
+    #[default]
+    Unmade,
+    Made(Retained<ARReferenceImage>),
+    /// It cannot be made, or ARKit has refused it.
+    Refused,
+}
+
 impl Shared {
+    /// Runs `session` with what is looked for.
+    fn run(&self, session: &ARSession, options: ARSessionRunOptions) {
+        let finds = self.finds.get();
+        // SAFETY: new has no requirements.
+        let configuration = unsafe { ARWorldTrackingConfiguration::new() };
+        let planes = if finds.planes {
+            ARPlaneDetection::Horizontal
+        } else {
+            ARPlaneDetection::empty()
+        };
+        // SAFETY: a configuration of this session's own, with options that every session takes.
+        unsafe {
+            configuration.setPlaneDetection(planes);
+            // Pictures whose tones are mapped place by place are not comparable with one another.
+            configuration.setVideoHDRAllowed(false);
+            if let Some(card) = self.card_to_find(finds) {
+                configuration.setDetectionImages(Some(&NSSet::from_slice(&[&*card])));
+                configuration.setMaximumNumberOfTrackedImages(1);
+            }
+            session.runWithConfiguration_options(&configuration, options);
+        }
+    }
+
+    fn card_to_find(&self, finds: Finds) -> Option<Retained<ARReferenceImage>> {
+        let mut card = self.card.borrow_mut();
+        if finds.card && matches!(*card, Card::Unmade) {
+            *card = card::reference_image().map_or(Card::Refused, Card::Made);
+        }
+        match &*card {
+            Card::Made(image) if finds.card => Some(image.clone()),
+            _ => None,
+        }
+    }
+
+    /// Does what helps after a run that failed.
+    fn fail(&self, session: &ARSession, code: isize) {
+        let had_card = self.finds.get().card && matches!(*self.card.borrow(), Card::Made(_));
+        match convert::after_failure(code, had_card) {
+            AfterFailure::RunWithoutCard => {
+                eprintln!("arkit: the card is not looked for: the session refuses it");
+                self.card.replace(Card::Refused);
+                self.run(session, ARSessionRunOptions::empty());
+            }
+            AfterFailure::Tell(told) => (self.tell)(ShellEvent::ArSession(told)),
+        }
+    }
+
     /// Reads a frame and leaves it for the shell; ARKit has it back when this returns.
     fn take(&self, frame: &ARFrame) {
         // SAFETY: a property of a frame that was delivered, which never changes.
@@ -59,7 +129,8 @@ impl Shared {
         let identifier = |held: &Held| (held.id, unsafe { held.anchor.identifier() }.as_bytes());
         let held = self.held.borrow().as_ref().map(identifier);
         let textures = self.textures.borrow();
-        let taken = read::with_raw(frame, held, textures.as_ref(), |raw, lent| {
+        let seen = (held, self.orientation.get());
+        let taken = read::with_raw(frame, seen, textures.as_ref(), |raw, lent| {
             camera_frame(raw, lent, count)
         });
         match taken {
@@ -99,11 +170,10 @@ define_class!(
     // calls them on the main thread.
     unsafe impl ARSessionObserver for Delegate {
         #[unsafe(method(session:didFailWithError:))]
-        fn session_did_fail(&self, _session: &ARSession, error: &NSError) {
+        fn session_did_fail(&self, session: &ARSession, error: &NSError) {
             guarded("a failed session", || {
                 eprintln!("arkit: ARKit: {error}");
-                let told = convert::failed_session(error.code());
-                (self.ivars().tell)(ShellEvent::ArSession(told));
+                self.ivars().fail(session, error.code());
             });
         }
 
@@ -145,8 +215,6 @@ pub struct Session {
     session: Retained<ARSession>,
     /// The session does not keep it.
     _delegate: Retained<Delegate>,
-    /// What the card is known by; none where it cannot be made.
-    card: Option<Retained<ARReferenceImage>>,
     shared: Rc<Shared>,
 }
 
@@ -160,6 +228,9 @@ impl Session {
             held: RefCell::default(),
             textures: RefCell::default(),
             is_interrupted: Cell::new(false),
+            orientation: Cell::new(0),
+            finds: Cell::default(),
+            card: RefCell::default(),
             is_refusing: Cell::new(false),
         });
         let delegate = Delegate::new(main_thread, Rc::clone(&shared));
@@ -170,7 +241,6 @@ impl Session {
         Self {
             session,
             _delegate: delegate,
-            card: card::reference_image(),
             shared,
         }
     }
@@ -187,15 +257,17 @@ impl Session {
         unsafe { msg_send![ARWorldTrackingConfiguration::class(), isSupported] }
     }
 
+    /// Follows the screen, as a `UIInterfaceOrientation`.
+    pub fn set_orientation(&self, orientation: isize) {
+        self.shared.orientation.set(orientation);
+    }
+
     /// Begins, or goes on with another configuration.
-    pub fn run(&self, finds_planes: bool, is_new_world: bool) {
-        // SAFETY: new has no requirements.
-        let configuration = unsafe { ARWorldTrackingConfiguration::new() };
-        let planes = if finds_planes {
-            ARPlaneDetection::Horizontal
-        } else {
-            ARPlaneDetection::empty()
-        };
+    pub fn run(&self, (finds_planes, finds_card): (bool, bool), is_new_world: bool) {
+        self.shared.finds.set(Finds {
+            planes: finds_planes,
+            card: finds_card,
+        });
         let mut options = ARSessionRunOptions::empty();
         if is_new_world {
             options = ARSessionRunOptions::ResetTracking | ARSessionRunOptions::RemoveExistingAnchors;
@@ -209,17 +281,7 @@ impl Session {
                 .set(NSProcessInfo::processInfo().systemUptime());
             self.shared.held.replace(None);
         }
-        // SAFETY: a configuration of this session's own, with options that every session takes.
-        unsafe {
-            configuration.setPlaneDetection(planes);
-            // Pictures whose tones are mapped place by place are not comparable with one another.
-            configuration.setVideoHDRAllowed(false);
-            if let Some(card) = &self.card {
-                configuration.setDetectionImages(Some(&NSSet::from_slice(&[&**card])));
-                configuration.setMaximumNumberOfTrackedImages(1);
-            }
-            self.session.runWithConfiguration_options(&configuration, options);
-        }
+        self.shared.run(&self.session, options);
     }
 
     /// Pauses. A session that is interrupted has paused by itself, and tells when it goes on only if it is left alone.

@@ -249,3 +249,25 @@ fn shells_are_thin() {
         assert!(n_lines <= 1200, "{shell}: {n_lines} lines");
     }
 }
+
+/// Android offers a mode first that draws as often as the processor can: whoever configures a surface does so in one place.
+#[test]
+fn surfaces_are_configured_in_one_place_that_waits_for_the_display() {
+    let configured = rust_sources()
+        .into_iter()
+        .filter(|file| !file.path.starts_with("tests"));
+    let places: Vec<String> = configured
+        .flat_map(|file| {
+            let n_calls = file.text.matches("surface.configure(").count();
+            vec![
+                format!(
+                    "{} {}",
+                    file.path.display(),
+                    file.text.matches("as_shown(config)").count()
+                );
+                n_calls
+            ]
+        })
+        .collect();
+    assert_eq!(places, ["app-core/pipeline/src/core/window.rs 1"]);
+}

@@ -1,8 +1,8 @@
 //! The governor against a simulated phone: it comes back into a frame's time, comes up again, and does not swing.
 
 use app_core::governor::{
-    BALANCED_QUALITY_LADDER, Governor, Measured, QualitySetting, SETTLE_FRAMES, Thermal, Turned, UP_FRAMES,
-    WINDOW,
+    BALANCED_QUALITY_LADDER, Exhausted, Governor, Measured, QualitySetting, SETTLE_FRAMES, Thermal, Turned,
+    UP_FRAMES, WINDOW,
 };
 
 /// A screen's frame at 60 Hz.
@@ -259,4 +259,30 @@ fn thirty_frames_a_second_are_the_last_resort_and_a_frame_then_has_twice_the_tim
         QualitySetting::FramesPerSecond
     );
     assert!(phone.late_share(MINUTE / 2) < 0.05);
+}
+
+#[test]
+fn what_no_step_helps_is_said_so_that_a_cheaper_preset_can() {
+    let after = |gpu_ms: f64, thermal: Thermal| {
+        let mut governor = Governor::new(BALANCED_QUALITY_LADDER, 30);
+        (0..3000).find_map(|n| {
+            governor.take(&Measured {
+                gpu_ms: Some(gpu_ms),
+                interval_ms: 33.0,
+                thermal,
+            });
+            governor.exhausted().map(|why| (why, n))
+        })
+    };
+    assert_eq!(after(5.0, Thermal::Fair), None);
+    let (why, n_frames) = after(200.0, Thermal::Nominal).expect("too slow at any step");
+    assert!(
+        why == Exhausted::Slow && (90..300).contains(&n_frames),
+        "{why:?} after {n_frames}"
+    );
+    let (why, n_frames) = after(5.0, Thermal::Serious).expect("still too warm");
+    assert!(
+        why == Exhausted::Warm && (900..1000).contains(&n_frames),
+        "{why:?} after {n_frames}"
+    );
 }

@@ -6,6 +6,7 @@ mod app;
 mod camera_frame;
 mod core;
 mod device;
+mod device_kept;
 mod goldens;
 mod governor;
 mod inbetween;

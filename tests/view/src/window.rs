@@ -108,7 +108,7 @@ impl Shell {
             .with_inner_size(LogicalSize::new(width, height));
         let window = Arc::new(event_loop.create_window(attributes)?);
         // Before a driver is asked for anything.
-        let history = starts::begin(&self.options.keeping.out);
+        let history = starts::begin(&self.options.keeping.out, false);
         let core = self.core_on(&window)?;
         let mut live = Live::new(core, Arc::clone(&feed.scene().toy), self.options.preset);
         self.options

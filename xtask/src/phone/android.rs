@@ -10,13 +10,14 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-use super::ANDROID;
-use super::apk::{self, Arcore};
+use super::apk;
+use super::arcore::Arcore;
 use super::elf::{AARCH64, Library};
 use super::imports::{Imports, assembly};
 use super::ndk::{self, ANDROID_API};
 use super::tools::{self, Tool};
 use super::zip::PAGE;
+use super::{ANDROID, Profile};
 use crate::command;
 use crate::toolchain::Toolchain;
 
@@ -42,23 +43,23 @@ int __fprintf_chk(void *to, int flag, const char *format, ...) { return 0; }
 ";
 
 /// Links the library and makes a package of it.
-pub(super) fn package(toolchain: &Toolchain, arcore: Option<&Arcore>) -> Result<()> {
+pub(super) fn package(toolchain: &Toolchain, profile: Profile, arcore: Option<&Arcore>) -> Result<()> {
     let shell = toolchain.root.join(ANDROID.package);
     let folder = toolchain.root.join("target/phone/android");
     fs::create_dir_all(&folder)?;
     let imports = Imports::read(&shell.join("imports.txt"), true)?;
     let (library, linked) = if ndk::ndk().is_some() {
-        command::run(&mut ANDROID.build(toolchain, &[STRIP.to_owned()])?)?;
-        (built(toolchain), "by the NDK")
+        command::run(&mut ANDROID.build(toolchain, profile, &[STRIP.to_owned()])?)?;
+        (built(toolchain, profile), "by the NDK")
     } else {
-        let library = link_without_ndk(toolchain, &folder, &imports)?;
+        let library = link_without_ndk(toolchain, profile, (&folder, &imports))?;
         (library, "against stand-ins, without the NDK: not for a phone")
     };
     let file = fs::read(&library).with_context(|| library.display().to_string())?;
     fs::write(folder.join("libapp_android.so"), &file)?;
     let read = Library::read(&file).with_context(|| library.display().to_string())?;
     check(&read)?;
-    if ndk::ndk().is_none() {
+    if ndk::ndk().is_none() && profile == Profile::Release {
         imports.compare(&read.imports, is_linked)?;
     }
     println!(
@@ -78,12 +79,13 @@ fn is_linked(library: &str) -> bool {
     Path::new(library).extension().is_some_and(|end| end == "so")
 }
 
-fn built(toolchain: &Toolchain) -> PathBuf {
+fn built(toolchain: &Toolchain, profile: Profile) -> PathBuf {
     toolchain
         .root
         .join("target")
         .join(ANDROID.target)
-        .join("release/libapp_android.so")
+        .join(profile.name())
+        .join("libapp_android.so")
 }
 
 fn check(library: &Library) -> Result<()> {
@@ -104,7 +106,11 @@ fn check(library: &Library) -> Result<()> {
     Ok(())
 }
 
-fn link_without_ndk(toolchain: &Toolchain, folder: &Path, imports: &Imports) -> Result<PathBuf> {
+fn link_without_ndk(
+    toolchain: &Toolchain,
+    profile: Profile,
+    (folder, imports): (&Path, &Imports),
+) -> Result<PathBuf> {
     tools::ensure(&TOOLS)?;
     let stubs = folder.join("stubs");
     let _ = fs::remove_dir_all(&stubs);
@@ -134,10 +140,10 @@ fn link_without_ndk(toolchain: &Toolchain, folder: &Path, imports: &Imports) -> 
     let mut args: Vec<String> = target_args().into();
     args.extend([search, shim, page]);
     args.extend(["-Wl,--no-undefined", "-Wl,-soname,libapp_android.so", STRIP].map(str::to_owned));
-    let mut build = ANDROID.build(toolchain, &args)?;
+    let mut build = ANDROID.build(toolchain, profile, &args)?;
     build.env("CARGO_TARGET_AARCH64_LINUX_ANDROID_LINKER", CLANG);
     command::run(&mut build)?;
-    Ok(built(toolchain))
+    Ok(built(toolchain, profile))
 }
 
 fn target_args() -> [String; 3] {

@@ -7,6 +7,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
+use super::arcore::{Arcore, Unpacked, files_below, unzip};
 use super::ndk;
 use super::tools::{self, Tool};
 use super::zip::{self, Entry};
@@ -26,15 +27,10 @@ const FRAMEWORK_PACKAGE: &str = "android-framework-res";
 const KEYSTORE_PASSWORD: &str = "android";
 const HAS_CODE: &str = "android:hasCode=\"true\"";
 const LIBRARIES: &str = "lib/arm64-v8a";
-
-/// ARCore's archive of classes, library and manifest (`com.google.ar:core`), which is not ours to hand on.
-#[derive(Clone)]
-pub(crate) struct Arcore {
-    /// Where it lies.
-    pub(crate) archive: PathBuf,
-    /// What it must be, in hexadecimal.
-    pub(crate) sha256: String,
-}
+/// Level of the Android that brought `<queries>`: tools before it refuse the element.
+const QUERIES: u32 = 30;
+/// Attributes of our manifest that tools before a level refuse.
+const NEWER_ATTRIBUTES: [(&str, u32); 1] = [("android:enableOnBackInvokedCallback=\"false\"", 33)];
 
 /// Where the tools are: the SDK's, or Debian's.
 struct Tools {
@@ -42,37 +38,42 @@ struct Tools {
     apksigner: PathBuf,
     /// What is compiled against.
     framework: PathBuf,
+    /// The level of its Android, which decides what a manifest may hold.
+    framework_api: u32,
     /// Makes an Android program of Java's classes; only the SDK has it.
     d8: Option<PathBuf>,
 }
 
-/// ARCore's parts.
-struct Unpacked {
-    manifest: String,
-    library: Vec<u8>,
-    classes: Option<Vec<u8>>,
-}
-
 /// Makes, signs and verifies a package around the shell's `library`, and says what it is.
 pub(super) fn make(shell: &Path, folder: &Path, library: Vec<u8>, arcore: Option<&Arcore>) -> Result<()> {
-    let tools = Tools::find()?;
-    let arcore = arcore.map(|arcore| arcore.unpack(folder, &tools)).transpose()?;
-    let manifest = fs::read_to_string(shell.join("AndroidManifest.xml"))?;
-    let has_code = arcore.as_ref().is_some_and(|arcore| arcore.classes.is_some());
+    make_with(&Tools::find()?, shell, folder, library, arcore)
+}
+
+fn make_with(
+    tools: &Tools,
+    shell: &Path,
+    folder: &Path,
+    library: Vec<u8>,
+    arcore: Option<&Arcore>,
+) -> Result<()> {
+    let arcore = arcore.map(|arcore| arcore.unpack(folder)).transpose()?;
+    let has_code = arcore.is_some() && tools.d8.is_some();
     let manifest = manifest_for(
-        &manifest,
+        &fs::read_to_string(shell.join("AndroidManifest.xml"))?,
         arcore.as_ref().map(|arcore| arcore.manifest.as_str()),
-        has_code,
+        (has_code, tools.framework_api),
     )?;
-    let mut entries = resources(&tools, shell, folder, &manifest)?;
+    let sources = folder.join("sources");
+    let mut entries = resources(tools, shell, (folder, &sources), &manifest, arcore.as_ref())?;
     entries.push(entry("lib/arm64-v8a/libapp_android.so", library));
     if let Some(arcore) = arcore {
+        let program = arcore.program((&tools.framework, tools.d8.as_deref()), &sources)?;
         entries.push(entry("lib/arm64-v8a/libarcore_sdk_c.so", arcore.library));
-        entries.extend(arcore.classes.map(|classes| entry("classes.dex", classes)));
+        entries.extend(program.map(|program| entry("classes.dex", program)));
     }
     let apk = folder.join("shadow-retargeting.apk");
     fs::write(&apk, zip::write(&entries)?)?;
-    sign(&tools, folder, &apk)?;
+    sign(tools, folder, &apk)?;
     report(&apk, has_code)
 }
 
@@ -92,6 +93,7 @@ impl Tools {
             Some(Self {
                 aapt2: tools.join("aapt2"),
                 apksigner: tools.join("apksigner"),
+                framework_api: level_of(&platform)?,
                 framework: platform.join("android.jar"),
                 d8: Some(tools.join("d8")),
             })
@@ -106,66 +108,53 @@ impl Tools {
         Ok(Self {
             aapt2: "aapt2".into(),
             apksigner: "apksigner".into(),
+            framework_api: framework_level(FRAMEWORK),
             framework: FRAMEWORK.into(),
             d8: None,
         })
     }
 }
 
-impl Arcore {
-    fn unpack(&self, folder: &Path, tools: &Tools) -> Result<Unpacked> {
-        let archive = fs::canonicalize(&self.archive).with_context(|| self.archive.display().to_string())?;
-        let sum = sha256(&archive)?;
-        if !sum.eq_ignore_ascii_case(&self.sha256) {
-            bail!("{}: SHA-256 is {sum}, not {}", archive.display(), self.sha256);
-        }
-        let unpacked = folder.join("arcore");
-        let _ = fs::remove_dir_all(&unpacked);
-        fs::create_dir_all(&unpacked)?;
-        command::run(
-            Command::new("unzip")
-                .args(["-q"])
-                .arg(&archive)
-                .current_dir(&unpacked),
-        )?;
-        let classes = match &tools.d8 {
-            Some(d8) => {
-                let mut dex = Command::new(d8);
-                dex.args(["--release", "--min-api", &ndk::ANDROID_API.to_string(), "--lib"]);
-                dex.arg(&tools.framework).arg("--output").arg(&unpacked);
-                command::run(dex.arg(unpacked.join("classes.jar")))?;
-                Some(fs::read(unpacked.join("classes.dex"))?)
-            }
-            None => None,
-        };
-        Ok(Unpacked {
-            manifest: fs::read_to_string(unpacked.join("AndroidManifest.xml"))?,
-            library: fs::read(unpacked.join("jni/arm64-v8a/libarcore_sdk_c.so"))
-                .context("no library for 64-bit ARM in ARCore's archive")?,
-            classes,
-        })
-    }
+/// The level of a platform of the SDK's, which its folder is named after: `android-36`.
+fn level_of(platform: &Path) -> Option<u32> {
+    let name = platform.file_name()?.to_str()?;
+    let number = name.strip_prefix("android-")?.split('.').next()?;
+    number.parse().ok()
 }
 
-fn sha256(file: &Path) -> Result<String> {
-    let name = file.display().to_string();
-    let sum = command::output("sha256sum", &[&name])
-        .or_else(|| command::output("shasum", &["-a", "256", &name]))
-        .context("neither sha256sum nor shasum runs here")?;
-    Ok(sum.split_whitespace().next().unwrap_or_default().to_owned())
+/// The level that a framework says it is of; the oldest that the app runs on where it says none.
+fn framework_level(framework: &str) -> u32 {
+    let told = command::output("aapt2", &["dump", "badging", framework]).unwrap_or_default();
+    let level = told
+        .split_once("sdkVersion:'")
+        .and_then(|(_, rest)| rest.split('\'').next()?.parse().ok());
+    level.unwrap_or(ndk::ANDROID_API)
 }
 
-/// Our manifest, joined with ARCore's, and true about whether there are classes.
-fn manifest_for(ours: &str, arcore: Option<&str>, has_code: bool) -> Result<String> {
+/// Our manifest, joined with ARCore's, true about whether there are classes, and without what the framework of that level does not
+/// know: such a package is for looking at alone.
+fn manifest_for(ours: &str, arcore: Option<&str>, (has_code, framework_api): (bool, u32)) -> Result<String> {
     if ours.matches(HAS_CODE).count() != 1 {
         bail!("the manifest does not say {HAS_CODE} once");
     }
     let mut manifest = ours.replace(HAS_CODE, &format!("android:hasCode=\"{has_code}\""));
+    for (attribute, level) in NEWER_ATTRIBUTES {
+        if framework_api < level && manifest.contains(attribute) {
+            println!("{attribute} is left out: it is of API level {level}, the framework of {framework_api}");
+            manifest = manifest.replace(attribute, "");
+        }
+    }
     for (tag, before) in [("application", "</application>"), ("queries", "<application")] {
         let Some(inside) = arcore.and_then(|manifest| inside(manifest, tag)) else {
             continue;
         };
         let inside = if tag == "queries" {
+            if framework_api < QUERIES {
+                println!(
+                    "<queries> is left out: it is of API level {QUERIES}, the framework of {framework_api}"
+                );
+                continue;
+            }
             format!("<queries>{inside}</queries>")
         } else {
             inside.to_owned()
@@ -185,19 +174,18 @@ fn inside<'a>(xml: &'a str, tag: &str) -> Option<&'a str> {
     Some(&inside[..inside.find(&format!("</{tag}>"))?])
 }
 
-/// Manifest and resources as Android reads them.
-fn resources(tools: &Tools, shell: &Path, folder: &Path, manifest: &str) -> Result<Vec<Entry>> {
-    let (text, compiled, linked) = (
-        folder.join("AndroidManifest.xml"),
-        folder.join("resources.zip"),
-        folder.join("resources"),
-    );
+/// Manifest and resources as Android reads them; the sources of their R classes go to the second folder.
+fn resources(
+    tools: &Tools,
+    shell: &Path,
+    (folder, sources): (&Path, &Path),
+    manifest: &str,
+    arcore: Option<&Unpacked>,
+) -> Result<Vec<Entry>> {
+    let (text, linked) = (folder.join("AndroidManifest.xml"), folder.join("resources"));
     fs::write(&text, manifest)?;
-    let _ = fs::remove_dir_all(&linked);
-    fs::create_dir_all(&linked)?;
-    let mut compile = Command::new(&tools.aapt2);
-    compile.arg("compile").arg("--dir").arg(shell.join("res"));
-    command::run(compile.arg("-o").arg(&compiled))?;
+    let _ = fs::remove_dir_all(sources);
+    let mut compiled = vec![compile(tools, &shell.join("res"), folder.join("resources.zip"))?];
     let mut link = Command::new(&tools.aapt2);
     link.args(["link", "--version-name", env!("CARGO_PKG_VERSION")]);
     link.args([
@@ -205,23 +193,26 @@ fn resources(tools: &Tools, shell: &Path, folder: &Path, manifest: &str) -> Resu
         &version_code(env!("CARGO_PKG_VERSION"))?.to_string(),
     ]);
     link.arg("-I").arg(&tools.framework).arg("--manifest").arg(&text);
-    let base = folder.join("base.zip");
-    command::run(link.arg("-o").arg(&base).arg(&compiled))?;
-    command::run(Command::new("unzip").arg("-q").arg(&base).arg("-d").arg(&linked))?;
-    let mut entries = Vec::new();
-    let mut folders = vec![linked.clone()];
-    while let Some(folder) = folders.pop() {
-        for path in fs::read_dir(folder)?.flatten().map(|entry| entry.path()) {
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                let name = path.strip_prefix(&linked)?.display().to_string();
-                entries.push(entry(&name, fs::read(&path)?));
-            }
-        }
+    if let Some((arcore, resources)) = arcore.and_then(|arcore| Some((arcore, arcore.resources()?))) {
+        compiled.push(compile(tools, &resources, folder.join("arcore.zip"))?);
+        link.args(["--auto-add-overlay", "--extra-packages", arcore.package()?]);
+        link.arg("--java").arg(sources);
     }
-    entries.sort_by(|one, other| one.name.cmp(&other.name));
-    Ok(entries)
+    let base = folder.join("base.zip");
+    command::run(link.arg("-o").arg(&base).args(&compiled))?;
+    unzip(&base, &linked)?;
+    let entries = files_below(&linked).into_iter().map(|path| {
+        let name = path.strip_prefix(&linked)?.display().to_string();
+        Ok(entry(&name, fs::read(&path)?))
+    });
+    entries.collect()
+}
+
+fn compile(tools: &Tools, resources: &Path, compiled: PathBuf) -> Result<PathBuf> {
+    let mut compile = Command::new(&tools.aapt2);
+    compile.arg("compile").arg("--dir").arg(resources);
+    command::run(compile.arg("-o").arg(&compiled))?;
+    Ok(compiled)
 }
 
 /// A number that grows with the version, as the store asks: two digits for each part.
@@ -303,36 +294,4 @@ fn report(apk: &Path, has_code: bool) -> Result<()> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const OURS: &str =
-        r#"<manifest><application android:hasCode="true"><activity/></application></manifest>"#;
-    const ARCORE: &str =
-        r#"<manifest><queries><package/></queries><application ><meta-data/></application></manifest>"#;
-
-    #[test]
-    fn a_manifest_is_joined_with_that_of_arcore() {
-        let joined = manifest_for(OURS, Some(ARCORE), true).expect("a manifest");
-        let expected = r#"<manifest><queries><package/></queries><application android:hasCode="true"><activity/><meta-data/></application></manifest>"#;
-        assert_eq!(joined, expected);
-    }
-
-    #[test]
-    fn without_classes_a_manifest_has_no_code() {
-        let alone = manifest_for(OURS, None, false).expect("a manifest");
-        assert_eq!(alone, OURS.replace("true", "false"));
-        assert!(
-            manifest_for(&alone, None, false).is_err(),
-            "says nothing to replace"
-        );
-    }
-
-    #[test]
-    fn version_codes_grow_with_versions() {
-        let codes = ["0.1.0", "0.1.1", "0.2.0", "1.0.0"].map(|version| version_code(version).ok());
-        assert_eq!(codes, [Some(100), Some(101), Some(200), Some(10_000)]);
-        assert!(version_code("0.100.0").is_err());
-        assert!(version_code("0.1.0-beta").is_err());
-    }
-}
+mod tests;

@@ -9,16 +9,16 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-use super::IOS;
 use super::imports::{Imports, text_stub};
 use super::macho::{self, Executable};
 use super::tools::{self, Tool};
 use super::zip::{self, Entry};
+use super::{IOS, Profile};
 use crate::command;
 use crate::toolchain::Toolchain;
 
 const NAME: &str = "ShadowRetargeting";
-const BUNDLE: &str = "org.example.ShadowRetargeting";
+pub(super) const BUNDLE: &str = "org.example.ShadowRetargeting";
 /// Oldest iOS; the project for Xcode says the same.
 const OLDEST: [u32; 2] = [16, 0];
 /// Whose stand-ins the link stands for.
@@ -34,16 +34,16 @@ const TOOLS: [Tool; 2] = [
 const ARKIT: &str = "/System/Library/Frameworks/ARKit.framework/ARKit";
 
 /// Makes the app as far as this machine can.
-pub(super) fn package(toolchain: &Toolchain) -> Result<()> {
+pub(super) fn package(toolchain: &Toolchain, profile: Profile) -> Result<()> {
     let shell = toolchain.root.join(IOS.package);
     if cfg!(target_os = "macos") {
-        by_xcode(toolchain, &shell)
+        by_xcode(toolchain, profile, &shell)
     } else {
-        by_stand_ins(toolchain, &shell)
+        by_stand_ins(toolchain, profile, &shell)
     }
 }
 
-fn by_xcode(toolchain: &Toolchain, shell: &Path) -> Result<()> {
+fn by_xcode(toolchain: &Toolchain, profile: Profile, shell: &Path) -> Result<()> {
     for (program, from) in [
         ("xcodebuild", "Xcode, from the App Store"),
         ("xcodegen", "brew install xcodegen"),
@@ -52,8 +52,13 @@ fn by_xcode(toolchain: &Toolchain, shell: &Path) -> Result<()> {
             bail!("{program} is missing ({from})");
         }
     }
-    command::run(&mut IOS.build(toolchain, &[])?)?;
-    command::run(Command::new("xcodegen").arg("generate").current_dir(shell))?;
+    command::run(&mut IOS.build(toolchain, profile, &[])?)?;
+    command::run(
+        Command::new("xcodegen")
+            .arg("generate")
+            .env("LIBRARY_PROFILE", profile.name())
+            .current_dir(shell),
+    )?;
     let project = shell.join(format!("{NAME}.xcodeproj"));
     let mut build = Command::new("xcodebuild");
     build.arg("-project").arg(&project);
@@ -66,13 +71,13 @@ fn by_xcode(toolchain: &Toolchain, shell: &Path) -> Result<()> {
     Ok(())
 }
 
-fn by_stand_ins(toolchain: &Toolchain, shell: &Path) -> Result<()> {
+fn by_stand_ins(toolchain: &Toolchain, profile: Profile, shell: &Path) -> Result<()> {
     tools::ensure(&TOOLS)?;
     let folder = toolchain.root.join("target/phone/ios");
     fs::create_dir_all(&folder)?;
     let imports = Imports::read(&shell.join("imports.txt"), false)?;
-    command::run(&mut IOS.build(toolchain, &[])?)?;
-    let program = link(toolchain, shell, &folder, &imports)?;
+    command::run(&mut IOS.build(toolchain, profile, &[])?)?;
+    let program = link((toolchain, profile), shell, &folder, &imports)?;
     let file = fs::read(&program)?;
     let executable = Executable::read(&file).with_context(|| program.display().to_string())?;
     check(&executable, &imports)?;
@@ -89,7 +94,12 @@ fn by_stand_ins(toolchain: &Toolchain, shell: &Path) -> Result<()> {
 }
 
 /// Links `main.c` and the library against stand-ins.
-fn link(toolchain: &Toolchain, shell: &Path, folder: &Path, imports: &Imports) -> Result<PathBuf> {
+fn link(
+    (toolchain, profile): (&Toolchain, Profile),
+    shell: &Path,
+    folder: &Path,
+    imports: &Imports,
+) -> Result<PathBuf> {
     let sdk = folder.join("sdk");
     let _ = fs::remove_dir_all(&sdk);
     let mut libraries = Vec::new();
@@ -117,7 +127,8 @@ fn link(toolchain: &Toolchain, shell: &Path, folder: &Path, imports: &Imports) -
             .root
             .join("target")
             .join(IOS.target)
-            .join("release/libapp_ios.a"),
+            .join(profile.name())
+            .join("libapp_ios.a"),
     );
     // Every missing name at once.
     link.arg("--error-limit=0");

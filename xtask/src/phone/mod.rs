@@ -2,10 +2,13 @@
 
 mod android;
 mod apk;
+mod arcore;
 pub(crate) mod calls;
+mod classes;
 mod elf;
 mod imports;
 mod ios;
+mod log;
 mod macho;
 mod ndk;
 pub(crate) mod size;
@@ -19,7 +22,8 @@ use anyhow::{Result, bail};
 use crate::command;
 use crate::toolchain::Toolchain;
 
-pub(crate) use apk::Arcore;
+pub(crate) use arcore::Arcore;
+pub(crate) use log::IphoneApp;
 
 /// A shell.
 pub(crate) struct Phone {
@@ -44,8 +48,30 @@ pub(crate) const ANDROID: Phone = Phone {
 pub(crate) enum Action {
     Check,
     Build,
-    /// With ARCore's archive, where Android's own tools are.
-    Package(Option<Arcore>),
+    /// With ARCore's archive, where Android's own tools are; for engineers or for everybody.
+    Package(Option<Arcore>, Profile),
+    /// Of a phone at a cable.
+    Log(IphoneApp),
+}
+
+/// How a library is compiled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Profile {
+    /// For everybody.
+    #[default]
+    Release,
+    /// For engineers with a phone that the app never ran on: what can be checked while it runs is, and nothing falls back by itself.
+    FirstPhone,
+}
+
+impl Profile {
+    /// As cargo calls it, and the folder of what it makes.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Release => "release",
+            Self::FirstPhone => "first-phone",
+        }
+    }
 }
 
 impl Phone {
@@ -66,9 +92,16 @@ impl Phone {
     }
 
     /// The library, with `args` for the linker, or for whoever makes an archive in its place.
-    fn build(&self, toolchain: &Toolchain, linker_args: &[String]) -> Result<Command> {
+    fn build(&self, toolchain: &Toolchain, profile: Profile, linker_args: &[String]) -> Result<Command> {
         let mut build = toolchain.cargo("rustc");
-        build.args(["--locked", "--release", "--lib", "--package", self.package]);
+        build.args([
+            "--locked",
+            "--profile",
+            profile.name(),
+            "--lib",
+            "--package",
+            self.package,
+        ]);
         build.args(["--target", self.target]);
         if self.is_android() && ndk::ndk().is_some() {
             build.envs(ndk::ndk_tools()?);
@@ -85,7 +118,9 @@ impl Phone {
 
 /// Checks, builds or packages a shell.
 pub(crate) fn run(toolchain: &Toolchain, phone: &Phone, action: Action) -> Result<()> {
-    toolchain.ensure_target(phone.target)?;
+    if !matches!(action, Action::Log(_)) {
+        toolchain.ensure_target(phone.target)?;
+    }
     match action {
         Action::Check => command::run(&mut phone.check(toolchain)),
         Action::Build if phone.is_android() && ndk::ndk().is_none() => {
@@ -93,8 +128,11 @@ pub(crate) fn run(toolchain: &Toolchain, phone: &Phone, action: Action) -> Resul
                 "no NDK found; set ANDROID_NDK_HOME to its folder. `cargo xtask android package` links without one"
             )
         }
-        Action::Build => command::run(&mut phone.build(toolchain, &[])?),
-        Action::Package(arcore) if phone.is_android() => android::package(toolchain, arcore.as_ref()),
-        Action::Package(_) => ios::package(toolchain),
+        Action::Build => command::run(&mut phone.build(toolchain, Profile::Release, &[])?),
+        Action::Package(arcore, profile) if phone.is_android() => {
+            android::package(toolchain, profile, arcore.as_ref())
+        }
+        Action::Package(_, profile) => ios::package(toolchain, profile),
+        Action::Log(app) => log::fetch(&toolchain.root, phone, &app),
     }
 }

@@ -68,8 +68,7 @@ pub(super) fn newest_folder(parent: &Path) -> Option<PathBuf> {
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned();
-        name.split('.')
-            .map(|part| part.parse().unwrap_or(0))
-            .collect::<Vec<u64>>()
+        let parts = name.split(|letter: char| !letter.is_ascii_digit());
+        parts.filter_map(|part| part.parse().ok()).collect::<Vec<u64>>()
     })
 }

@@ -33,7 +33,6 @@ give_back! {
     pose_destroy("pose", ArPose);
     image_release("image", ArImage);
     metadata_release("metadata", ArImageMetadata);
-    light_destroy("light", ArLightEstimate);
     list_destroy("list", ArTrackableList);
     trackable_release("plane", ArTrackable);
     anchor_release("anchor", ArAnchor);
@@ -52,13 +51,10 @@ macro_rules! create {
 }
 
 create! {
-    filter_create("filter", ArCameraConfigFilter);
     modes_create("modes", ArCameraConfigList);
     mode_create("mode", ArCameraConfig);
-    config_create("config", ArConfig);
     frame_create("frame", ArFrame);
     intrinsics_create("intrinsics", ArCameraIntrinsics);
-    light_create("light", ArLightEstimate);
     list_create("list", ArTrackableList);
     database_create("database", ArAugmentedImageDatabase);
 }
@@ -89,8 +85,7 @@ get! {
     image_height("image", ArImage, height: i32) |world, height| *height = world.size_px[1];
     image_format("image", ArImage, format: i32) |world, format| *format = world.format;
     image_planes("image", ArImage, n: i32) |world, n| *n = i32::try_from(world.image.len()).unwrap();
-    light_state("light", ArLightEstimate, state: i32) |world, state| *state = world.light.0;
-    modes_size("modes", ArCameraConfigList, n: i32) |world, n| *n = i32::try_from(world.modes.len()).unwrap();
+    modes_size("modes", ArCameraConfigList, n: i32) |world, n| *n = i32::try_from(world.listed().len()).unwrap();
     list_size("list", ArTrackableList, n: i32) |world, n| {
         let listed = if world.lists_images { &world.images } else { &world.planes };
         *n = i32::try_from(listed.len()).unwrap();
@@ -134,7 +129,6 @@ macro_rules! act {
 
 act! {
     session_resume("resume",);
-    session_pause("pause",);
     session_update("update", *mut ArFrame);
 }
 
@@ -145,6 +139,7 @@ macro_rules! set {
             world(|world| {
                 world.used("config", config);
                 world.call(&format!("{}={number}", $called));
+                world.config.insert($called, number);
             });
         }
     )*};
@@ -154,7 +149,25 @@ set! {
     set_update("update");
     set_planes("planes");
     set_light("light");
+    set_focus("focus");
     set_texture("texture");
+}
+
+pub(super) unsafe extern "C" fn session_pause(session: *mut ArSession) -> i32 {
+    world(|world| {
+        world.used("session", session);
+        world.call("pause");
+        world.stuck_focus = world.stuck_focus.saturating_sub(1);
+        world.status("pause")
+    })
+}
+
+pub(super) unsafe extern "C" fn config_create(session: *const ArSession, place: *mut *mut ArConfig) {
+    world(|world| {
+        world.used("session", session);
+        world.config.clear();
+        unsafe { *place = world.make("config", 0) };
+    });
 }
 
 pub(super) unsafe extern "C" fn check_availability(
@@ -209,64 +222,16 @@ pub(super) unsafe extern "C" fn session_configure(session: *mut ArSession, confi
         world.used("session", session);
         world.used("config", config);
         world.call("configure");
-        // As a phone without light estimation has it: once refused, the next one is taken.
-        world.fails.remove("configure").unwrap_or(0)
+        let is_refused = |(name, value): &(&str, i32)| world.config.get(name) == Some(value);
+        if world.refuses.iter().any(is_refused) {
+            return -8;
+        }
+        world.status("configure")
     })
 }
 
 pub(super) unsafe extern "C" fn set_display(_: *mut ArSession, rotation: i32, width: i32, height: i32) {
     world(|world| world.call(&format!("display={rotation},{width},{height}")));
-}
-
-pub(super) unsafe extern "C" fn supported_modes(
-    _: *const ArSession,
-    filter: *const ArCameraConfigFilter,
-    list: *mut ArCameraConfigList,
-) {
-    world(|world| {
-        world.used("filter", filter);
-        world.used("modes", list);
-    });
-}
-
-pub(super) unsafe extern "C" fn modes_item(
-    _: *const ArSession,
-    _: *const ArCameraConfigList,
-    index: i32,
-    mode: *mut ArCameraConfig,
-) {
-    world(|world| {
-        let entry = world.alive.get_mut(&mode.addr()).expect("a mode");
-        entry.1 = usize::try_from(index).unwrap();
-    });
-}
-
-pub(super) unsafe extern "C" fn mode_size(
-    _: *const ArSession,
-    mode: *const ArCameraConfig,
-    width: *mut i32,
-    height: *mut i32,
-) {
-    let index = world(|world| world.used("mode", mode));
-    unsafe { [*width, *height] = world(|world| [world.modes[index][0], world.modes[index][1]]) };
-}
-
-pub(super) unsafe extern "C" fn mode_hz(
-    _: *const ArSession,
-    mode: *const ArCameraConfig,
-    least: *mut i32,
-    most: *mut i32,
-) {
-    let index = world(|world| world.used("mode", mode));
-    unsafe { [*least, *most] = [15, world(|world| world.modes[index][2])] };
-}
-
-pub(super) unsafe extern "C" fn set_mode(_: *const ArSession, mode: *const ArCameraConfig) -> i32 {
-    world(|world| {
-        let index = world.used("mode", mode);
-        world.call(&format!("mode={index}"));
-        world.status("mode")
-    })
 }
 
 pub(super) unsafe extern "C" fn acquire_camera(
@@ -287,7 +252,8 @@ pub(super) unsafe extern "C" fn acquire_image(
 ) -> i32 {
     world(|world| {
         world.used("frame", frame.cast_const());
-        let status = world.status("image");
+        let is_silent = world.silent.contains(&world.mode);
+        let status = if is_silent { -12 } else { world.status("image") };
         if status == 0 {
             unsafe { *place = world.make("image", 0) };
         }
@@ -318,9 +284,12 @@ pub(super) unsafe extern "C" fn metadata_entry(
 ) -> i32 {
     world(|world| {
         world.used("metadata", metadata);
+        // Autofocus is a mode of continuous focus for videos, once it works.
+        world.focus_mode = if world.stuck_focus > 0 { 0 } else { 3 };
         let (kind, data): (u8, *const u8) = match tag {
             0xE_0000 => (3, (&raw const world.exposure.0).cast()),
             0xE_0002 => (world.exposure.2, (&raw const world.exposure.1).cast()),
+            0x1_0007 => (0, &raw const world.focus_mode),
             _ => return -1,
         };
         let count = 1;
@@ -338,6 +307,17 @@ pub(super) unsafe extern "C" fn metadata_entry(
 
 pub(super) unsafe extern "C" fn camera_pose(_: *const ArSession, _: *const ArCamera, pose: *mut ArPose) {
     world(|world| world.alive.get_mut(&pose.addr()).expect("a pose").1 = 0);
+}
+
+pub(super) unsafe extern "C" fn camera_display_pose(
+    _: *const ArSession,
+    camera: *const ArCamera,
+    pose: *mut ArPose,
+) {
+    world(|world| {
+        world.used("camera", camera);
+        world.alive.get_mut(&pose.addr()).expect("a pose").1 = DISPLAY;
+    });
 }
 
 pub(super) unsafe extern "C" fn camera_intrinsics(
@@ -362,49 +342,18 @@ pub(super) unsafe extern "C" fn pose_create(_: *const ArSession, raw: *const f32
     });
 }
 
+/// What the pose of the camera in the display's axes stands for.
+const DISPLAY: usize = usize::MAX;
+
 /// A pose stands for the camera's, for that of the plane before its number, or from [`GIVEN`] on for one that was given.
 pub(super) unsafe extern "C" fn pose_raw(_: *const ArSession, pose: *const ArPose, numbers: *mut f32) {
     let raw = world(|world| match world.used("pose", pose) {
         0 => world.pose,
+        DISPLAY => world.display_pose(),
         given @ GIVEN.. => world.given[given - GIVEN],
         plane => world.trackable(plane - 1).pose,
     });
     unsafe { numbers.cast::<[f32; 7]>().write(raw) };
-}
-
-pub(super) unsafe extern "C" fn frame_light(
-    _: *const ArSession,
-    frame: *const ArFrame,
-    light: *mut ArLightEstimate,
-) {
-    world(|world| {
-        world.used("frame", frame);
-        world.used("light", light);
-    });
-}
-
-pub(super) unsafe extern "C" fn light_direction(
-    _: *const ArSession,
-    _: *const ArLightEstimate,
-    place: *mut f32,
-) {
-    unsafe { place.cast::<[f32; 3]>().write(world(|world| world.light.1)) };
-}
-
-pub(super) unsafe extern "C" fn light_intensity(
-    _: *const ArSession,
-    _: *const ArLightEstimate,
-    place: *mut f32,
-) {
-    unsafe { place.cast::<[f32; 3]>().write(world(|world| world.light.2)) };
-}
-
-pub(super) unsafe extern "C" fn light_harmonics(
-    _: *const ArSession,
-    _: *const ArLightEstimate,
-    place: *mut f32,
-) {
-    unsafe { place.cast::<[f32; 27]>().write(world(|world| world.light.3)) };
 }
 
 pub(super) unsafe extern "C" fn all_trackables(_: *const ArSession, kind: i32, list: *mut ArTrackableList) {

@@ -63,5 +63,6 @@ pub(super) unsafe extern "C" fn set_images(
         world.used("config", config);
         world.used("database", images);
         world.call("images");
+        world.config.insert("images", 1);
     });
 }

@@ -5,6 +5,7 @@
 
 mod functions;
 mod images;
+mod modes;
 mod table;
 
 use std::cell::RefCell;
@@ -38,6 +39,25 @@ pub struct World {
     pub fails: BTreeMap<&'static str, i32>,
     /// Modes of the camera: width, height, frames a second.
     pub modes: Vec<[i32; 3]>,
+    /// Modes of a camera that faces the person, by their places.
+    pub fronts: Vec<usize>,
+    /// Whether a filter that asks for anything finds no mode.
+    pub filters_all: bool,
+    /// Modes in which no picture comes.
+    pub silent: Vec<usize>,
+    /// Settings of a configuration that are refused, by their names, each with what it must not be.
+    pub refuses: Vec<(&'static str, i32)>,
+    /// The mode that is set.
+    mode: usize,
+    /// Whether the filter asks for anything.
+    is_filtered: bool,
+    /// Settings of the configuration under way.
+    config: BTreeMap<&'static str, i32>,
+    /// `ACAMERA_CONTROL_AF_MODE` of pictures, until so many pauses.
+    pub stuck_focus: u32,
+    /// Quarter turns from the sensor to the display.
+    pub display_turns: u8,
+    focus_mode: u8,
     /// Of the frame.
     pub time_ns: i64,
     /// State and reason of a failure.
@@ -54,8 +74,6 @@ pub struct World {
     pub image: Vec<(Vec<u8>, i32, i32)>,
     /// Nanoseconds and ISO speed of the picture, and the type that the camera says the speed is of.
     pub exposure: (i64, i32, u8),
-    /// State, direction, intensity and harmonics.
-    pub light: (i32, [f32; 3], [f32; 3], [f32; 27]),
     /// What is found.
     pub planes: Vec<FakePlane>,
     /// Images that are followed; their kind is the tracking method.
@@ -88,6 +106,16 @@ impl Default for World {
                 [1920, 1080, 30],
                 [4000, 3000, 30],
             ],
+            fronts: Vec::new(),
+            filters_all: false,
+            silent: Vec::new(),
+            refuses: Vec::new(),
+            mode: 0,
+            is_filtered: false,
+            config: BTreeMap::new(),
+            stuck_focus: 0,
+            display_turns: 0,
+            focus_mode: 0,
             time_ns: 1,
             tracking: (0, 0),
             pose: [0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 3.0],
@@ -96,7 +124,6 @@ impl Default for World {
             format: 0x23,
             image: vec![(pixel(50, 8), 4, 1), (pixel(90, 2), 2, 1), (pixel(200, 2), 2, 1)],
             exposure: (10_000_000, 200, 1),
-            light: (1, [0.0, 0.0, 2.0], [1.0, 2.0, 3.0], [0.5; 27]),
             planes: Vec::new(),
             images: Vec::new(),
             lists_images: false,
@@ -160,6 +187,30 @@ impl World {
                 0
             }
         }
+    }
+
+    /// The modes that the filter lets through, by their places.
+    fn listed(&self) -> Vec<usize> {
+        let all = 0..self.modes.len();
+        all.filter(|index| !self.is_filtered || !(self.filters_all || self.fronts.contains(index)))
+            .collect()
+    }
+
+    /// The pose of the camera in the display's axes.
+    fn display_pose(&self) -> [f32; 7] {
+        let half_turned = f32::from(self.display_turns) * std::f32::consts::FRAC_PI_4;
+        let [qx, qy, qz, qw, tx, ty, tz] = self.pose;
+        let (sin, cos) = half_turned.sin_cos();
+        // The pose's rotation, then one about its own z.
+        [
+            qx * cos + qy * sin,
+            qy * cos - qx * sin,
+            qz * cos + qw * sin,
+            qw * cos - qz * sin,
+            tx,
+            ty,
+            tz,
+        ]
     }
 
     fn plane(&mut self, plane: *const ArPlane) -> FakePlane {

@@ -3,6 +3,7 @@
 use super::super::ffi::Functions;
 use super::functions::*;
 use super::images::*;
+use super::modes::*;
 
 /// The fake's functions.
 pub const FUNCTIONS: Functions = Functions {
@@ -20,6 +21,12 @@ pub const FUNCTIONS: Functions = Functions {
     ArSession_getAllTrackables: all_trackables,
     ArCameraConfigFilter_create: filter_create,
     ArCameraConfigFilter_destroy: filter_destroy,
+    ArCameraConfigFilter_setFacingDirection: filter_facing,
+    ArCameraConfigFilter_setTargetFps: filter_fps,
+    ArCameraConfigFilter_setDepthSensorUsage: filter_depth,
+    ArCameraConfig_getFacingDirection: mode_facing,
+    ArConfig_setFocusMode: set_focus,
+    ArCamera_getDisplayOrientedPose: camera_display_pose,
     ArCameraConfigList_create: modes_create,
     ArCameraConfigList_destroy: modes_destroy,
     ArCameraConfigList_getSize: modes_size,
@@ -42,7 +49,6 @@ pub const FUNCTIONS: Functions = Functions {
     ArFrame_acquireImageMetadata: acquire_metadata,
     ArImageMetadata_release: metadata_release,
     ArImageMetadata_getConstEntry: metadata_entry,
-    ArFrame_getLightEstimate: frame_light,
     ArCamera_release: camera_release,
     ArCamera_getPose: camera_pose,
     ArCamera_getTrackingState: camera_state,
@@ -64,12 +70,6 @@ pub const FUNCTIONS: Functions = Functions {
     ArImage_getPlaneData: plane_data,
     ArImage_getPlanePixelStride: plane_pixel_stride,
     ArImage_getPlaneRowStride: plane_row_stride,
-    ArLightEstimate_create: light_create,
-    ArLightEstimate_destroy: light_destroy,
-    ArLightEstimate_getState: light_state,
-    ArLightEstimate_getEnvironmentalHdrMainLightDirection: light_direction,
-    ArLightEstimate_getEnvironmentalHdrMainLightIntensity: light_intensity,
-    ArLightEstimate_getEnvironmentalHdrAmbientSphericalHarmonics: light_harmonics,
     ArTrackableList_create: list_create,
     ArTrackableList_destroy: list_destroy,
     ArTrackableList_getSize: list_size,

@@ -4,7 +4,8 @@ use app_core::camera_frame::{CameraImage, Stamp, Tracking};
 use glam::{DMat4, DVec2, DVec3};
 
 use super::super::fake::{FakePlane, World, world};
-use super::{assert_clean, calls, running};
+use super::{ANEW, Desk, LOOK, assert_clean, calls, running, update};
+use crate::tracker::{Geometry, Run, Step};
 
 #[test]
 fn a_frame_is_copied_whole() {
@@ -32,7 +33,7 @@ fn a_frame_is_copied_whole() {
         ];
     });
     let mut tracker = running();
-    let frame = tracker.update().expect("no error").expect("a frame");
+    let frame = update(&mut tracker).expect("no error").expect("a frame");
     let stamp = Stamp {
         id: 0,
         time_ns: 77,
@@ -50,9 +51,7 @@ fn a_frame_is_copied_whole() {
     assert_eq!(pose.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
     assert_eq!((frame.intrinsics.fx_px, frame.intrinsics.cy_px), (500.0, 1.0));
     assert_eq!(frame.tracking, Tracking::Normal);
-    let light = frame.light_estimate.expect("light");
-    assert_eq!(light.direction_to_light_in_world, Some(DVec3::Z));
-    assert_eq!(light.intensity, Some([1.0, 2.0, 3.0]));
+    assert_eq!(frame.light_estimate, None);
     let [table] = &frame.planes[..] else {
         panic!("walls and what is not tracked are left out: {:?}", frame.planes);
     };
@@ -72,7 +71,7 @@ fn exposure_is_told_where_the_camera_tells_it() {
             world.fails.insert("metadata", status);
             world.time_ns += 1;
         });
-        let frame = tracker.update().expect("no error").expect("a frame");
+        let frame = update(&mut tracker).expect("no error").expect("a frame");
         frame.exposure.and_then(|exposure| exposure.amount())
     };
     // A hundredth of a second at ISO 200.
@@ -100,7 +99,7 @@ fn the_card_is_where_it_is_seen_and_nowhere_else() {
             world.images = vec![card(state, method)];
             world.time_ns += 1;
         });
-        let frame = tracker.update().expect("no error").expect("a frame");
+        let frame = update(&mut tracker).expect("no error").expect("a frame");
         assert!(frame.planes.is_empty());
         frame.world_from_card
     });
@@ -111,12 +110,54 @@ fn the_card_is_where_it_is_seen_and_nowhere_else() {
 }
 
 #[test]
-fn a_card_that_is_refused_is_done_without() {
+fn a_card_is_looked_for_where_one_is_and_done_without_where_it_is_refused() {
+    let with_card = Run {
+        finds_card: true,
+        ..LOOK
+    };
+    let mut tracker = running();
+    assert!(!calls().contains("images"), "nobody has one");
+    assert_eq!(tracker.run(&mut Desk, with_card), Step::Ready);
+    assert_eq!(
+        calls(),
+        "card=600x600,0.15,true update=1 planes=1 texture=1 light=0 focus=1 images configure"
+    );
+    drop(tracker);
+    assert_clean();
     world(|world| {
         world.fails.insert("add image", -17);
     });
-    let tracker = running();
-    assert!(calls().contains("light=2 configure"), "no images are set");
+    let mut tracker = running();
+    calls();
+    assert_eq!(tracker.run(&mut Desk, with_card), Step::Ready);
+    assert!(calls().ends_with("focus=1 configure"), "no images are set");
+    drop(tracker);
+    assert_clean();
+}
+
+#[test]
+fn a_picture_is_turned_as_the_display_lies() {
+    let mut tracker = running();
+    let mut turns = |rotation, display_turns, state| {
+        tracker.set_display(Geometry {
+            quarter_turns: rotation,
+            size_px: [2400, 1080],
+        });
+        world(|world| {
+            world.display_turns = display_turns;
+            world.tracking = (state, 0);
+            world.time_ns += 1;
+        });
+        let frame = update(&mut tracker).expect("no error").expect("a frame");
+        frame.display.quarter_turns
+    };
+    // Before anything is known: as nearly every phone's.
+    assert_eq!([turns(1, 3, 1), turns(3, 3, 1), turns(0, 3, 1)], [0, 2, 1]);
+    // As it is told.
+    assert_eq!([turns(1, 0, 0), turns(3, 2, 0), turns(0, 1, 0)], [0, 2, 1]);
+    // A sensor that lies otherwise, as in some tablets: learned, and known while the pose is not.
+    assert_eq!([turns(0, 0, 0), turns(1, 0, 1), turns(3, 0, 1)], [0, 3, 1]);
+    assert_eq!(tracker.run(&mut Desk, ANEW), Step::Ready);
     drop(tracker);
     assert_clean();
 }
@@ -129,7 +170,7 @@ fn no_frame_before_the_first_twice_or_without_its_picture() {
             world.time_ns = time_ns;
             world.fails.insert("image", image);
         });
-        usize::from(tracker.update().expect("no error").is_some())
+        usize::from(update(&mut tracker).expect("no error").is_some())
     };
     assert_eq!(n_frames(0, 0), 0, "before the first");
     assert_eq!(n_frames(10, 0), 1);
@@ -160,7 +201,7 @@ fn a_camera_that_is_lost_has_no_pose_and_a_reason() {
             world.time_ns += 1;
             world.tracking = (1, reason);
         });
-        let frame = tracker.update().expect("no error").expect("a frame");
+        let frame = update(&mut tracker).expect("no error").expect("a frame");
         assert_eq!(frame.world_from_camera, None);
         assert_eq!(frame.tracking, expected, "{reason}");
     }
@@ -185,7 +226,7 @@ fn frames_that_are_wrong_are_errors_and_leave_nothing() {
             harm(world);
         });
         let mut tracker = running();
-        let error = tracker.update().expect_err(message).to_string();
+        let error = update(&mut tracker).expect_err(message).to_string();
         assert!(error.contains(message), "{error}");
         drop(tracker);
         assert_clean();

@@ -1,15 +1,18 @@
 //! The session's life, against the fake.
 
 mod frames;
+mod nasty;
+
+use std::time::Duration;
 
 use app_core::app::{ArSession, Permission, ShellEvent};
+use app_core::camera_frame::CameraFrame;
 use glam::{DMat4, DVec3};
 
 use super::fake::{FUNCTIONS, alive, world};
-use super::feed::Feed;
 use super::ffi::{Functions, SIGNATURES};
 use super::frame::FrameError;
-use super::session::{CameraMode, best_mode};
+use super::modes::{CameraMode, order_of};
 use super::status::{Failure, Remedy, STATUSES, told};
 use super::tracker::{Geometry, Run, Step, Tracker, Wait};
 use crate::java::{Java, JavaHost};
@@ -29,14 +32,17 @@ impl JavaHost for Desk {
 
 const LOOK: Run = Run {
     finds_planes: true,
+    finds_card: false,
     is_new_world: false,
 };
 const FOLLOW: Run = Run {
     finds_planes: false,
+    finds_card: false,
     is_new_world: false,
 };
 const ANEW: Run = Run {
     finds_planes: true,
+    finds_card: false,
     is_new_world: true,
 };
 
@@ -46,6 +52,11 @@ fn tracker() -> Tracker {
 
 fn look(tracker: &mut Tracker) -> Step {
     tracker.run(&mut Desk, LOOK)
+}
+
+/// At a time at which nothing is late.
+fn update(tracker: &mut Tracker) -> Result<Option<CameraFrame>, FrameError> {
+    tracker.update(Duration::ZERO)
 }
 
 fn running() -> Tracker {
@@ -77,12 +88,12 @@ fn a_session_begins_pauses_resumes_and_ends() {
     assert_eq!(look(&mut tracker), Step::Ready);
     assert_eq!(
         calls(),
-        "availability create card=600x600,0.15,true mode=2 update=1 planes=1 texture=1 light=2 images configure display=1,2400,1080 resume"
+        "availability create facing=0 fps=1 depth=2 mode=2 update=1 planes=1 texture=1 light=0 focus=1 configure display=1,2400,1080 resume"
     );
     assert_eq!(look(&mut tracker), Step::Ready, "twice");
     tracker.pause();
     tracker.pause();
-    assert!(tracker.update().expect("no frame").is_none());
+    assert!(update(&mut tracker).expect("no frame").is_none());
     assert_eq!(look(&mut tracker), Step::Ready);
     tracker.set_display(Geometry {
         quarter_turns: 3,
@@ -155,26 +166,13 @@ fn whatever_step_of_a_beginning_fails_leaves_nothing_and_may_be_tried_again() {
 }
 
 #[test]
-fn a_phone_without_light_estimation_does_without() {
-    world(|world| {
-        world.fails.insert("configure", -8);
-        world.time_ns = 5;
-    });
-    let mut tracker = running();
-    assert!(
-        calls().contains("light=2 images configure update=1 planes=1 texture=1 light=0 images configure")
-    );
-    let frame = tracker.update().expect("no error").expect("a frame");
-    assert_eq!(frame.light_estimate, None);
-    drop(tracker);
-    assert_clean();
-}
-
-#[test]
 fn after_a_fatal_failure_a_new_session_begins() {
     let mut tracker = running();
     world(|world| world.fails.insert("update", -2));
-    assert!(matches!(tracker.update(), Err(FrameError::Failed(Failure(-2)))));
+    assert!(matches!(
+        update(&mut tracker),
+        Err(FrameError::Failed(Failure(-2)))
+    ));
     assert_clean();
     world(|world| world.fails.clear());
     calls();
@@ -193,20 +191,37 @@ fn a_session_that_cannot_be_paused_is_given_up() {
 }
 
 #[test]
-fn the_camera_is_set_to_the_largest_picture_that_is_not_too_large() {
+fn the_camera_is_set_to_the_largest_picture_that_is_not_too_large_and_then_to_smaller_ones() {
     let mode = |width, height, hz| CameraMode {
         size_px: [width, height],
         hz,
+        faces_away: true,
     };
-    assert_eq!(best_mode(&[]), None);
-    let modes = [
+    assert_eq!(order_of(&[], None), [0; 0]);
+    let mut modes = vec![
         mode(640, 480, 30),
         mode(1920, 1080, 60),
         mode(1920, 1080, 30),
         mode(2560, 1440, 30),
+        mode(1280, 720, 30),
     ];
-    assert_eq!(best_mode(&modes), Some(2));
-    assert_eq!(best_mode(&[mode(4000, 3000, 30), mode(2560, 1440, 30)]), Some(1));
+    assert_eq!(order_of(&modes, None), [2, 4, 0, 3]);
+    assert_eq!(order_of(&modes, Some([1280, 720])), [4, 0]);
+    assert_eq!(
+        order_of(&modes, Some([1, 1])),
+        [2, 4, 0, 3],
+        "a limit that leaves none is none"
+    );
+    modes[2].faces_away = false;
+    assert_eq!(
+        order_of(&modes, None),
+        [1, 4, 0, 3],
+        "among equals never the one that faces the person"
+    );
+    assert_eq!(
+        order_of(&[mode(4000, 3000, 30), mode(2560, 1440, 30)], None),
+        [1, 0]
+    );
 }
 
 #[test]
@@ -249,14 +264,14 @@ fn planes_are_looked_for_only_while_asked_and_another_world_is_another_session()
     assert_eq!(tracker.run(&mut Desk, FOLLOW), Step::Ready);
     assert_eq!(
         calls(),
-        "update=1 planes=0 texture=1 light=2 images configure",
+        "update=1 planes=0 texture=1 light=0 focus=1 configure",
         "while it runs"
     );
     assert_eq!(tracker.run(&mut Desk, FOLLOW), Step::Ready);
     assert_eq!(calls(), "", "nothing new");
     let epoch = |tracker: &mut Tracker| {
         world(|world| world.time_ns += 1);
-        let frame = tracker.update().expect("no error").expect("a frame");
+        let frame = update(tracker).expect("no error").expect("a frame");
         frame.stamp.world_epoch
     };
     assert_eq!(epoch(&mut tracker), 1);
@@ -273,7 +288,7 @@ fn one_place_is_held_at_a_time() {
     let held = |tracker: &mut Tracker, id, at: DVec3| {
         let _ = tracker.hold(id, &DMat4::from_translation(at));
         world(|world| world.time_ns += 1);
-        let frame = tracker.update().expect("no error").expect("a frame");
+        let frame = update(tracker).expect("no error").expect("a frame");
         let anchors = frame.anchors.iter();
         anchors
             .map(|anchor| (anchor.id, anchor.world_from_anchor.transform_point3(DVec3::ZERO)))
@@ -296,42 +311,30 @@ fn one_place_is_held_at_a_time() {
 
 #[test]
 fn what_ends_tracking_is_told_by_what_helps() {
-    let said = |number| format!("{:?}", told(Failure(number)));
-    for (number, event) in [
-        (-9, ShellEvent::Permission(Permission::Denied)),
-        (-13, ShellEvent::ArSession(ArSession::Interrupted)),
-        (-101, ShellEvent::ArSession(ArSession::Unsupported)),
-        (-104, ShellEvent::ArSession(ArSession::Unsupported)),
-        (-105, ShellEvent::ArSession(ArSession::Failed)),
-        (-2, ShellEvent::ArSession(ArSession::Failed)),
+    for (number, expected, words) in [
+        (-13, ArSession::Interrupted, "Another app uses the camera."),
+        (
+            -101,
+            ArSession::Unsupported,
+            "This phone cannot run ARCore. Another phone is needed.",
+        ),
+        (-104, ArSession::Unsupported, "Update this app."),
+        (
+            -105,
+            ArSession::Failed,
+            "Without Google Play Services for AR the app cannot see the table. Install",
+        ),
+        (-2, ArSession::Failed, "ARCore failed and cannot go on."),
     ] {
-        assert_eq!(said(number), format!("{event:?}"), "{number}");
+        let ShellEvent::ArTrouble(told, said) = told(Failure(number)) else {
+            panic!("{number}");
+        };
+        assert_eq!(told, expected, "{number}");
+        assert!(said.contains(words), "{said}");
     }
-}
-
-#[test]
-fn a_feed_waits_for_the_answer_and_comes_back_after_an_interruption() {
-    world(|world| world.availability = vec![1, 1, 203]);
-    let mut desk = Desk;
-    let mut feed = Feed::new(Some(FUNCTIONS));
-    assert!(feed.run(&mut desk, LOOK).is_none());
-    assert!(feed.poll(&mut desk).is_none(), "still looking");
-    assert!(feed.poll(&mut desk).is_none(), "found");
-    assert!(matches!(feed.poll(&mut desk), Some(ShellEvent::Frame(_))));
-    assert!(feed.come_back().is_none());
-    world(|world| world.fails.insert("update", -13));
-    let interrupted = feed.poll(&mut desk);
-    assert!(matches!(
-        interrupted,
-        Some(ShellEvent::ArSession(ArSession::Interrupted))
-    ));
-    assert!(matches!(
-        feed.come_back(),
-        Some(ShellEvent::ArSession(ArSession::Able))
-    ));
-    let without = Feed::new(None).come_back();
-    assert!(matches!(
-        without,
-        Some(ShellEvent::ArSession(ArSession::Unsupported))
-    ));
+    let denied = told(Failure(-9));
+    assert!(
+        matches!(denied, ShellEvent::Permission(Permission::Denied)),
+        "{denied:?}"
+    );
 }

@@ -6,6 +6,7 @@ use super::event::{
 };
 use super::ghost::Ghost;
 use super::notice::Notice;
+use super::platform::Obstacle;
 use super::step::{Cause, Step};
 use super::table::table_at;
 
@@ -41,14 +42,10 @@ impl App {
             UserAction::Placed => self.placed(),
             UserAction::Replace => self.go(Cause::Replace),
             UserAction::RetakePlate => self.go(Cause::RetakePlate),
-            UserAction::StartOver => {
-                self.platform.ar_session = match self.platform.ar_session {
-                    ArSession::Failed => ArSession::Able,
-                    other => other,
-                };
-                self.go(Cause::StartOver);
-                self.wants_new_world = self.step == Step::FindTable;
-            }
+            UserAction::StartOver => self.start_over(),
+            UserAction::Leave => self.go(Cause::Left),
+            UserAction::TryAgain => self.try_again(commands),
+            UserAction::UseCard(is_used) => self.uses_card = is_used,
             UserAction::Choose(clip) => self.playback.choose(&self.toy, clip),
             UserAction::Play(is_playing) => self.playback.play(is_playing),
             UserAction::Scrub(time_s) => self.playback.scrub(time_s),
@@ -65,6 +62,51 @@ impl App {
             UserAction::Share => commands.push(WorkCommand::Share.into()),
             UserAction::RestorePreset => self.restore_preset(commands),
         }
+    }
+
+    /// In another world, whatever became of the one before.
+    pub(super) fn start_over(&mut self) {
+        if self.platform.ar_session == ArSession::Failed {
+            self.ar_session(ArSession::Able, None);
+        }
+        self.go(Cause::StartOver);
+        self.wants_new_world = self.step == Step::FindTable;
+    }
+
+    /// What this device was found not to have is asked for again.
+    fn try_again(&mut self, commands: &mut Vec<ShellCommand>) {
+        if self.platform.ar_session == ArSession::Unsupported {
+            self.ar_session(ArSession::Able, None);
+            self.wants_new_world = self.step != Step::Welcome;
+        }
+        if self.platform.graphics == GraphicsState::Unsupported {
+            self.platform.graphics = GraphicsState::Starting;
+            commands.push(PlatformCommand::ReopenDevice.into());
+        }
+    }
+
+    /// What the phone's own way back means now; none where it leaves the app.
+    #[must_use]
+    pub fn back(&self) -> Option<UserAction> {
+        if self.step == Step::Welcome {
+            return None;
+        }
+        let through = match self.obstacle() {
+            Some(Obstacle::ArFailed) => Some(UserAction::StartOver),
+            // The step stays below what is only looked for.
+            Some(Obstacle::Tracking(_)) | None => None,
+            Some(_) => Some(UserAction::Leave),
+        };
+        let open = match (&self.phone_check, &self.toy_files) {
+            (Some(_), _) => Some(UserAction::CheckPhone(false)),
+            (None, Some(_)) => Some(UserAction::ChooseToy(None)),
+            (None, None) => None,
+        };
+        through.or(open).or(match self.step {
+            Step::Welcome | Step::FindTable => None,
+            Step::TakePlate | Step::PlaceToy => Some(UserAction::StartOver),
+            Step::Align | Step::Play => Some(UserAction::Replace),
+        })
     }
 
     fn begin(&mut self, commands: &mut Vec<ShellCommand>) {
@@ -135,8 +177,12 @@ impl App {
         }
     }
 
-    pub(super) fn ar_session(&mut self, ar_session: ArSession) {
+    pub(super) fn ar_session(&mut self, ar_session: ArSession, words: Option<String>) {
+        if let Some(words) = &words {
+            self.note(&(ar_session, words));
+        }
         self.platform.ar_session = ar_session;
+        self.ar_words = words;
         if ar_session != ArSession::Able {
             self.platform.tracking = app_scene::camera_frame::Tracking::Starting;
         }

@@ -183,6 +183,9 @@ impl Place {
         }
         let aligner = self.aligner.take()?;
         self.started_s = Some(time_s);
+        // The job runs for a second or more, and a platform has few pictures to lend.
+        let kept = input.image.kept();
+        let input = input.with_image(kept);
         Some(AlignJob {
             place: self.number,
             aligner,

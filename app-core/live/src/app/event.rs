@@ -33,6 +33,8 @@ pub enum ArSession {
     /// It runs, or would if it were asked to.
     #[default]
     Able,
+    /// What it needs is looked for or being installed: it is asked for all the same.
+    Installing,
     /// Something else has the camera, such as a call.
     Interrupted,
     /// The device has none, or one that is too old.
@@ -107,6 +109,12 @@ pub enum UserAction {
     RetakePlate,
     /// All from the table on.
     StartOver,
+    /// To the first screen, and out of whatever is in the way.
+    Leave,
+    /// What this device was found not to have may be there by now.
+    TryAgain,
+    /// The printed card is to be looked for, which costs the camera time, or no longer.
+    UseCard(bool),
     /// Another clip, or the pose as authored.
     Choose(Option<ClipId>),
     /// On or off.
@@ -148,6 +156,8 @@ pub enum ShellEvent {
     Graphics(GraphicsState),
     /// The AR session.
     ArSession(ArSession),
+    /// The same, with what the platform says of it in a sentence or two.
+    ArTrouble(ArSession, String),
     /// A camera frame.
     Frame(Box<CameraFrame>),
     /// How hot the device is.
@@ -206,6 +216,8 @@ pub enum PlatformCommand {
     RunTracking {
         /// Whether level planes are looked for, which costs.
         finds_planes: bool,
+        /// Whether the printed card is, which costs more.
+        finds_card: bool,
         /// Whether the world begins anew.
         is_new_world: bool,
     },

@@ -9,9 +9,12 @@ use super::notice::Notice;
 use super::step::{Cause, Step};
 use super::table::as_told_now;
 use app_alignment::plate_taker::{PlateShot, PlateStep};
-use app_scene::camera_frame::{Arrival, CameraFrame};
+use app_scene::camera_frame::{Arrival, CameraFrame, Tracking};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Receiver, Scene, Surface};
+
+/// A tracker may look for the place of before for so long while nothing was chosen there.
+const RELOCALISING_S: f64 = 10.0;
 
 impl App {
     pub(super) fn frame(&mut self, frame: CameraFrame, commands: &mut Vec<ShellCommand>) {
@@ -33,6 +36,7 @@ impl App {
             self.tell(Notice::WorldLost);
         }
         self.platform.tracking = frame.tracking;
+        self.follow_relocalising(elapsed_s);
         let camera = frame.camera();
         if camera.is_some() {
             self.camera = camera;
@@ -58,6 +62,20 @@ impl App {
             && self.place.as_ref().is_some_and(Place::is_known);
         self.fade.step(elapsed_s, is_known);
         self.record(&frame);
+    }
+
+    /// A tracker that looks for a place where nothing was chosen may look for ever, in another room: it begins anew.
+    fn follow_relocalising(&mut self, elapsed_s: f64) {
+        let is_in_vain = self.platform.tracking == Tracking::Relocalising && self.table.is_none();
+        self.relocalising_s = if is_in_vain {
+            self.relocalising_s + elapsed_s
+        } else {
+            0.0
+        };
+        if self.relocalising_s >= RELOCALISING_S {
+            self.relocalising_s = 0.0;
+            self.start_over();
+        }
     }
 
     /// Whether poses or pixels of before mean nothing in a frame.

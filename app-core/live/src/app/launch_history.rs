@@ -17,6 +17,8 @@ pub struct LaunchHistory {
     pub(super) is_simple: bool,
     /// The device that drew its test picture as it should, with its driver.
     pub(super) passed: Option<String>,
+    /// Of a package for engineers, who stop the app at will: nothing counts, and nothing falls back. Not kept.
+    pub(super) is_first_phone: bool,
 }
 
 /// Why the app uses the simplest preset.
@@ -57,8 +59,29 @@ impl LaunchHistory {
         text
     }
 
+    /// As a package for engineers takes it: starts that end early do not count, the test picture is drawn by each, and nothing falls back
+    /// to the simplest preset by itself.
+    #[must_use]
+    pub fn for_engineers(self) -> Self {
+        Self {
+            is_first_phone: true,
+            is_simple: false,
+            n_unfinished: 0,
+            ..self
+        }
+    }
+
+    /// Whether this start is the first since one that came to an end: what an earlier one has left behind can be trusted.
+    #[must_use]
+    pub fn is_first_try(&self) -> bool {
+        self.n_unfinished <= 1
+    }
+
     /// Another start begins, which is to be stored before anything is done that may end it.
     pub fn begin(&mut self) {
+        if self.is_first_phone {
+            return;
+        }
         if self.n_unfinished >= MAX_FAILED_LAUNCHES {
             self.is_simple = true;
             self.n_unfinished = 0;

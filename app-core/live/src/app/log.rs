@@ -23,6 +23,12 @@ impl Log {
         self.lines.push_back(format!("{time_s:10.3} {what:?}"));
     }
 
+    /// Lines that were written so far.
+    #[must_use]
+    pub fn n_lines(&self) -> u64 {
+        self.n_dropped + self.lines.len() as u64
+    }
+
     /// All of it, the oldest line first.
     #[must_use]
     pub fn text(&self) -> String {

@@ -75,6 +75,14 @@ pub struct App {
     wants_new_world: bool,
     /// The platform is to hold the toy's place.
     wants_anchor: bool,
+    /// A person has the printed card.
+    uses_card: bool,
+    /// What the platform says of its AR session.
+    ar_words: Option<String>,
+    /// What the person has to be told where the app begins, by the terms of what it runs on.
+    disclosure: Option<&'static str>,
+    /// For so long the tracker has looked for a place where nothing was chosen.
+    relocalising_s: f64,
     shows_profile: bool,
     /// While a new phone is looked at.
     phone_check: Option<PhoneCheck>,
@@ -120,6 +128,10 @@ impl App {
             wants_to_begin: false,
             wants_new_world: false,
             wants_anchor: false,
+            uses_card: false,
+            ar_words: None,
+            disclosure: None,
+            relocalising_s: 0.0,
             shows_profile: false,
             phone_check: None,
             arrivals: Arrivals::default(),
@@ -156,7 +168,8 @@ impl App {
             ShellEvent::Foreground(is_foreground) => self.foreground(is_foreground, &mut commands),
             ShellEvent::Surface(size_px) => self.platform.surface_px = size_px,
             ShellEvent::Graphics(state) => self.graphics(state, &mut commands),
-            ShellEvent::ArSession(ar_session) => self.ar_session(ar_session),
+            ShellEvent::ArSession(ar_session) => self.ar_session(ar_session, None),
+            ShellEvent::ArTrouble(ar_session, words) => self.ar_session(ar_session, Some(words)),
             ShellEvent::Frame(frame) => self.frame(*frame, &mut commands),
             ShellEvent::Thermal(thermal) => self.platform.thermal = thermal,
             ShellEvent::MemoryLow => self.memory_low(),
@@ -173,6 +186,7 @@ impl App {
         let asked = Asked {
             lens: self.lens.is_awaited(),
             held_exposure: self.phone_check.is_some_and(|check| check.holds_exposure()),
+            card: self.uses_card || self.phone_check.is_some_and(|check| check.shows_card()),
         };
         let wanted = Commanded::wanted(self.step, &self.platform, (self.captures, asked));
         self.captures = wanted.captures;
@@ -195,6 +209,29 @@ impl App {
     #[must_use]
     pub fn obstacle(&self) -> Option<Obstacle> {
         self.platform.obstacle(self.step)
+    }
+
+    /// What the platform says of its AR session, in a sentence or two; none while it is able.
+    #[must_use]
+    pub fn ar_words(&self) -> Option<&str> {
+        self.ar_words.as_deref()
+    }
+
+    /// Whether a person has the printed card.
+    #[must_use]
+    pub fn uses_card(&self) -> bool {
+        self.uses_card
+    }
+
+    /// Says this on the first screen, by the terms of what the app runs on.
+    pub fn disclose(&mut self, words: &'static str) {
+        self.disclosure = Some(words);
+    }
+
+    /// What is said there.
+    #[must_use]
+    pub fn disclosure(&self) -> Option<&'static str> {
+        self.disclosure
     }
 
     /// What a person should hear of, for some seconds.

@@ -92,6 +92,10 @@ impl PhoneCheck {
         self.question() == Some(PhoneQuestion::Held)
     }
 
+    pub(super) fn shows_card(&self) -> bool {
+        self.question() == Some(PhoneQuestion::Square)
+    }
+
     /// The place is of another world.
     pub(super) fn forget_place(&mut self) {
         self.world_from_place = None;

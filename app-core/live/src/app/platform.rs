@@ -25,10 +25,12 @@ pub(super) struct Platform {
 /// Why the app cannot go on for now. Each has its words, and its way back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Obstacle {
-    /// No AR on this device: there is no way back.
+    /// No AR on this device, as far as it says: it can be asked again.
     NoAr,
-    /// No graphics that suffice: there is no way back.
+    /// No graphics that suffice: they can be asked for again.
     NoGraphics,
+    /// What AR needs is looked for or being installed: it goes on by itself.
+    Installing,
     /// The camera is not allowed; it can be asked for again.
     CameraDenied,
     /// The camera is not allowed; only the system's settings help.
@@ -63,6 +65,7 @@ impl Platform {
         }
         let obstacles = [
             (self.thermal == Thermal::Critical, Obstacle::TooHot),
+            (self.ar_session == ArSession::Installing, Obstacle::Installing),
             (self.ar_session == ArSession::Interrupted, Obstacle::Interrupted),
             (self.ar_session == ArSession::Failed, Obstacle::ArFailed),
             (self.graphics != GraphicsState::Ready, Obstacle::Preparing),
@@ -79,7 +82,7 @@ impl Platform {
     fn can_track(&self) -> bool {
         self.is_foreground
             && self.permission == Permission::Granted
-            && self.ar_session == ArSession::Able
+            && matches!(self.ar_session, ArSession::Able | ArSession::Installing)
             && self.graphics != GraphicsState::Unsupported
             && self.thermal < Thermal::Critical
     }
@@ -98,6 +101,7 @@ pub(super) struct Asked {
     /// A dark picture of the lens.
     pub(super) lens: bool,
     pub(super) held_exposure: bool,
+    pub(super) card: bool,
 }
 
 /// What the shell was asked for and holds until it is asked for something else.
@@ -105,6 +109,7 @@ pub(super) struct Asked {
 pub(super) struct Commanded {
     tracking: bool,
     finds_planes: bool,
+    finds_card: bool,
     locks_exposure: bool,
     underexposes: bool,
     is_awake: bool,
@@ -119,6 +124,7 @@ impl Commanded {
         Self {
             tracking,
             finds_planes: tracking && step == Step::FindTable,
+            finds_card: tracking && asked.card,
             // Plate and frames are compared with one another.
             locks_exposure: tracking && (step >= Step::PlaceToy || asked.held_exposure),
             underexposes: tracking && step == Step::PlaceToy && asked.lens,
@@ -159,11 +165,13 @@ impl Commanded {
         if wanted.frames_per_s != self.frames_per_s {
             commands.push(PlatformCommand::FrameRate(wanted.frames_per_s).into());
         }
-        let is_run_anew = (wanted.tracking, wanted.finds_planes) != (self.tracking, self.finds_planes);
+        let is_run_anew = (wanted.tracking, wanted.finds_planes, wanted.finds_card)
+            != (self.tracking, self.finds_planes, self.finds_card);
         if wanted.tracking && (is_run_anew || is_new_world) {
             commands.push(
                 PlatformCommand::RunTracking {
                     finds_planes: wanted.finds_planes,
+                    finds_card: wanted.finds_card,
                     is_new_world,
                 }
                 .into(),

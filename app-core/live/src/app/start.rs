@@ -4,6 +4,7 @@ use super::App;
 use super::event::{ShellCommand, WorkCommand};
 use super::launch_history::{LaunchHistory, N_GOOD_FRAMES, Simplified};
 use super::notice::Notice;
+use app_pipeline::governor::Exhausted;
 use app_pipeline::preset::Preset;
 
 /// The start under way.
@@ -25,6 +26,9 @@ impl Start {
     }
 
     fn simplified(&self) -> Option<Simplified> {
+        if self.history.is_first_phone {
+            return None;
+        }
         let refused = self.refused.clone().map(Simplified::SelfTest);
         refused.or(self.history.is_simple.then_some(Simplified::FailedLaunches))
     }
@@ -47,15 +51,16 @@ impl App {
     #[must_use]
     pub fn wants_self_test(&self, device: &str) -> bool {
         let is_wanted = |start: &Start| {
-            start.simplified().is_none() && start.history.passed.as_deref() != Some(&one_line(device))
+            let has_passed = start.history.passed.as_deref() == Some(&one_line(device));
+            start.history.is_first_phone || (start.simplified().is_none() && !has_passed)
         };
         self.start.as_ref().is_some_and(is_wanted)
     }
 
     pub(super) fn started(&mut self, history: LaunchHistory) {
         self.start = Some(Start {
+            is_counted: !history.is_first_phone,
             history,
-            is_counted: true,
             n_good_frames: 0,
             refused: None,
             device: None,
@@ -81,6 +86,16 @@ impl App {
         }
     }
 
+    /// All that could be turned down was, for the log.
+    pub fn note_lowered(&mut self, exhausted: Exhausted) {
+        self.note(&("preset fast", exhausted));
+    }
+
+    /// How far a test picture is off, for the log: also where it passes, since no bound was set by a phone.
+    pub fn note_self_test(&mut self, words: &str) {
+        self.note(&("test picture", words));
+    }
+
     /// A picture of the moving toy was drawn; what is to be done.
     pub fn drawn(&mut self) -> Option<WorkCommand> {
         let start = self.start.as_mut()?;
@@ -94,7 +109,9 @@ impl App {
 
     /// An app that has left the front may be ended there without having failed.
     pub(super) fn follow_start(&mut self, is_foreground: bool, commands: &mut Vec<ShellCommand>) {
-        let Some(start) = &mut self.start else { return };
+        let Some(start) = self.start.as_mut().filter(|start| !start.history.is_first_phone) else {
+            return;
+        };
         if start.n_good_frames >= N_GOOD_FRAMES || start.is_counted == is_foreground {
             return;
         }

@@ -47,11 +47,13 @@ pub enum Cause {
     StartOver,
     /// The tracker has begun another world.
     WorldLost,
+    /// A person has left for the first screen.
+    Left,
 }
 
 impl Cause {
     /// All there are.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Begun,
         Self::CameraDenied,
         Self::TableChosen,
@@ -64,6 +66,7 @@ impl Cause {
         Self::RetakePlate,
         Self::StartOver,
         Self::WorldLost,
+        Self::Left,
     ];
 }
 
@@ -84,7 +87,7 @@ impl Step {
         match (self, cause) {
             (Self::Welcome, Cause::Begun) => Self::FindTable,
             (Self::Welcome, _) => Self::Welcome,
-            (_, Cause::CameraDenied) => Self::Welcome,
+            (_, Cause::CameraDenied | Cause::Left) => Self::Welcome,
             (_, Cause::StartOver | Cause::WorldLost) | (Self::FindTable, Cause::Replace) => Self::FindTable,
             (Self::FindTable, Cause::TableChosen) => Self::TakePlate,
             (Self::TakePlate, Cause::PlateTaken | Cause::PlateSkipped) => Self::PlaceToy,

@@ -94,6 +94,11 @@ impl Interface {
         self.touches.wheel(steps);
     }
 
+    /// Closes the menu, where it is open.
+    pub(crate) fn close_menu(&mut self) -> bool {
+        std::mem::take(&mut self.is_menu_open)
+    }
+
     /// One picture of the interface at `time_s`, which goes on from call to call, and what the person does.
     pub(crate) fn run(
         &mut self,

@@ -46,11 +46,17 @@ fn step(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
             if lead(ui, text::BEGIN) {
                 actions.push(UserAction::Begin);
             }
+            if let Some(disclosure) = app.disclosure() {
+                ui.label(RichText::new(disclosure).small().color(style::MUTED));
+            }
         }
         Step::TakePlate => {
             plate_step(ui, app);
             if other(ui, text::SKIP_PLATE) {
                 actions.push(UserAction::SkipPlate);
+            }
+            if other(ui, text::START_OVER) {
+                actions.push(UserAction::StartOver);
             }
         }
         Step::PlaceToy if app.is_taking_lens() => {
@@ -77,6 +83,9 @@ fn step(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
             }
         }
         Step::FindTable => {
+            if !app.uses_card() && other(ui, text::USE_CARD) {
+                actions.push(UserAction::UseCard(true));
+            }
             if other(ui, text::CHECK) {
                 actions.push(UserAction::CheckPhone(true));
             }
@@ -107,15 +116,22 @@ fn plate_step(ui: &mut Ui, app: &App) {
 
 fn in_the_way(ui: &mut Ui, app: &App, obstacle: Obstacle, actions: &mut Vec<UserAction>) {
     let (title, hint) = text::of_obstacle(obstacle);
-    words(ui, title, hint);
+    let is_of_ar = matches!(
+        obstacle,
+        Obstacle::NoAr | Obstacle::ArFailed | Obstacle::Installing | Obstacle::Interrupted
+    );
+    words(ui, title, app.ar_words().filter(|_| is_of_ar).unwrap_or(hint));
     let way_back = match obstacle {
         Obstacle::CameraDenied => lead(ui, text::ALLOW_CAMERA).then_some(UserAction::Begin),
         Obstacle::CameraBarred => lead(ui, text::OPEN_SETTINGS).then_some(UserAction::OpenSettings),
         Obstacle::ArFailed => lead(ui, text::START_OVER).then_some(UserAction::StartOver),
-        Obstacle::Tracking(_) if app.step() > Step::FindTable => {
-            other(ui, text::START_OVER).then_some(UserAction::StartOver)
+        Obstacle::Tracking(_) => other(ui, text::START_OVER).then_some(UserAction::StartOver),
+        Obstacle::NoAr | Obstacle::NoGraphics => lead(ui, text::TRY_AGAIN).then_some(UserAction::TryAgain),
+        // The first screen itself is below it.
+        _ if app.step() == Step::Welcome => None,
+        Obstacle::Installing | Obstacle::Interrupted | Obstacle::TooHot | Obstacle::Preparing => {
+            other(ui, text::LEAVE).then_some(UserAction::Leave)
         }
-        _ => None,
     };
     actions.extend(way_back);
 }

@@ -58,6 +58,7 @@ pub(super) fn of_obstacle(obstacle: Obstacle) -> (&'static str, &'static str) {
             "Allow it in the system's settings, then come back.",
         ),
         Obstacle::TooHot => ("The phone is too hot", "Let it cool down. It goes on by itself."),
+        Obstacle::Installing => ("One moment", "What this phone needs for AR is looked for."),
         Obstacle::Interrupted => (
             "The camera is in use elsewhere",
             "It goes on here when that has ended.",
@@ -233,6 +234,9 @@ pub(super) const NO: &str = "No";
 pub(super) const STOP: &str = "Enough";
 pub(super) const ALLOW_CAMERA: &str = "Allow the camera";
 pub(super) const BEGIN: &str = "Begin";
+pub(super) const TRY_AGAIN: &str = "Try again";
+pub(super) const LEAVE: &str = "To the first screen";
+pub(super) const USE_CARD: &str = "I have the card";
 pub(super) const OPEN_SETTINGS: &str = "Open settings";
 pub(super) const SKIP_PLATE: &str = "The toy cannot be moved";
 pub(super) const PLACED: &str = "It fits";

@@ -25,6 +25,9 @@ pub(super) struct Profiler {
     shown_id: Option<u64>,
     n_dropped: u64,
     latest: Option<Latest>,
+    /// When the picture under way was begun, and how long the one before took until it was handed to the display.
+    begun_ms: Option<f64>,
+    busy_ms: Option<f64>,
 }
 
 /// A picture of the camera.
@@ -56,6 +59,29 @@ impl Profiler {
     pub(super) fn reopen(&mut self, core: &mut Core) {
         core.time_stages(self.clock.clone());
         self.times_passes = false;
+    }
+
+    /// A picture is begun.
+    pub(super) fn begin_picture(&mut self) {
+        self.begun_ms = self.clock.as_ref().map(Clock::now_ms);
+    }
+
+    /// It was handed to the display: where the device is behind, that took as long as the device needs for one.
+    pub(super) fn presented(&mut self) {
+        let now_ms = self.clock.as_ref().map(Clock::now_ms);
+        self.busy_ms = now_ms
+            .zip(self.begun_ms)
+            .map(|(now_ms, begun_ms)| now_ms - begun_ms);
+    }
+
+    /// How long the latest picture that was handed to the display took; none without a clock, or where nothing is.
+    pub(super) fn busy_ms(&self) -> Option<f64> {
+        self.busy_ms
+    }
+
+    /// How long the device took for the latest frame, while passes are timed.
+    pub(super) fn gpu_ms(&self) -> Option<f64> {
+        self.latest?.gpu_ms
     }
 
     /// A picture of the camera has come.

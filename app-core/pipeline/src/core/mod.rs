@@ -31,7 +31,7 @@ use window::Window;
 
 pub use error::CoreError;
 pub use warm_up::WarmUp;
-pub use window::Canvas;
+pub use window::{Canvas, as_shown};
 
 /// The pipeline on a device: scene in, frames in, pictures out.
 pub struct Core {
@@ -105,6 +105,24 @@ impl Core {
     #[must_use]
     pub fn device(&self) -> Option<DeviceHandle> {
         self.gpu.opened.as_ref().map(|opened| opened.device.handle())
+    }
+
+    /// What compiled pipelines are kept under, from start to start: this crate's version, the device and its driver. None where the
+    /// driver hands none out, or its fault is known.
+    #[must_use]
+    pub fn pipelines_key(&self) -> Option<String> {
+        self.gpu.pipelines_key()
+    }
+
+    /// Compiles with a cache of the driver's from now on, which a caller made on [`Core::device`], of what an earlier start has kept.
+    pub fn set_pipeline_cache(&self, cache: wgpu::PipelineCache) {
+        self.gpu.set_pipeline_cache(cache);
+    }
+
+    /// What the driver's cache holds by now, for the next start; none without a cache.
+    #[must_use]
+    pub fn pipeline_data(&self) -> Option<Vec<u8>> {
+        self.gpu.pipeline_data()
     }
 
     /// Drops the surface; device, pipelines and what was learned stay.

@@ -51,11 +51,10 @@ impl Window {
         let adapter = opened
             .and_then(|opened| opened.adapter.as_ref())
             .ok_or_else(|| failed("the device was opened by the caller, who presents by itself"))?;
-        let mut config = surface
+        let config = surface
             .get_default_config(adapter, width.max(1), height.max(1))
             .ok_or_else(|| failed("the adapter offers no configuration for it"))?;
-        // `screen` writes sRGB codes; a surface that encodes once more would show them too bright.
-        config.format = config.format.remove_srgb_suffix();
+        let config = as_shown(config);
         configure(gpu, &surface, &config);
         Ok(Self {
             screen: screen::Pass::new(gpu, config.format),
@@ -91,7 +90,8 @@ impl Window {
                 configure(gpu, &self.surface, &self.config);
                 return Ok(());
             }
-            other => {
+            CurrentSurfaceTexture::Lost => return Err(GpuError::SurfaceLost),
+            other @ CurrentSurfaceTexture::Validation => {
                 return Err(GpuError::Surface {
                     reason: format!("{other:?}"),
                 });
@@ -155,6 +155,20 @@ fn blacken(gpu: &Gpu, target: &wgpu::Texture) {
     recorder.submit();
 }
 
+/// A surface's configuration as it is used, whatever the platform offers first.
+///
+/// A picture waits for the display: Android offers `Mailbox` first, which draws as often as the processor can, most of it for nobody.
+/// And `screen` writes sRGB codes, which a surface that encodes once more would show too bright.
+#[must_use]
+pub fn as_shown(config: wgpu::SurfaceConfiguration) -> wgpu::SurfaceConfiguration {
+    wgpu::SurfaceConfiguration {
+        present_mode: wgpu::PresentMode::Fifo,
+        format: config.format.remove_srgb_suffix(),
+        ..config
+    }
+}
+
+/// The one place that configures a surface.
 fn configure(gpu: &Gpu, surface: &wgpu::Surface<'static>, config: &wgpu::SurfaceConfiguration) {
     if let Some(opened) = &gpu.opened {
         surface.configure(&opened.device.raw, config);

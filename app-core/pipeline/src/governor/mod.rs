@@ -11,6 +11,8 @@
 //! - **Without device times** a frame that is ready early looks like any other, so that only frames that come late tell
 //!   anything: a step down where one in five of `LATE_WINDOW` is late, two where half of them are. A step up is a trial,
 //!   after `BLIND_UP_FRAMES` frames of which hardly one was late.
+//! - **The end**: where all steps are taken and frames are slow for `END_FRAMES[0]` of them, or the phone has been too warm for
+//!   `END_FRAMES[1]` since the latest step, [`Governor::exhausted`] says so: a cheaper preset is what is left.
 //! - **Heat** narrows what a frame may take at once, and widens it only after `COOL_FRAMES` frames; there is no step up
 //!   above [`Thermal::Fair`].
 //!
@@ -44,6 +46,9 @@ const LATE_WINDOW: usize = 30;
 const BLIND_UP_FRAMES: u32 = 600;
 /// Frames that a phone must be cooler for until it counts.
 const COOL_FRAMES: u32 = 3600;
+
+/// Frames at the end of the ladder that are too slow, or since the latest step while the phone is too warm, before more is to be done.
+const END_FRAMES: [u32; 2] = [90, 900];
 
 /// Interval over that of the screen from which a frame is late.
 const LATE: f64 = 1.4;
@@ -123,6 +128,17 @@ pub struct Governor {
     before: Option<(usize, f64)>,
     thermal: Thermal,
     cooler_frames: u32,
+    /// Frames at the ladder's end that were all too slow, and since the latest step, all made while the phone was too warm.
+    end_frames: [u32; 2],
+}
+
+/// Why all steps together are not enough.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exhausted {
+    /// Frames still take too long.
+    Slow,
+    /// The phone is still too warm.
+    Warm,
 }
 
 impl Governor {
@@ -143,6 +159,30 @@ impl Governor {
             before: None,
             thermal: Thermal::Nominal,
             cooler_frames: 0,
+            end_frames: [0; 2],
+        }
+    }
+
+    /// Why the steps of the ladder are not enough; none while there are more, or they are. What helps then is a cheaper preset.
+    #[must_use]
+    pub fn exhausted(&self) -> Option<Exhausted> {
+        let [is_slow, is_warm] = [0, 1].map(|index| self.end_frames[index] >= END_FRAMES[index]);
+        match (is_slow, is_warm) {
+            (true, _) => Some(Exhausted::Slow),
+            (_, true) => Some(Exhausted::Warm),
+            _ => None,
+        }
+    }
+
+    /// Counts frames that nothing helps any more.
+    fn count_end(&mut self, thermal: Thermal) {
+        let is_slow = self.loads.median().is_some_and(|load| load > HIGH)
+            || self.lates.mean().is_some_and(|late| late >= MANY_LATE[0]);
+        let is_slow_at_end = is_slow && self.level == self.ladder.len();
+        // Whatever steps were taken for it: each begins the count anew.
+        let is_warm = thermal >= Thermal::Serious;
+        for (frames, is_end) in self.end_frames.iter_mut().zip([is_slow_at_end, is_warm]) {
+            *frames = if is_end { frames.saturating_add(1) } else { 0 };
         }
     }
 
@@ -188,6 +228,7 @@ impl Governor {
                 self.by_lateness()
             }
         };
+        self.count_end(frame.thermal);
         to.map(|to| self.go(to))
     }
 
@@ -292,6 +333,7 @@ impl Governor {
         // Where the rate of frames changes, a load is over another time: it is what that step says.
         self.before = self.loads.median().map(|load| (from, load));
         self.level = to;
+        self.end_frames = [0; 2];
         self.age = 0;
         self.low_frames = 0;
         self.loads.clear();

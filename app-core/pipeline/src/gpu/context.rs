@@ -11,7 +11,7 @@ use super::bindings::{BindingCache, Layout, Resource, Slot};
 use super::device::{Device, Kind};
 use super::meter::{Memory, Meter};
 use super::pipeline::{Compute, ComputeSpec, Draw, DrawSpec, Pipeline, PipelineCache};
-use super::quirks::fault_on_surfaces;
+use super::quirks::{fault_of_pipeline_caches, fault_on_surfaces};
 use super::samplers::Samplers;
 use super::shader::ShaderTexts;
 use super::uniforms::Uniforms;
@@ -64,6 +64,9 @@ pub enum GpuError {
         /// The driver's message.
         reason: String,
     },
+    /// The surface is gone, and the device is not: another surface is to be made of the same window.
+    #[error("the surface is lost")]
+    SurfaceLost,
     /// The device was lost, or a read-back failed.
     #[error("reading back from the device: {reason}")]
     ReadBack {
@@ -90,6 +93,16 @@ pub(crate) struct Opened {
     pipelines: PipelineCache,
     bindings: BindingCache,
     info: wgpu::AdapterInfo,
+}
+
+/// What is used where a device has it.
+fn wished_features(info: &wgpu::AdapterInfo) -> wgpu::Features {
+    let timestamps = wgpu::Features::TIMESTAMP_QUERY;
+    if fault_of_pipeline_caches(info).is_some() {
+        timestamps
+    } else {
+        timestamps | wgpu::Features::PIPELINE_CACHE
+    }
 }
 
 /// The limits of every phone that is supported; tests run under them too.
@@ -122,7 +135,7 @@ impl Gpu {
         }
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("app-core"),
-            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_features: adapter.features() & wished_features(&info),
             required_limits: phone_limits(),
             ..Default::default()
         };
@@ -230,6 +243,36 @@ impl Gpu {
                 compiled: None,
             },
         }
+    }
+
+    /// What pipelines are kept under; none where they cannot be.
+    pub(crate) fn pipelines_key(&self) -> Option<String> {
+        let opened = self.opened.as_ref()?;
+        let features = opened.device.raw.features();
+        let info = &opened.info;
+        features.contains(wgpu::Features::PIPELINE_CACHE).then(|| {
+            format!(
+                "{} {:x} {:x} {} {} {}",
+                env!("CARGO_PKG_VERSION"),
+                info.vendor,
+                info.device,
+                info.name,
+                info.driver,
+                info.driver_info
+            )
+        })
+    }
+
+    /// Compiles with a cache of the driver's from now on.
+    pub(crate) fn set_pipeline_cache(&self, cache: wgpu::PipelineCache) {
+        if let Some(opened) = &self.opened {
+            opened.pipelines.set_of_driver(cache);
+        }
+    }
+
+    /// What that cache holds.
+    pub(crate) fn pipeline_data(&self) -> Option<Vec<u8>> {
+        self.opened.as_ref()?.pipelines.data_of_driver()
     }
 
     /// Compiles shaders from other texts from now on, and returns those before. Pipelines that are held stay as they are.

@@ -29,7 +29,7 @@ pub(crate) mod work;
 pub use context::{AdapterChoice, GpuError, phone_limits};
 pub use handle::DeviceHandle;
 pub use lent::{LentError, LentTextures};
-pub use quirks::fault_on_surfaces;
+pub use quirks::{fault_of_pipeline_caches, fault_on_surfaces};
 pub use shader::ShaderTexts;
 
 pub(crate) use bindings::{GROUP_DRAW, GROUP_PASS, GROUP_SCENE, Resource, Slot};

@@ -97,6 +97,8 @@ pub(crate) struct PipelineCache {
     modules: Mutex<HashMap<&'static str, wgpu::ShaderModule>>,
     draws: Mutex<HashMap<DrawSpec, Draw>>,
     computes: Mutex<HashMap<ComputeSpec, Compute>>,
+    /// The driver's own, which outlives a start of the program.
+    of_driver: Mutex<Option<wgpu::PipelineCache>>,
 }
 
 impl PipelineCache {
@@ -110,6 +112,16 @@ impl PipelineCache {
         cached(&self.computes, spec, || {
             self.compile_compute(device, bindings, spec)
         })
+    }
+
+    /// Has the driver look there for what it has compiled before, and put there what it compiles.
+    pub(super) fn set_of_driver(&self, cache: wgpu::PipelineCache) {
+        *locked(&self.of_driver) = Some(cache);
+    }
+
+    /// What the driver has put there.
+    pub(super) fn data_of_driver(&self) -> Option<Vec<u8>> {
+        locked(&self.of_driver).as_ref()?.get_data()
     }
 
     /// Compiles from other texts from now on, and returns those before.
@@ -166,7 +178,7 @@ impl PipelineCache {
                 targets: &targets,
             }),
             multiview_mask: None,
-            cache: None,
+            cache: locked(&self.of_driver).as_ref(),
         });
         Pipeline {
             name: spec.shader.name,
@@ -186,7 +198,7 @@ impl PipelineCache {
                 constants: &values(&spec.constants),
                 ..Default::default()
             },
-            cache: None,
+            cache: locked(&self.of_driver).as_ref(),
         });
         Pipeline {
             name: spec.shader.name,

@@ -20,6 +20,15 @@ struct Quirk {
 /// PCI vendor of Imagination Technologies.
 const IMAGINATION: u32 = 0x1010;
 
+/// Caches of compiled pipelines.
+const OF_PIPELINE_CACHES: [Quirk; 1] = [Quirk {
+    vendor: IMAGINATION,
+    // Of the Pixel 10; other names of this maker's were not reported.
+    name: "DXT-48",
+    backend: Backend::Vulkan,
+    fault: "its driver ends the program in vkCreatePipelineCache (godot issue 115171, open since January 2026)",
+}];
+
 /// On a surface alone: pictures that are not shown come out right with these.
 const ON_SURFACES: [Quirk; 1] = [Quirk {
     vendor: IMAGINATION,
@@ -28,11 +37,21 @@ const ON_SURFACES: [Quirk; 1] = [Quirk {
     fault: "its driver ends the program with the first picture on a screen (wgpu issue 7669, open since May 2025)",
 }];
 
+/// Why a driver is not asked to keep pipelines; none where it may be.
+#[must_use]
+pub fn fault_of_pipeline_caches(info: &AdapterInfo) -> Option<&'static str> {
+    fault_in(&OF_PIPELINE_CACHES, info)
+}
+
 /// Why a driver is not to draw on a surface; none where it may.
 #[must_use]
 pub fn fault_on_surfaces(info: &AdapterInfo) -> Option<&'static str> {
+    fault_in(&ON_SURFACES, info)
+}
+
+fn fault_in(quirks: &[Quirk], info: &AdapterInfo) -> Option<&'static str> {
     let is_meant = |quirk: &&Quirk| {
         info.vendor == quirk.vendor && info.backend == quirk.backend && info.name.contains(quirk.name)
     };
-    ON_SURFACES.iter().find(is_meant).map(|quirk| quirk.fault)
+    quirks.iter().find(is_meant).map(|quirk| quirk.fault)
 }

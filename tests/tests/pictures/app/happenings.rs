@@ -52,6 +52,7 @@ pub(crate) fn happening() -> impl Strategy<Value = Happening> {
     ]);
     let ar_session = select(vec![
         ArSession::Able,
+        ArSession::Installing,
         ArSession::Interrupted,
         ArSession::Failed,
         ArSession::Unsupported,
@@ -102,6 +103,9 @@ fn action() -> impl Strategy<Value = UserAction> {
         UserAction::Replace,
         UserAction::RetakePlate,
         UserAction::StartOver,
+        UserAction::Leave,
+        UserAction::TryAgain,
+        UserAction::UseCard(true),
         UserAction::Choose(None),
         UserAction::Choose(world::toy().clip_ids().next()),
         UserAction::Play(false),

@@ -4,6 +4,7 @@ mod happenings;
 mod lens;
 mod orders;
 mod phone_check;
+mod phones;
 mod recorded;
 mod screens;
 mod starts;

@@ -1,0 +1,350 @@
+//! What phones do to an app: nothing leads into a dead end, the way back leads back, and the governor reaches its end.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use app_core::Core;
+use app_core::app::{
+    AlignJob, App, ArSession, GraphicsState, LaunchHistory, Permission, PlatformCommand, ShellCommand,
+    ShellEvent, Step, Thermal, UserAction, WorkCommand,
+};
+use app_core::camera_frame::Tracking;
+use app_core::core::as_shown;
+use app_core::frame::Clock;
+use app_core::gpu::fault_of_pipeline_caches;
+use app_core::interface::Interface;
+use app_core::live::Live;
+use app_core::preset::Preset;
+use app_core::wgpu;
+use glam::DVec2;
+
+use crate::app::world;
+
+/// An app that looks for a table.
+fn looking() -> App {
+    let mut app = world::app();
+    for event in world::opening() {
+        let _ = app.event(event);
+    }
+    app
+}
+
+fn buttons(app: &App) -> Vec<String> {
+    let screen = world::screen(844, 390);
+    let mut interface = Interface::default();
+    interface.actions(app, &screen);
+    interface.actions(app, &screen);
+    let buttons = interface
+        .widgets()
+        .iter()
+        .filter(|widget| widget.role == "Button");
+    buttons.map(|widget| widget.label.clone()).collect()
+}
+
+/// A frame after so many tenths of a second.
+fn frame_at(app: &mut App, id: u64, tenths: u32, tracking: Tracking) -> Vec<ShellCommand> {
+    let frame = world::frame(id, 100_000_000 * i64::from(tenths), 0, tracking);
+    app.event(ShellEvent::Frame(Box::new(frame)))
+}
+
+#[test]
+fn every_sheet_has_a_way_out() {
+    let troubles = [
+        ShellEvent::ArTrouble(ArSession::Unsupported, "This phone cannot run ARCore.".to_owned()),
+        ShellEvent::ArTrouble(ArSession::Installing, "It is being installed.".to_owned()),
+        ShellEvent::ArTrouble(ArSession::Failed, "ARCore failed.".to_owned()),
+        ShellEvent::ArSession(ArSession::Interrupted),
+        ShellEvent::Permission(Permission::Denied),
+        ShellEvent::Permission(Permission::Barred),
+        ShellEvent::Graphics(GraphicsState::Unsupported),
+        ShellEvent::Graphics(GraphicsState::Lost),
+        ShellEvent::Thermal(Thermal::Critical),
+    ];
+    let mut apps: Vec<App> = troubles
+        .into_iter()
+        .map(|trouble| {
+            let mut app = looking();
+            let _ = app.event(trouble);
+            app
+        })
+        .collect();
+    for tracking in [
+        Tracking::Starting,
+        Tracking::TooFast,
+        Tracking::TooPlain,
+        Tracking::TooDark,
+        Tracking::Relocalising,
+    ] {
+        let mut app = looking();
+        let _ = frame_at(&mut app, 1, 0, tracking);
+        apps.push(app);
+    }
+    for app in &apps {
+        let what = format!("{:?} in {:?}", app.obstacle(), app.step());
+        assert!(app.obstacle().is_some(), "{what}");
+        assert!(!buttons(app).is_empty(), "no way out of {what}");
+    }
+    assert!(buttons(&apps[0]).contains(&"Try again".to_owned()));
+}
+
+#[test]
+fn what_the_platform_says_of_ar_is_read_and_it_can_be_tried_again() {
+    let mut app = looking();
+    let words = "Google Play Services for AR is too old.";
+    let _ = app.event(ShellEvent::ArTrouble(ArSession::Unsupported, words.to_owned()));
+    let mut interface = Interface::default();
+    interface.actions(&app, &world::screen(844, 390));
+    interface.actions(&app, &world::screen(844, 390));
+    assert!(interface.widgets().iter().any(|widget| widget.label == words));
+    let commands = app.event(ShellEvent::User(UserAction::TryAgain));
+    let runs = commands.iter().any(|command| {
+        matches!(
+            command,
+            ShellCommand::Platform(PlatformCommand::RunTracking {
+                is_new_world: true,
+                ..
+            })
+        )
+    });
+    assert!(runs && app.ar_words().is_none(), "{commands:?}");
+    // What is being installed is asked for all the same, so that it goes on by itself.
+    let commands = app.event(ShellEvent::ArTrouble(ArSession::Installing, String::new()));
+    assert!(commands.is_empty(), "{commands:?}");
+    assert!(app.event(ShellEvent::ArSession(ArSession::Able)).is_empty());
+}
+
+#[test]
+fn a_place_that_is_looked_for_in_vain_is_given_up_after_ten_seconds_and_only_before_it_was_chosen() {
+    let starts_anew = |app: &mut App| {
+        let mut id = 10;
+        (0..120_u32).find(|tenth| {
+            id += 1;
+            let commands = frame_at(app, id, 10 + tenth, Tracking::Relocalising);
+            let is_anew = |command: &ShellCommand| {
+                matches!(
+                    command,
+                    ShellCommand::Platform(PlatformCommand::RunTracking {
+                        is_new_world: true,
+                        ..
+                    })
+                )
+            };
+            commands.iter().any(is_anew)
+        })
+    };
+    let mut app = looking();
+    let after = starts_anew(&mut app).expect("a new world");
+    assert!((99..=101).contains(&after), "{after} tenths of a second");
+    assert_eq!(app.step(), Step::FindTable);
+    let mut placed = world::at_ghost();
+    assert_eq!(
+        starts_anew(&mut placed),
+        None,
+        "a place that was chosen is waited for"
+    );
+}
+
+#[test]
+fn the_card_is_looked_for_where_a_person_has_one() {
+    let finds_card = |commands: &[ShellCommand]| {
+        commands.iter().find_map(|command| match command {
+            ShellCommand::Platform(PlatformCommand::RunTracking { finds_card, .. }) => Some(*finds_card),
+            _ => None,
+        })
+    };
+    let mut app = world::app();
+    let begun: Vec<ShellCommand> = world::opening()
+        .into_iter()
+        .flat_map(|event| app.event(event))
+        .collect();
+    assert_eq!(finds_card(&begun), Some(false));
+    let _ = frame_at(&mut app, 1, 0, Tracking::Normal);
+    assert!(buttons(&app).contains(&"I have the card".to_owned()));
+    assert_eq!(
+        finds_card(&app.event(ShellEvent::User(UserAction::UseCard(true)))),
+        Some(true)
+    );
+    assert!(!buttons(&app).contains(&"I have the card".to_owned()));
+}
+
+#[test]
+fn back_leads_back_step_by_step() {
+    let back = |app: &mut App| {
+        let action = app.back();
+        action.map(|action| {
+            let _ = app.event(ShellEvent::User(action));
+            app.step()
+        })
+    };
+    assert_eq!(back(&mut world::app()), None, "the first screen");
+    assert_eq!(back(&mut looking()), None, "there is nothing to lose");
+    let mut app = world::at_ghost();
+    let _ = app.event(ShellEvent::User(UserAction::Placed));
+    assert_eq!(back(&mut app), Some(Step::PlaceToy));
+    let _ = app.event(ShellEvent::ToyFiles(vec!["Llama".to_owned()]));
+    assert_eq!(back(&mut app), Some(Step::PlaceToy), "closes what is open");
+    assert!(app.toy_files().is_none());
+    assert_eq!(back(&mut app), Some(Step::FindTable));
+    let _ = app.event(ShellEvent::Thermal(Thermal::Critical));
+    assert_eq!(back(&mut app), Some(Step::Welcome), "out of what is in the way");
+}
+
+#[test]
+fn a_package_for_engineers_counts_nothing_tests_each_start_and_never_falls_back() {
+    let mut history = LaunchHistory::read("unfinished 2\npassed one\nsimple\n").for_engineers();
+    history.begin();
+    assert_eq!(history.text(), "unfinished 0\npassed one\n");
+    let mut app = world::app();
+    let commands = app.event(ShellEvent::Started(history));
+    assert!(
+        !remembers(&commands) && app.wants_self_test("one"),
+        "{commands:?}"
+    );
+    app.note_self_test("12.00 codes off");
+    let _ = app.self_tested("one", Err("it is off".to_owned()));
+    assert_eq!(app.preset(Preset::Balanced), Preset::Balanced);
+    assert!(
+        app.log().text().contains("12.00 codes off"),
+        "{}",
+        app.log().text()
+    );
+    for is_there in [false, true] {
+        let commands = app.event(ShellEvent::Foreground(is_there));
+        assert!(!remembers(&commands), "stopping it in front counts for nothing");
+    }
+}
+
+fn remembers(commands: &[ShellCommand]) -> bool {
+    let mut commands = commands.iter();
+    commands.any(|command| matches!(command, ShellCommand::Work(WorkCommand::Remember(_))))
+}
+
+#[test]
+fn a_surface_waits_for_the_display_whatever_is_offered_first() {
+    use wgpu::PresentMode::{AutoNoVsync, AutoVsync, Fifo, FifoRelaxed, Immediate, Mailbox};
+    for present_mode in [AutoNoVsync, AutoVsync, Fifo, FifoRelaxed, Immediate, Mailbox] {
+        let offered = wgpu::SurfaceConfiguration {
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+            format: wgpu::TextureFormat::Bgra8UnormSrgb,
+            color_space: wgpu::SurfaceColorSpace::default(),
+            width: 4,
+            height: 2,
+            present_mode,
+            desired_maximum_frame_latency: 2,
+            alpha_mode: wgpu::CompositeAlphaMode::Auto,
+            view_formats: Vec::new(),
+        };
+        let shown = as_shown(offered);
+        assert_eq!(
+            (shown.present_mode, shown.format),
+            (Fifo, wgpu::TextureFormat::Bgra8Unorm),
+            "{present_mode:?}"
+        );
+    }
+}
+
+#[test]
+fn one_maker_is_not_asked_to_keep_pipelines() {
+    let info = |name: &str, vendor| wgpu::AdapterInfo {
+        name: name.to_owned(),
+        vendor,
+        ..wgpu::AdapterInfo::new(wgpu::DeviceType::IntegratedGpu, wgpu::Backend::Vulkan)
+    };
+    assert!(fault_of_pipeline_caches(&info("PowerVR D-Series DXT-48-1536 MC1", 0x1010)).is_some());
+    assert_eq!(fault_of_pipeline_caches(&info("Adreno 610", 0x5143)), None);
+}
+
+/// An app whose toy moves, on a core that draws nothing, and the clock that its pictures are timed by, in milliseconds.
+struct Moving {
+    live: Live,
+    now_ms: Arc<AtomicU64>,
+    n_frames: u64,
+    jobs: Vec<AlignJob>,
+}
+
+impl Moving {
+    fn new() -> Self {
+        let mut live = Live::new(Core::counting(), world::toy(), Preset::Balanced);
+        let now_ms = Arc::new(AtomicU64::new(0));
+        let clock = Arc::clone(&now_ms);
+        // Each look takes as long as the device is said to need.
+        live.set_clock(Clock::new(move || clock.load(Ordering::SeqCst) as f64));
+        live.set_target_fps(30);
+        let mut moving = Self {
+            live,
+            now_ms,
+            n_frames: 0,
+            jobs: Vec::new(),
+        };
+        for event in world::opening() {
+            moving.tell(event);
+        }
+        moving.picture();
+        for action in [
+            UserAction::Tap(DVec2::new(32.0, 24.0)),
+            UserAction::SkipPlate,
+            UserAction::Placed,
+        ] {
+            moving.tell(ShellEvent::User(action));
+        }
+        moving
+    }
+
+    fn tell(&mut self, event: ShellEvent) {
+        for command in self.live.event(event) {
+            if let ShellCommand::Work(WorkCommand::Align(job)) = command {
+                self.jobs.push(*job);
+            }
+        }
+    }
+
+    /// A picture of the camera, drawn.
+    fn picture(&mut self) {
+        self.n_frames += 1;
+        let time_ns = i64::try_from(self.n_frames).unwrap() * 33_000_000;
+        self.tell(ShellEvent::Frame(Box::new(world::frame(
+            self.n_frames,
+            time_ns,
+            0,
+            Tracking::Normal,
+        ))));
+        if let Some(job) = self.jobs.pop() {
+            let alignment = world::alignment(job.input(), Some(0.1));
+            self.tell(ShellEvent::Aligned(Some(Box::new(job.known(alignment)))));
+        }
+        self.now_ms.fetch_add(33, Ordering::SeqCst);
+        let time_s = self.now_ms.load(Ordering::SeqCst) as f64 / 1e3;
+        let commands = self.live.present(&world::screen(64, 48), time_s).unwrap();
+        drop(commands);
+    }
+}
+
+#[test]
+fn heat_turns_everything_down_and_then_leads_to_the_fast_preset_and_back() {
+    let mut moving = Moving::new();
+    while moving.live.app().step() != Step::Play {
+        moving.picture();
+    }
+    assert_eq!(moving.live.preset(), Preset::Balanced);
+    moving.tell(ShellEvent::Thermal(Thermal::Serious));
+    let mut n_pictures = 0;
+    let mut log = || {
+        n_pictures += 1;
+        moving.picture();
+        moving.live.preset() == Preset::Fast
+    };
+    let reached = (0..2000).any(|_| log());
+    assert!(
+        reached,
+        "still {} after {n_pictures} pictures",
+        moving.live.preset()
+    );
+    assert!(n_pictures > 900, "steps come first: {n_pictures}");
+    assert!(moving.live.app().log().text().contains("preset fast"));
+    // Cool for two minutes, it has its preset back.
+    moving.tell(ShellEvent::Thermal(Thermal::Nominal));
+    moving.now_ms.fetch_add(121_000, Ordering::SeqCst);
+    moving.picture();
+    moving.picture();
+    assert_eq!(moving.live.preset(), Preset::Balanced);
+}

@@ -1,0 +1,144 @@
+//! What a phone has written, fetched by cable: the app's log, its times and its recordings, and what it told the system's own log.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, bail};
+
+use super::{ANDROID, Phone};
+use crate::command;
+
+/// The Android app's folder that a cable reaches.
+const ANDROID_FILES: &str = "/sdcard/Android/data/org.example.shadowretargeting/files/.";
+/// What the app prints comes there by this name.
+const ANDROID_TAG: &str = "RustStdoutStderr";
+/// The log that the app writes as it runs.
+const LOG: &str = "log.txt";
+/// Lines of it that are shown at once: how far the device's test picture is off, and what ended or began.
+const SHOWN: [&str; 4] = ["test picture", "self-test", "preset fast", "Simplified"];
+
+/// Which iPhone, and which app on it, since each team has an identifier of its own.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct IphoneApp {
+    pub(crate) device: Option<String>,
+    pub(crate) bundle: Option<String>,
+}
+
+/// Fetches it into a folder of `target`.
+pub(super) fn fetch(root: &Path, phone: &Phone, app: &IphoneApp) -> Result<()> {
+    let folder = root.join("target/phone/log").join(phone.package);
+    if phone.package == ANDROID.package {
+        fetch_android(Path::new("adb"), &folder)
+    } else {
+        fetch_iphone(Path::new("xcrun"), &folder, app)
+    }
+}
+
+fn fetch_android(adb: &Path, folder: &Path) -> Result<()> {
+    fs::create_dir_all(folder)?;
+    command::run(Command::new(adb).arg("pull").arg(ANDROID_FILES).arg(folder))
+        .context("adb comes with the SDK's platform-tools, and the phone has to allow debugging")?;
+    let told = command::output(&adb.display().to_string(), &["logcat", "-d", "-s", ANDROID_TAG]);
+    fs::write(folder.join("logcat.txt"), told.unwrap_or_default())?;
+    show(folder)
+}
+
+fn fetch_iphone(xcrun: &Path, folder: &Path, app: &IphoneApp) -> Result<()> {
+    let Some(device) = &app.device else {
+        bail!("--device NAME: which iPhone? `xcrun devicectl list devices` names them");
+    };
+    fs::create_dir_all(folder)?;
+    let mut copy = Command::new(xcrun);
+    copy.args(["devicectl", "device", "copy", "from", "--device", device]);
+    copy.args(["--domain-type", "appDataContainer", "--domain-identifier"]);
+    copy.arg(app.bundle.as_deref().unwrap_or(super::ios::BUNDLE));
+    command::run(copy.args(["--source", "Documents", "--destination"]).arg(folder)).context(
+        "devicectl comes with Xcode 15; --bundle names the identifier that the app was signed with",
+    )?;
+    show(folder)
+}
+
+/// Says where all is, and the lines that one looks for first.
+fn show(folder: &Path) -> Result<()> {
+    let log: Option<PathBuf> = [folder.join(LOG), folder.join("Documents").join(LOG)]
+        .into_iter()
+        .find(|path| path.is_file());
+    let log =
+        log.with_context(|| format!("{}: no {LOG}: the app has drawn nothing yet", folder.display()))?;
+    println!("{}:", log.display());
+    let text = fs::read_to_string(&log)?;
+    for line in text
+        .lines()
+        .filter(|line| SHOWN.iter().any(|shown| line.contains(shown)))
+    {
+        println!("  {}", line.trim());
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A program that notes what it was asked for and does what `script` says.
+    fn stand_in(folder: &Path, script: &str) -> PathBuf {
+        let program = folder.join("program");
+        let note = format!("#!/bin/sh\necho \"$*\" >> {}/asked\n{script}\n", folder.display());
+        fs::write(&program, note).expect("a script");
+        command::run(Command::new("chmod").arg("+x").arg(&program)).expect("a program");
+        program
+    }
+
+    #[test]
+    fn the_log_is_fetched_by_one_command_or_it_is_said_what_is_missing() {
+        let folder = std::env::temp_dir().join(format!("xtask-log-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a folder");
+        let (to, log) = (folder.join("to"), "0.1 (\"test picture\", \"0.20 codes off\")");
+        let adb = stand_in(
+            &folder,
+            &format!("[ $1 = pull ] && echo '{log}' > $3/log.txt || echo told"),
+        );
+        fetch_android(&adb, &to).expect("a log");
+        let asked = fs::read_to_string(folder.join("asked")).expect("what was asked for");
+        let to_name = to.display();
+        assert_eq!(
+            asked,
+            format!("pull {ANDROID_FILES} {to_name}\nlogcat -d -s {ANDROID_TAG}\n")
+        );
+        assert_eq!(
+            fs::read_to_string(to.join("logcat.txt")).expect("a log"),
+            "told\n"
+        );
+        fs::remove_dir_all(&to).expect("a folder");
+
+        let app = IphoneApp {
+            device: Some("mine".to_owned()),
+            bundle: Some("org.me.toy".to_owned()),
+        };
+        let xcrun = stand_in(
+            &folder,
+            "while [ \"$1\" != --destination ]; do shift; done; mkdir $2/Documents; echo x > $2/Documents/log.txt",
+        );
+        fetch_iphone(&xcrun, &to, &app).expect("a log");
+        let asked = fs::read_to_string(folder.join("asked")).expect("what was asked for");
+        assert!(asked.contains("--device mine --domain-type appDataContainer --domain-identifier org.me.toy --source Documents"), "{asked}");
+        let error = fetch_iphone(&xcrun, &to, &IphoneApp::default())
+            .expect_err("which?")
+            .to_string();
+        assert!(error.contains("--device"), "{error}");
+        fs::remove_dir_all(&to).expect("a folder");
+
+        let nothing = stand_in(&folder, "true");
+        let error = fetch_android(&nothing, &to).expect_err("no log").to_string();
+        assert!(error.contains("no log.txt"), "{error}");
+        fs::remove_dir_all(folder).expect("a folder");
+    }
+
+    #[test]
+    fn the_folder_is_that_of_the_manifests_package() {
+        let manifest = include_str!("../../../app-android/AndroidManifest.xml");
+        let package = ANDROID_FILES.split('/').nth(4).expect("a package");
+        assert!(manifest.contains(&format!("package=\"{package}\"")), "{package}");
+    }
+}
