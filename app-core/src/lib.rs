@@ -63,11 +63,13 @@
 
 pub use app_pipeline::{Core, CoreError, governor, ledger, preset, profile, wgpu};
 pub use app_scene::glam;
-pub use app_scene::{camera_frame, card, grain, lens, scene, sharpness, things, toy};
+pub use app_scene::{camera_frame, card, grain, lens, scene, shadow_style, sharpness, things, toy};
 
 /// The one object that an app holds.
 pub mod core {
     pub use app_pipeline::core::{Canvas, Core, CoreError, WarmUp};
+    pub use app_pipeline::readback::FloatMap;
+    pub use app_pipeline::readback::layers::Layers;
 }
 
 /// The device, and textures that a platform lends on it.

@@ -10,6 +10,7 @@ pub mod geometry;
 pub mod grain;
 pub mod lens;
 pub mod scene;
+pub mod shadow_style;
 pub mod sharpness;
 pub mod things;
 pub mod toy;

@@ -20,6 +20,7 @@ use desk::lens::through_lens;
 use desk::output::write_png;
 use desk::stored::Stored;
 
+use super::fine::{write_exr, write_png_16};
 use super::folder::{Film, FilmFolder, FilmFrame, SESSION_FOLDER};
 use super::timeline::{FramePose, Moment};
 
@@ -76,12 +77,15 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     let preset = film.preset()?;
     let input = alignments.input(0, &frame, preset);
     let grain = Grain::of(capture.scene(), input.image.rgba(), &input.camera);
-    let input = input.with_grain(grain);
+    let input = input.with_grain(grain).with_shadow_style(film.shadow);
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), adapter))?;
     let scene = alignments.scene(capture.scene());
     let scene = alignments.changed_scene(&scene, 0).unwrap_or(scene);
     let toy = scene.toy.clone();
     core.set_scene(with_film(scene, &film, input.world_from_shown)?, preset)?;
+    if film.has_layers {
+        core.want_layers()?;
+    }
     let mut warnings = Warnings::default();
     let of_alignment = alignments
         .of(0)
@@ -98,8 +102,18 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
         let input = input.clone().with_shown_pose(pose_of(&toy, &frame.pose)?);
         let failed = || frame.file.clone();
         let report = core.frame(&input).with_context(failed)?;
-        let picture = core.read_picture().with_context(failed)?;
-        write_png(&folder.join(&frame.file), &through_lens(&capture, 0, picture)?)?;
+        if film.has_layers {
+            let (light, layers) = (core.read_light(), core.read_layers());
+            let path = folder.join(frame.layers_file());
+            write_exr(&path, &light.with_context(failed)?, &layers.with_context(failed)?)?;
+        }
+        let path = folder.join(&frame.file);
+        if film.bits > 8 {
+            write_png_16(&path, &core.read_light().with_context(failed)?)?;
+        } else {
+            let picture = core.read_picture().with_context(failed)?;
+            write_png(&path, &through_lens(&capture, 0, picture)?)?;
+        }
         warnings.say(report.warnings.iter().map(ToString::to_string))?;
         let outcome = if report.region.is_some() {
             RETARGETED
@@ -156,7 +170,7 @@ fn with_film(scene: Scene, film: &Film, world_from_shown: Option<glam::DMat4>) -
 pub fn missing<'a>(folder: &Path, film: &'a Film, range: &Range<u32>) -> Vec<&'a FilmFrame> {
     let frames = film.frames.iter().filter(|frame| range.contains(&frame.number));
     frames
-        .filter(|frame| !folder.join(&frame.file).exists())
+        .filter(|frame| !film.files_of(frame).iter().all(|file| folder.join(file).exists()))
         .collect()
 }
 
