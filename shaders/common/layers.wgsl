@@ -11,9 +11,9 @@ struct Layers {
   @location(0) clean_plate: vec4f,
   // The receiver with the shadow over that without it.
   @location(1) shadow_ratio: vec4f,
-  // Premultiplied: what over the receiver is the picture; alpha is what the toy covers of the pixel.
+  // Premultiplied: what over the receiver is the picture; alpha is the toy's part of the pixel.
   @location(2) toy: vec4f,
-  // The toy's coverage, how much of a light it hides, and whether there is a receiver.
+  // The toy's part of the pixel, how much of a light it hides, and whether there is a receiver.
   @location(3) masks: vec4f,
 }
 

@@ -46,8 +46,9 @@ pub struct FrameInput {
     /// The picture's noise, which what is made in it is given; none where it is clean. It is looked at with a new picture or pose;
     /// presets of the model alone go by it.
     pub grain: Option<Grain>,
-    /// Strength and softness of the shown shadow, to taste. Presets of the model alone go by it. A softness above that of the frames
-    /// before may make the work region larger, and the place is then learned anew.
+    /// Strength and softness of the shown shadow, to taste. Presets of the model alone go by it. Of a strength other than 1 the first
+    /// frame compiles a shader; a softness above that of the frames before may make the work region larger, and the place is then
+    /// learned anew.
     pub shadow_style: ShadowStyle,
 }
 

@@ -50,9 +50,8 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
     let Some(point) = region.receiver_point(at) else {
         return [lit.lerp(frame, seen), frame];
     };
-    let model_in = |ambient: f64, visibility: DVec4| {
-        shown.solution.receiver_model(region, point, ambient, visibility)
-    };
+    let model_in =
+        |ambient: f64, visibility: DVec4| shown.solution.receiver_model(region, point, ambient, visibility);
     let model = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
         model_in(coarse_at(ambient, region, at), visibility.at(texel))
     };

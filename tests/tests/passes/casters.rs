@@ -32,7 +32,10 @@ impl Stand {
         n_points: usize,
     ) -> Vec<Caster> {
         let light = &self.setup.lights[index];
-        let centre = self.anchor_from_world.inverse().transform_point3(self.physical_centre());
+        let centre = self
+            .anchor_from_world
+            .inverse()
+            .transform_point3(self.physical_centre());
         let in_anchor = self.points_of(&light.widened(centre, softness), n_points);
         self.casters(posed, |plane_from_anchor| {
             in_anchor

@@ -247,7 +247,8 @@ impl Model {
     ) -> Result<RegionLayers, GpuError> {
         let mut recorder = Recorder::new(gpu, None);
         let layers = self.drawn.by_pass.composite.layers(gpu);
-        self.frame_path(toy, frame, None).encode_layers(&mut recorder, layers);
+        self.frame_path(toy, frame, None)
+            .encode_layers(&mut recorder, layers);
         recorder.submit();
         let [clean_plate, shadow_ratio, toy, masks] =
             layers.each_ref().map(|layer| read_texture(gpu, layer.raw()));

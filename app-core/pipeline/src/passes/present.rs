@@ -84,9 +84,9 @@ fn draw(gpu: &Gpu, fragment: &'static str, format: TextureFormat) -> Draw {
 
 fn placement(region: Option<RegionOverlay<'_>>) -> Placement {
     region.map_or(Placement::zeroed(), |overlay| Placement {
-            origin_px: overlay.rect.origin_px.to_array(),
-            size_px: overlay.rect.size_px.to_array(),
-            effect: overlay.effect,
-            unused: 0.0,
-        })
+        origin_px: overlay.rect.origin_px.to_array(),
+        size_px: overlay.rect.size_px.to_array(),
+        effect: overlay.effect,
+        unused: 0.0,
+    })
 }

@@ -8,7 +8,8 @@ use crate::geometry::rect::PixelRect;
 
 /// Layers of a picture, all of its size, in linear light, by floats of 16 bits where anything is made.
 ///
-/// The toy over the product of clean plate and shadow ratio is the picture, but for its grain, which the picture alone has.
+/// The toy over the product of clean plate and shadow ratio is the picture, but for its grain, which the picture alone has, and for
+/// pixels at the outline of a toy that stands still, where the camera's own are shown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
     /// The picture without the toy and without its shadow, as far as that is known; alpha is 1.
@@ -17,7 +18,7 @@ pub struct Layers {
     pub shadow_ratio: FloatMap,
     /// The toy, its colours premultiplied by alpha, which is the part of the pixel that it covers.
     pub toy: FloatMap,
-    /// r the part of the pixel that the toy covers; g the part of a light that the toy hides, the most of all lights; b is 1 where a
+    /// r the same part; g the part of a light that the toy hides, the most of all lights; b is 1 where a
     /// receiver is; alpha is 1.
     pub masks: FloatMap,
 }

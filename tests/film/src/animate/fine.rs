@@ -7,12 +7,12 @@ use anyhow::Context;
 use app_core::core::{FloatMap, Layers};
 use app_scene::geometry::color::srgb_from_linear;
 use desk::output::write_whole;
-use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, IntegerBounds, Layer, LayerAttributes, WritableImage,
-    f16,
-};
-use exr::meta::attribute::{Chromaticities, Text};
 use exr::math::Vec2;
+use exr::meta::attribute::{Chromaticities, Text};
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, IntegerBounds, Layer, LayerAttributes,
+    WritableImage, f16,
+};
 use image::codecs::png::PngEncoder;
 use image::{ImageBuffer, Rgb};
 
@@ -24,7 +24,10 @@ const MOST_CODE: f32 = 65535.0;
 /// # Errors
 /// When its texels do not fit its size, or the system refuses.
 pub fn write_png_16(path: &Path, light: &FloatMap) -> anyhow::Result<()> {
-    let codes = light.texels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b].map(code_16));
+    let codes = light
+        .texels
+        .iter()
+        .flat_map(|[r, g, b, _]| [*r, *g, *b].map(code_16));
     let codes: ImageBuffer<Rgb<u16>, Vec<u16>> =
         ImageBuffer::from_raw(light.width, light.height, codes.collect())
             .context("a picture that is not of its size")?;
@@ -55,13 +58,13 @@ pub fn write_exr(path: &Path, light: &FloatMap, layers: &Layers) -> anyhow::Resu
         named("clean_plate.", ["R", "G", "B"], &layers.clean_plate),
         named("shadow_ratio.", ["R", "G", "B"], &layers.shadow_ratio),
         named("toy.", ["R", "G", "B", "A"], &layers.toy),
-        named("masks.", ["toy", "shadow", "receiver"], &layers.masks),
+        named("masks.", ["R", "G", "B"], &layers.masks),
     ];
     let channels = AnyChannels::sort(channels.into_iter().flatten().collect());
     let size = Vec2(light.width as usize, light.height as usize);
     let attributes = LayerAttributes {
         comments: Some(Text::from(
-            "linear light; toy is premultiplied; toy over (clean_plate * shadow_ratio) is the picture but for its grain",
+            "linear light; masks are of toy, shadow and receiver; toy is premultiplied; toy over (clean_plate * shadow_ratio) is the picture but for its grain",
         )),
         ..LayerAttributes::default()
     };
@@ -86,7 +89,10 @@ const REC_709: Chromaticities = Chromaticities {
 fn named<const N: usize>(layer: &str, names: [&str; N], map: &FloatMap) -> Vec<AnyChannel<FlatSamples>> {
     let channel = |(index, name): (usize, &str)| {
         let values = map.texels.iter().map(|texel| f16::from_f32(texel[index]));
-        AnyChannel::new(format!("{layer}{name}").as_str(), FlatSamples::F16(values.collect()))
+        AnyChannel::new(
+            format!("{layer}{name}").as_str(),
+            FlatSamples::F16(values.collect()),
+        )
     };
     names.into_iter().enumerate().map(channel).collect()
 }

@@ -262,7 +262,10 @@ impl FilmFolder {
         let mut film = film.clone();
         let mut bytes = serde_json::to_vec_pretty(&film)?;
         let as_read: Film = serde_json::from_slice(&bytes)?;
-        if let Some(before) = before.as_ref().filter(|before| !is_forced && before.has_pictures_of(&as_read)) {
+        if let Some(before) = before
+            .as_ref()
+            .filter(|before| !is_forced && before.has_pictures_of(&as_read))
+        {
             film.made_by.clone_from(&before.made_by);
             bytes = serde_json::to_vec_pretty(&film)?;
         }

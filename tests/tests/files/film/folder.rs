@@ -136,11 +136,14 @@ fn layers_are_files_of_their_frame() {
         ..plain.clone()
     };
     let write = |file: &str| fs::write(path.join(file), "").unwrap();
-    let missing_in = |film: &Film| missing(path, film, &(1..4)).iter().map(|frame| frame.number).collect();
+    let missing_in = |film: &Film| -> Vec<u32> {
+        let missing = missing(path, film, &(1..4));
+        missing.iter().map(|frame| frame.number).collect()
+    };
     begin(path, &layered, false).unwrap();
-    ["1.png", "1.exr", "2.png", "3.exr"].map(write);
-    assert_eq!(missing_in(&layered), Vec::from([2, 3]));
-    assert_eq!(missing_in(&plain), Vec::from([3]));
+    ["1.png", "1.exr", "2.png", "3.exr"].into_iter().for_each(write);
+    assert_eq!(missing_in(&layered), [2, 3]);
+    assert_eq!(missing_in(&plain), [3]);
     let refused = begin(path, &plain, false).unwrap_err();
     assert!(refused.to_string().contains("--force"), "{refused}");
     begin(path, &plain, true).unwrap();

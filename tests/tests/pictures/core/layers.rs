@@ -3,7 +3,8 @@
 use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::shadow_style::ShadowStyle;
-use app_pipeline::readback::FloatMap;
+use app_pipeline::core::inspect::Inspect;
+use app_pipeline::readback::{FloatMap, Map};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 
 use crate::core::bundled::{core, first_input, scene, whole};
@@ -30,7 +31,7 @@ fn light_is_the_picture_before_it_was_rounded() {
         core.frame(&input).unwrap();
         let (picture, light) = (core.read_picture().unwrap(), core.read_light().unwrap());
         let camera = input.image.rgba();
-        let (mut n_made, mut n_between, mut most) = (0, 0, 0.0_f64);
+        let (mut n_made, mut n_between, mut n_others, mut most) = (0, 0, 0, 0.0_f64);
         for (index, codes) in codes(&light).into_iter().enumerate() {
             for (channel, fine) in codes.into_iter().enumerate() {
                 let code = code_of(&picture, index, channel);
@@ -40,20 +41,32 @@ fn light_is_the_picture_before_it_was_rounded() {
                 }
                 n_made += 1;
                 n_between += u32::from((0.1..0.9).contains(&fine.fract()));
+                n_others += u32::from(fine.round() != code);
             }
         }
-        println!("{preset}: {n_made} made, {n_between} between codes, {most} codes off at most");
-        // Half a code is rounding, .14 of one a software driver's when it encodes.
-        assert!(most < 0.7, "{preset}: {most} codes");
-        assert!(5 * n_between > 3 * n_made && n_made > 10_000, "{preset}: {n_between} of {n_made}");
+        println!(
+            "{preset}: {n_made} made, {n_between} between codes, {n_others} round otherwise, {most} codes off at most"
+        );
+        // Half a code is rounding; a software driver decodes codes up to .34 of one off, which is taken out of the light alone, and encodes .14
+        // of one off: no larger share of codes then goes to a neighbour.
+        assert!(most < 1.0, "{preset}: {most} codes");
+        assert!(
+            3 * n_others < n_made,
+            "{preset}: {n_others} of {n_made} round otherwise"
+        );
+        assert!(
+            2 * n_between > n_made && n_made > 10_000,
+            "{preset}: {n_between} of {n_made}"
+        );
     }
 }
 
 #[test]
 fn what_passes_through_is_the_cameras_code_by_code() {
     let mut core = core();
-    let input = first_input();
-    core.set_scene(scene(), Preset::Balanced).unwrap();
+    let (scene, input) = whole();
+    let physical_pose = scene.physical_pose.clone();
+    core.set_scene(scene, Preset::Balanced).unwrap();
     let region = core.frame(&input).unwrap().region.unwrap();
     let light = core.read_light().unwrap();
     let camera = input.image.rgba();
@@ -71,8 +84,7 @@ fn what_passes_through_is_the_cameras_code_by_code() {
         n_outside += 1;
     }
     assert!(n_outside > 1000);
-    let at_rest = input.clone().with_shown_pose(scene().physical_pose);
-    core.frame(&at_rest).unwrap();
+    core.frame(&input.clone().with_shown_pose(physical_pose)).unwrap();
     let light = core.read_light().unwrap();
     for (index, codes) in codes(&light).into_iter().enumerate() {
         for (channel, fine) in codes.into_iter().enumerate() {
@@ -95,14 +107,25 @@ fn layers_are_laid_together_to_the_picture() {
                 ..ShadowStyle::TRUE
             };
             let input = input.clone().with_shadow_style(style(strength));
-            core.frame(&input).unwrap();
+            let region = core.frame(&input).unwrap().region.unwrap();
+            let validity = core.read_map(Map::Validity).unwrap().unwrap();
             let (light, layers) = (core.read_light().unwrap(), core.read_layers().unwrap());
             core.frame(&input.clone().with_shadow_style(style(0.0))).unwrap();
             let bare = core.read_light().unwrap();
-            let (mut most, mut most_bare, mut n_shadow) = (0.0_f64, 0.0_f64, 0);
+            let (mut most, mut most_bare, mut n_shadow, mut n_compared) = (0.0_f64, 0.0_f64, 0, 0);
             for index in 0..light.texels.len() {
                 let [clean, ratio, toy] =
                     [&layers.clean_plate, &layers.shadow_ratio, &layers.toy].map(|layer| layer.texels[index]);
+                // Where the camera shows the outline of the real toy, its pixel stays if that stands still.
+                let width = light.width as usize;
+                let at = glam::UVec2::new((index % width) as u32, (index / width) as u32);
+                let in_region = at.wrapping_sub(region.origin_px);
+                let is_in_region = in_region.cmplt(region.size_px).all();
+                let texel = (in_region.y.wrapping_mul(region.size_px.x)).wrapping_add(in_region.x);
+                if is_in_region && validity.texels[texel as usize][0] < 1.0 && toy[3] < 1.0 {
+                    continue;
+                }
+                n_compared += 1;
                 let code = |light: f32| f64::from(255.0 * srgb_from_linear(light.clamp(0.0, 1.0)));
                 for channel in 0..3 {
                     let laid = toy[channel] + (1.0 - toy[3]) * clean[channel] * ratio[channel];
@@ -117,10 +140,14 @@ fn layers_are_laid_together_to_the_picture() {
                 n_shadow += i32::from(masks[1] > 0.9 && ratio[1] < 0.9);
             }
             println!("{preset}, {strength}: {most} codes apart, bare {most_bare}, {n_shadow} in shadow");
-            // Half floats are some .06 of a code at most; where the toy mixes with what it stood before, the camera's pixel stays.
-            assert!(most < 1.0, "{preset}, {strength}: {most} codes");
+            // Half floats are .1 of a code; a driver's decoding, of .34 at most, is taken out of each layer by itself.
+            assert!(most < 0.5, "{preset}, {strength}: {most} codes");
             assert!(most_bare < 1.0, "{preset}, {strength}: {most_bare} codes");
             assert!(n_shadow > 100, "{n_shadow}");
+            assert!(
+                10 * n_compared > 9 * light.texels.len(),
+                "{n_compared} are compared"
+            );
         }
     }
 }

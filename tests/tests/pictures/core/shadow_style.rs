@@ -65,7 +65,10 @@ fn a_style_out_of_range_is_refused_by_name() {
         (f64::NAN, 1.0, "shadow_style.strength"),
         (1.0, 4.1, "shadow_style.softness: 4.1 is not from 0 to 4"),
     ] {
-        let refused = styled(&input, strength, softness).check().unwrap_err().to_string();
+        let refused = styled(&input, strength, softness)
+            .check()
+            .unwrap_err()
+            .to_string();
         assert!(refused.contains(field), "{refused}");
     }
 }
@@ -73,7 +76,10 @@ fn a_style_out_of_range_is_refused_by_name() {
 /// Codes of the pixels that show neither toy, by the session's coverage; the rest is 0.
 fn of_receiver(picture: &[u8], plate: &Image, is_shown: impl Fn(usize) -> bool) -> Vec<[f64; 3]> {
     assert_eq!(picture.len(), plate.rgba8.len());
-    let pixels = picture.chunks_exact(4).zip(plate.rgba8.chunks_exact(4)).enumerate();
+    let pixels = picture
+        .chunks_exact(4)
+        .zip(plate.rgba8.chunks_exact(4))
+        .enumerate();
     let shown = pixels.filter(|(index, _)| is_shown(*index));
     shown
         .map(|(_, (made, plate))| [0, 1, 2].map(|c| f64::from(made[c]) - f64::from(plate[c])))
@@ -111,7 +117,10 @@ fn without_strength_the_receiver_is_the_clean_plate() {
             f64::from(u32::try_from(far).unwrap()) / n,
         )
     };
-    let ([rms, far], [true_rms, _]) = (<[f64; 2]>::from(difference(0.0)), <[f64; 2]>::from(difference(1.0)));
+    let ([rms, far], [true_rms, _]) = (
+        <[f64; 2]>::from(difference(0.0)),
+        <[f64; 2]>::from(difference(1.0)),
+    );
     println!("rms {rms}, beyond 1 code {far}; with the true shadow {true_rms}");
     assert!(rms < 1.0 && far < 0.02, "{rms} codes, {far} are beyond one");
     assert!(true_rms > 5.0, "with a shadow it is {true_rms}");
@@ -142,9 +151,15 @@ fn a_softer_shadow_has_a_wider_penumbra_and_hides_as_much() {
     println!("penumbra {half} {once} {twice}, hidden {hidden_h} {hidden_1} {hidden_2}");
     assert!(real_1 == real_2, "the real shadow is as soft as it is");
     for (wider, narrower) in [(twice, once), (once, half)] {
-        assert!((1.6..2.4).contains(&(wider / narrower)), "{half}, {once}, {twice}");
+        assert!(
+            (1.6..2.4).contains(&(wider / narrower)),
+            "{half}, {once}, {twice}"
+        );
     }
     for hidden in [hidden_2, hidden_h] {
-        assert!((hidden / hidden_1 - 1.0).abs() < 0.03, "{hidden_h}, {hidden_1}, {hidden_2}");
+        assert!(
+            (hidden / hidden_1 - 1.0).abs() < 0.03,
+            "{hidden_h}, {hidden_1}, {hidden_2}"
+        );
     }
 }
