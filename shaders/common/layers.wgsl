@@ -31,14 +31,15 @@ fn most_hidden(at: vec2f) -> f32 {
   return max(max(most.x, most.y), max(most.z, most.w));
 }
 
-fn layered(position: vec4f, n_draws: u32) -> Layers {
+// The layers in their order: a matrix, since structs are no values in fragment shaders.
+fn layered(position: vec4f, n_draws: u32) -> mat4x4f {
   let texel = vec2i(position.xy);
   let f = frame_at(texel);
   let evident = marks_at(texel);
   let is_receiver = is_hit(receiver_point(position.xy));
   let masks = vec4f(0.0, 0.0, select(0.0, 1.0, is_receiver), 1.0);
   // A thing before the toy is a part of the clean plate.
-  if is_before_toy(evident) { return Layers(vec4f(f, 1.0), vec4f(1.0), vec4f(0.0), masks); }
+  if is_before_toy(evident) { return mat4x4f(vec4f(f, 1.0), vec4f(1.0), vec4f(0.0), masks); }
   let in_box = box_texel(texel);
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
   var change = vec4f(0.0);
@@ -49,5 +50,5 @@ fn layered(position: vec4f, n_draws: u32) -> Layers {
   let over = composed(position, n_draws).rgb - (1.0 - part) * clean * ratio;
   let toy = select(vec4f(0.0), vec4f(max(over, vec3f(0.0)), part), part > 0.0);
   let shadow = select(0.0, most_hidden(position.xy), is_receiver);
-  return Layers(vec4f(clean, 1.0), vec4f(ratio, 1.0), toy, vec4f(part, shadow, masks.ba));
+  return mat4x4f(vec4f(clean, 1.0), vec4f(ratio, 1.0), toy, vec4f(part, shadow, masks.ba));
 }

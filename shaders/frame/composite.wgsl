@@ -281,10 +281,12 @@ fn fs_drawn_four_times(@builtin(position) position: vec4f) -> @location(0) vec4f
 // The layers of a picture, whether the toy was drawn once or four times.
 @fragment
 fn fs_layers_once(@builtin(position) position: vec4f) -> Layers {
-  return layered(position, 1u);
+  let layers = layered(position, 1u);
+  return Layers(layers[0], layers[1], layers[2], layers[3]);
 }
 
 @fragment
 fn fs_layers_four_times(@builtin(position) position: vec4f) -> Layers {
-  return layered(position, 4u);
+  let layers = layered(position, 4u);
+  return Layers(layers[0], layers[1], layers[2], layers[3]);
 }
