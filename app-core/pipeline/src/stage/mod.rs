@@ -360,17 +360,11 @@ impl Stage {
         report: &mut FrameReport,
     ) {
         let gpu = recorder.gpu;
-        // A refused frame, after which nothing is known, may not have brought its pose to the device.
-        let is_pose_known = self.state.is_some() && self.toy.shown.is(&self.posed);
-        let is_style_new = self.is_shadow_style_new();
-        let is_pose_new = self.is_every_pose_new || !is_pose_known || is_style_new;
-        if is_pose_new {
-            self.toy.shown.write(gpu, &self.posed);
-        }
+        let is_pose_new = self.take_shown_pose(gpu);
         recorder.stages.begin("reuse");
         self.take_things(gpu, input);
         let (change, keeps_sharpness) = self.update_method(gpu, input, footprint);
-        self.style_shadow(gpu, is_style_new, change);
+        self.style_shadow(gpu, change);
         report.warnings.extend(self.cost_warning.clone());
         recorder.stages.begin("encode");
         let Some(state) = &mut self.state else {
@@ -445,6 +439,18 @@ impl Stage {
         if !self.shows_toy(&footprint.view) {
             report.warnings.push(Warning::ToyOutOfPicture);
         }
+    }
+
+    /// Brings the shown pose to the device, unless it is there and its shadow is in the frame's style; returns whether it is to be drawn.
+    fn take_shown_pose(&mut self, gpu: &Gpu) -> bool {
+        // A refused frame, after which nothing is known, may not have brought its pose to the device.
+        let is_known =
+            self.state.is_some() && self.toy.shown.is(&self.posed) && self.drawn_style == self.shadow_style;
+        let is_new = self.is_every_pose_new || !is_known;
+        if is_new {
+            self.toy.shown.write(gpu, &self.posed);
+        }
+        is_new
     }
 
     /// Takes the things of a picture, unless they are there already; the baseline knows of none.

@@ -35,18 +35,12 @@ impl Stage {
         self.lights_times(widening(self.shadow_style))
     }
 
-    /// Hands the style to what draws by it; returns whether shadows are to be drawn anew for it.
-    pub(super) fn is_shadow_style_new(&mut self) -> bool {
-        let is_new = self.shadow_style != self.drawn_style;
-        self.drawn_style = self.shadow_style;
-        is_new
-    }
-
     /// Makes the method draw shadows in the style of the frame, where that or the view has changed.
-    pub(super) fn style_shadow(&mut self, gpu: &Gpu, is_new: bool, change: Change) {
-        if !is_new && change < Change::View {
+    pub(super) fn style_shadow(&mut self, gpu: &Gpu, change: Change) {
+        if self.drawn_style == self.shadow_style && change < Change::View {
             return;
         }
+        self.drawn_style = self.shadow_style;
         let style = self.shadow_style;
         let Some(Method::Model(model)) = self.state.as_ref().map(|state| &state.method) else {
             return;

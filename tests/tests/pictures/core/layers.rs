@@ -77,9 +77,9 @@ fn what_passes_through_is_the_cameras_code_by_code() {
     });
     let mut n_outside = 0;
     for (index, texel) in outside {
-        for channel in 0..3 {
-            let code = camera.rgba8[4 * index as usize + channel];
-            assert_eq!(texel[channel], linear_from_srgb(f32::from(code) / 255.0));
+        let codes = &camera.rgba8[4 * index as usize..];
+        for (light, code) in texel.iter().zip(codes).take(3) {
+            assert_eq!(*light, linear_from_srgb(f32::from(*code) / 255.0));
         }
         n_outside += 1;
     }
@@ -118,7 +118,8 @@ fn layers_are_laid_together_to_the_picture() {
                     [&layers.clean_plate, &layers.shadow_ratio, &layers.toy].map(|layer| layer.texels[index]);
                 // Where the camera shows the outline of the real toy, its pixel stays if that stands still.
                 let width = light.width as usize;
-                let at = glam::UVec2::new((index % width) as u32, (index / width) as u32);
+                let at = [index % width, index / width].map(|side| u32::try_from(side).unwrap());
+                let at = glam::UVec2::from(at);
                 let in_region = at.wrapping_sub(region.origin_px);
                 let is_in_region = in_region.cmplt(region.size_px).all();
                 let texel = (in_region.y.wrapping_mul(region.size_px.x)).wrapping_add(in_region.x);
