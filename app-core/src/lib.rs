@@ -56,6 +56,9 @@
 //! An app that has a device of its own brings it with [`Core::on_device`]; one that shows a window uses
 //! [`Core::on_surface`] and [`Core::present`]. [`Core::warm_up`] compiles on another thread, or in slices.
 //!
+//! [`shadow_style`] makes the shown shadow stronger or weaker, harder or softer than it is. Programs that work on a picture further read it
+//! finer than codes with [`Core::read_light`], and in layers, from the clean plate to the toy with its alpha, with [`Core::read_layers`].
+//!
 //! How it works, and in which words, is told in the documents of `app-core/doc`: the [architecture], the [spaces] and units,
 //! the [passes] and the [glossary]; the format of sessions stands in [`session`], that of recordings in [`recording`].
 //! `app-core/examples` has programs on a device of their own, with a loop over poses, and with a scene made of values alone.
@@ -63,11 +66,13 @@
 
 pub use app_pipeline::{Core, CoreError, governor, ledger, preset, profile, wgpu};
 pub use app_scene::glam;
-pub use app_scene::{camera_frame, card, grain, lens, scene, sharpness, things, toy};
+pub use app_scene::{camera_frame, card, grain, lens, scene, shadow_style, sharpness, things, toy};
 
 /// The one object that an app holds.
 pub mod core {
     pub use app_pipeline::core::{Canvas, Core, CoreError, WarmUp, as_shown};
+    pub use app_pipeline::readback::FloatMap;
+    pub use app_pipeline::readback::layers::Layers;
 }
 
 /// The device, and textures that a platform lends on it.

@@ -14,12 +14,12 @@
 //#import common/pixel
 //#import common/cells
 //#import common/channels
-//#import common/covered
+//#import common/drawn_toy
 //#import common/fullscreen
+//#import common/layers
 //#import common/borders
 //#import common/made_grain
 //#import common/marks
-//#import common/soft_toy
 
 struct Drawing {
   // Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
@@ -31,7 +31,13 @@ struct Drawing {
   plate_noise: vec2f,
   beside: f32,
   channels: f32,
+  // What the shown shadow takes of the light, over what it truly takes.
+  strength: f32,
+  unused: f32,
 }
+
+// Whether the shown shadow is stronger or weaker than the true one.
+override HAS_STRENGTH: bool = false;
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var physical_ambient: texture_2d<f32>;
@@ -101,11 +107,25 @@ fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
   return select(model, mix(model, vec3f(1.0), clipped), plate > vec3f(BRIGHTEST_USABLE));
 }
 
+// The model of a receiver with so many times the shadow that `model` has, as far as there is light.
+fn strengthened(point: ReceiverPoint, model: vec3f, strength: f32) -> vec3f {
+  if strength == 1.0 { return model; }
+  let open = receiver_model(point, 1.0, vec4f(1.0));
+  return max(open + strength * (model - open), vec3f(0.0));
+}
+
 // The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the
 // weight of
 // the camera pixel where toy and receiver mix: 1 where the change is little. `f` is the frame there, `evident` are its marks;
-// `has_moved` is whether the real toy beside it has.
-fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: ptr<function, vec4f>) -> vec3f {
+// `has_moved` is whether the real toy beside it has. `strength` is that of the shadow.
+fn receiver(
+  position: vec4f,
+  f: vec3f,
+  evident: vec4f,
+  has_moved: bool,
+  strength: f32,
+  change: ptr<function, vec4f>,
+) -> vec3f {
   let texel = vec2u(position.xy);
   let at = position.xy;
   let uv = at / globals.region_size_px;
@@ -114,7 +134,7 @@ fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: 
   let a_before = textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r;
   let a_after = textureSampleLevel(ambient, linear_sampler, uv, 0.0).r;
   // Where no light changes, what follows comes to the frame: most pixels are done here.
-  let is_same = all(v_before == v_after) && a_before == a_after;
+  let is_same = !HAS_STRENGTH && all(v_before == v_after) && a_before == a_after;
   if is_same && evident.r == 1.0 && evident.b > 0.0 && drawing.has_detail == 0u {
     *change = vec4f(0.0);
     return f;
@@ -137,12 +157,17 @@ fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: 
     if HAS_GRAIN { missing = missing_beside(color, evident.r, f, b, fit.gain.rgb); }
     return color;
   }
-  let models = receiver_models(point, vec2f(a_before, a_after), v_before, v_after);
+  var models = receiver_models(point, vec2f(a_before, a_after), v_before, v_after);
+  var a_shown = a_after;
+  if HAS_STRENGTH {
+    models[1] = strengthened(point, models[1], strength);
+    a_shown = max(1.0 + strength * (a_after - 1.0), 0.0);
+  }
   let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
   let before = shown_model(b.rgb, clipped, models[0]);
   let after = shown_model(b.rgb, clipped, models[1]);
   // How strong a shadow of the ambient light is stays open where it is all that is known.
-  let most = select(largest(abs(after - before)), abs(a_after - a_before), has_no_light());
+  let most = select(largest(abs(after - before)), abs(a_shown - a_before), has_no_light());
   let pooled = cell_at(point).rgb;
   let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
   let is_outlier = outlier(pooled);
@@ -165,43 +190,6 @@ fn receiver(position: vec4f, f: vec3f, evident: vec4f, has_moved: bool, change: 
   let color = max(mix(f, mix(made, kept, keep), inside), vec3f(0.0));
   if HAS_GRAIN { missing = missing_beside(color, 1.0 - inside * (1.0 - keep), f, b, fit.gain.rgb * (after + residual)); }
   return color;
-}
-
-fn drawn_toy(texel: vec2i, n_draws: u32) -> vec4f {
-  let first = textureLoad(toy_0, texel, 0);
-  if n_draws == 1u { return first; }
-  return (first + textureLoad(toy_1, texel, 0) + textureLoad(toy_2, texel, 0) + textureLoad(toy_3, texel, 0)) / 4.0;
-}
-
-// Part of a pixel that the toy covers.
-fn coverage(texel: vec2i) -> f32 {
-  let n_covered = soft_texel(covered, texel).r / COVERED_POSITION;
-  // Whole numbers, but for means of them.
-  return select(round(n_covered), min(n_covered, f32(N_POSITIONS)), globals.soft_side > 0.0) / f32(N_POSITIONS);
-}
-
-// The toy's colour in a pixel: that of its draws, or, where they miss the little that is in it, that beside it.
-fn toy_color(texel: vec2i, n_draws: u32) -> vec4f {
-  var own = drawn_toy(texel, n_draws);
-  if own.a > 0.0 && is_soft() { own = softened_toy(texel, own, n_draws); }
-  if own.a > 0.0 { return vec4f(own.rgb / own.a, 1.0); }
-  var sum = vec4f(0.0);
-  for (var y = -1; y <= 1; y++) {
-    for (var x = -1; x <= 1; x++) {
-      sum += drawn_toy(clamped_to_box(texel + vec2i(x, y)), n_draws);
-    }
-  }
-  if sum.a == 0.0 && is_soft() { sum = toy_color_beyond(texel, n_draws); }
-  if sum.a == 0.0 { return vec4f(0.0); }
-  return vec4f(sum.rgb / sum.a, 1.0);
-}
-
-// The toy over what is behind it: premultiplied colour, and its coverage.
-fn toy_layer(texel: vec2i, n_draws: u32) -> vec4f {
-  if !is_in_toy_box(texel) { return vec4f(0.0); }
-  let part = coverage(texel);
-  if part == 0.0 { return vec4f(0.0); }
-  return part * toy_color(texel, n_draws);
 }
 
 // How far a texel of the toy box shows what the camera did not see there, 0 to 1.
@@ -232,7 +220,7 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   }
   var change = vec4f(0.0);
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
-  let laid = (1.0 - toy.a) * receiver(position, frame_color, evident, has_moved, &change) + toy.rgb;
+  let laid = (1.0 - toy.a) * receiver(position, frame_color, evident, has_moved, drawing.strength, &change) + toy.rgb;
   // So it is wherever the receiver alone shows: of most pixels nobody asks whether the toy is still.
   if change.a == 0.0 { return vec4f(grained_toy(laid, vec2i(texel), toy.a), 1.0); }
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
@@ -273,7 +261,7 @@ fn fs_open(@builtin(position) position: vec4f) -> @location(0) vec4f {
 @fragment
 fn fs_beside(@builtin(position) position: vec4f) -> @location(0) vec4f {
   var change = vec4f(0.0);
-  let color = receiver(position, frame_at(vec2i(position.xy)), FAR_MARKS, false, &change);
+  let color = receiver(position, frame_at(vec2i(position.xy)), FAR_MARKS, false, drawing.strength, &change);
   if !HAS_GRAIN { return vec4f(color, 1.0); }
   return vec4f(grained(color, vec2i(position.xy), missing), 1.0);
 }
@@ -288,4 +276,17 @@ fn fs_drawn_once(@builtin(position) position: vec4f) -> @location(0) vec4f {
 @fragment
 fn fs_drawn_four_times(@builtin(position) position: vec4f) -> @location(0) vec4f {
   return composed(position, 4u);
+}
+
+// The layers of a picture, whether the toy was drawn once or four times.
+@fragment
+fn fs_layers_once(@builtin(position) position: vec4f) -> Layers {
+  let layers = layered(position, 1u);
+  return Layers(layers[0], layers[1], layers[2], layers[3]);
+}
+
+@fragment
+fn fs_layers_four_times(@builtin(position) position: vec4f) -> Layers {
+  let layers = layered(position, 4u);
+  return Layers(layers[0], layers[1], layers[2], layers[3]);
 }

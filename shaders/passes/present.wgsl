@@ -1,6 +1,6 @@
 // The camera image with the work region laid over it, code for code, or as much of it as is shown.
 //
-// Reads: frame_codes and region_codes, 8 bits. Writes: codes, opaque.
+// Reads: frame_codes and region_codes, 8 bits; or both as light. Writes: the same, opaque.
 
 //#import common/srgb
 //#import common/fullscreen
@@ -30,4 +30,14 @@ fn fs_place(@builtin(position) at: vec4f) -> @location(0) vec4f {
     return vec4f(srgb_from_linear(light), 1.0);
   }
   return vec4f(textureLoad(frame_codes, texel, 0).rgb, 1.0);
+}
+
+// The same of light.
+@fragment
+fn fs_light(@builtin(position) at: vec4f) -> @location(0) vec4f {
+  let texel = vec2u(at.xy);
+  let frame = textureLoad(frame_codes, texel, 0).rgb;
+  let in_region = texel - placement.origin_px;
+  if any(in_region >= placement.size_px) { return vec4f(frame, 1.0); }
+  return vec4f(mix(frame, textureLoad(region_codes, in_region, 0).rgb, placement.effect), 1.0);
 }

@@ -8,6 +8,7 @@ use crate::camera_frame::CameraImage;
 use crate::grain::Grain;
 use crate::scene::check;
 use crate::scene::{Camera, InputError, Light, LightEstimate, Pose, Scene};
+use crate::shadow_style::ShadowStyle;
 use crate::sharpness::Sharpness;
 use crate::things::Things;
 
@@ -45,6 +46,10 @@ pub struct FrameInput {
     /// The picture's noise, which what is made in it is given; none where it is clean. It is looked at with a new picture or pose;
     /// presets of the model alone go by it.
     pub grain: Option<Grain>,
+    /// Strength and softness of the shown shadow, to taste. Presets of the model alone go by it. Of a strength other than 1 the first
+    /// frame compiles a shader; a softness above that of the frames before may make the work region larger, and the place is then
+    /// learned anew.
+    pub shadow_style: ShadowStyle,
 }
 
 impl FrameInput {
@@ -64,6 +69,7 @@ impl FrameInput {
             world_from_shown: None,
             effect: 1.0,
             grain: None,
+            shadow_style: ShadowStyle::TRUE,
         }
     }
 
@@ -151,6 +157,13 @@ impl FrameInput {
         self
     }
 
+    /// Sets strength and softness of the shown shadow.
+    #[must_use]
+    pub fn with_shadow_style(mut self, style: ShadowStyle) -> Self {
+        self.shadow_style = style;
+        self
+    }
+
     /// The lights that are listed for it: its own, or those of the scene.
     #[must_use]
     pub fn lights_in(&self, scene: &Scene) -> Arc<[Light]> {
@@ -174,6 +187,7 @@ impl FrameInput {
             light.check(&format!("lights[{index}]"))?;
         }
         self.sharpness.check("sharpness")?;
+        self.shadow_style.check("shadow_style")?;
         if let Some(things) = &self.things {
             let [width_px, height_px] = things.size_px().to_array();
             InputError::at("things", check::picture_size(width_px, height_px))?;

@@ -11,6 +11,7 @@ pub mod grain;
 pub mod lens;
 pub mod picture;
 pub mod scene;
+pub mod shadow_style;
 pub mod sharpness;
 pub mod things;
 pub mod toy;

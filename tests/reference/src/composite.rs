@@ -1,6 +1,6 @@
 //! CPU reference of `composite.wgsl`: the picture where it shows the receiver.
 
-use glam::{DVec3, DVec4, UVec2};
+use glam::{DVec3, DVec4, FloatExt, UVec2};
 
 use super::grid::PlaneGrid;
 use super::model::{BRIGHTEST_USABLE, Pictures, ReceiverPoint, Region, Solution, centre_px, coarse_at};
@@ -35,6 +35,8 @@ pub struct Shown {
     pub residuals: Vec<Raster<DVec3>>,
     /// Where their cells lie.
     pub grids: Vec<PlaneGrid>,
+    /// What the shadow takes of the light, over what it truly takes.
+    pub strength: f64,
 }
 
 /// Linear colour of the receiver at `texel` of the region, where nothing is as the camera saw it, and where all is: then a
@@ -48,19 +50,20 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
     let Some(point) = region.receiver_point(at) else {
         return [lit.lerp(frame, seen), frame];
     };
+    let model_in =
+        |ambient: f64, visibility: DVec4| shown.solution.receiver_model(region, point, ambient, visibility);
     let model = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
-        let ambient = coarse_at(ambient, region, at);
-        let model = shown
-            .solution
-            .receiver_model(region, point, ambient, visibility.at(texel));
-        shown_model(&shown.solution, point, model, plate)
+        model_in(coarse_at(ambient, region, at), visibility.at(texel))
     };
     let before = model(&pictures.ambient, &pictures.visibility);
-    let after = model(&shown.ambient, &shown.visibility);
+    let open = model_in(1.0, DVec4::ONE);
+    let after = open.lerp(model(&shown.ambient, &shown.visibility), shown.strength);
+    let [before, after] =
+        [before, after.max(DVec3::ZERO)].map(|model| shown_model(&shown.solution, point, model, plate));
     let change = if shown.solution.intensities.is_empty() {
         // How strong the shadow is stays open.
         let ambient = [&pictures.ambient, &shown.ambient].map(|map| coarse_at(map, region, at));
-        (ambient[1] - ambient[0]).abs()
+        (1.0_f64.lerp(ambient[1], shown.strength).max(0.0) - ambient[0]).abs()
     } else {
         (after - before).abs().max_element()
     };

@@ -1,5 +1,6 @@
 //! The toy before the lights: what casts shadows, and from which points.
 
+use app_core::scene::Light;
 use app_core::toy::PosedMesh;
 use app_scene::geometry::disc::ambient_directions;
 use glam::{DMat4, DVec3, DVec4};
@@ -10,14 +11,32 @@ use crate::stand::Stand;
 impl Stand {
     /// Points of a light, in anchor space.
     pub(crate) fn light_points(&self, index: usize, n_points: usize) -> Vec<DVec4> {
-        let light = &self.setup.lights[index];
+        self.points_of(&self.setup.lights[index], n_points)
+    }
+
+    fn points_of(&self, light: &Light, n_points: usize) -> Vec<DVec4> {
         let points = light.points_in(&self.anchor_from_world, self.physical_centre(), n_points);
         points.iter().map(|point| point.as_dvec4()).collect()
     }
 
     /// A posed toy under points over light `index`, as many as are planned, for each receiver.
     pub(crate) fn light_casters(&self, posed: &PosedMesh, index: usize, n_points: usize) -> Vec<Caster> {
-        let in_anchor = self.light_points(index, n_points);
+        self.softened_casters(posed, (index, 1.0), n_points)
+    }
+
+    /// The same where the light is taken for so many times as wide.
+    pub(crate) fn softened_casters(
+        &self,
+        posed: &PosedMesh,
+        (index, softness): (usize, f64),
+        n_points: usize,
+    ) -> Vec<Caster> {
+        let light = &self.setup.lights[index];
+        let centre = self
+            .anchor_from_world
+            .inverse()
+            .transform_point3(self.physical_centre());
+        let in_anchor = self.points_of(&light.widened(centre, softness), n_points);
         self.casters(posed, |plane_from_anchor| {
             in_anchor
                 .iter()

@@ -1,5 +1,6 @@
 //! `composite` where it shows the receiver, in codes of the finished picture.
 
+use app_core::shadow_style::ShadowStyle;
 use app_core::toy::PosedMesh;
 use app_pipeline::geometry::rect::PixelRect;
 use glam::{DVec2, DVec4, UVec2};
@@ -7,9 +8,11 @@ use reference::composite::{Shown, inside_border, receiver_color};
 use reference::model::centre_px;
 use reference::raster::{Raster, texels_of};
 
+use crate::device::Device;
 use crate::errors::Errors;
-use crate::photo::unrounded_code;
+use crate::photo::{photograph, unrounded_code};
 use crate::run::{Run, runs};
+use crate::setups::SETUPS;
 use crate::stand::Stand;
 
 /// Whether the toy in a pose is, or may by rounding be, on any of the samples of a pixel of `rect`.
@@ -30,6 +33,19 @@ fn receiver_in_codes() {
     runs().iter().for_each(check_receiver);
 }
 
+/// Shadows of half and of twice the strength, one of them softer than it is.
+#[test]
+fn styled_receiver_in_codes() {
+    let decoded = Device::shared().decoded();
+    for (strength, softness) in [(0.5, 1.0), (2.0, 2.0), (0.0, 0.0)] {
+        let style = ShadowStyle { strength, softness };
+        let stand = Stand::new(SETUPS[0]);
+        let pictures = photograph(&stand);
+        let run = Run::styled(style, stand, pictures, &decoded).unwrap();
+        check_receiver(&run);
+    }
+}
+
 /// Compares the picture with the reference where it shows the receiver.
 pub(crate) fn check_receiver(run: &Run) {
     let shown = Shown {
@@ -38,6 +54,7 @@ pub(crate) fn check_receiver(run: &Run) {
         solution: run.solution.clone(),
         residuals: run.residuals.iter().map(|map| map.map(DVec4::truncate)).collect(),
         grids: run.grids.clone(),
+        strength: run.shadow_style.strength,
     };
     let hidden = shows_toy(&run.stand, &run.stand.shown, &run.plan.region);
     let pairs = texels_of(run.region.size_px)

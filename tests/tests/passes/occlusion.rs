@@ -1,8 +1,8 @@
 //! `occlusion`: flattened meshes against rays.
 
 use app_core::preset::Preset;
+use app_core::shadow_style::ShadowStyle;
 use app_core::sharpness::{Sharpness, Spread};
-use app_core::toy::PosedMesh;
 use glam::DVec4;
 use reference::occlusion::Caster;
 use reference::raster::Raster;
@@ -12,7 +12,7 @@ use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::photograph;
 use crate::run::{Run, runs};
-use crate::setups::{FOUR_LIGHTS, Setup};
+use crate::setups::{FOUR_LIGHTS, SETUPS, Setup};
 use crate::stand::Stand;
 
 /// Share of a region's texels that may differ by more than half a step of one light point.
@@ -60,17 +60,18 @@ fn compare_with(
 fn compare_lights(run: &Run) {
     let stand = &run.stand;
     for i in 0..run.plan.n_lights {
-        let casters = |posed: &PosedMesh| stand.light_casters(posed, i, run.plan.n_light_points[i]);
+        let n_points = run.plan.n_light_points[i];
+        let softness = run.shadow_style.softness;
         let channel = |map: &Raster<DVec4>| map.map(|texel| texel[i]);
         compare(
             run,
-            &casters(&stand.physical),
+            &stand.light_casters(&stand.physical, i, n_points),
             &channel(&run.pictures.visibility),
             ("physical light", MAX_LIGHT_SHARE, LIGHTS_STORED),
         );
         compare(
             run,
-            &casters(&stand.shown),
+            &stand.softened_casters(&stand.shown, (i, softness), n_points),
             &channel(&run.shown_visibility),
             ("shown light", MAX_LIGHT_SHARE, LIGHTS_STORED),
         );
@@ -80,6 +81,20 @@ fn compare_lights(run: &Run) {
 #[test]
 fn visibility_of_each_light() {
     runs().iter().for_each(compare_lights);
+}
+
+/// The shown shadow is that of lights of another width, the real one that of the lights themselves.
+#[test]
+fn visibility_of_softened_lights() {
+    for softness in [0.0, 0.4, 3.0] {
+        let style = ShadowStyle {
+            softness,
+            ..ShadowStyle::TRUE
+        };
+        let stand = Stand::new(SETUPS[0]);
+        let pictures = photograph(&stand);
+        compare_lights(&Run::styled(style, stand, pictures, &Device::shared().decoded()).unwrap());
+    }
 }
 
 /// In all channels of one map.

@@ -6,6 +6,7 @@ use app_core::core::CoreError;
 use app_core::frame::{FrameInput, Warning};
 use app_core::preset::Preset;
 use app_core::scene::{Image, Plate, Scene};
+use app_core::shadow_style::ShadowStyle;
 use app_core::sharpness::Sharpness;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::geometry::rect::PixelRect;
@@ -28,6 +29,7 @@ use crate::stand::Stand;
 /// What the device made of a setup.
 pub(crate) struct Run {
     pub(crate) stand: Stand,
+    pub(crate) shadow_style: ShadowStyle,
     pub(crate) plan: Plan,
     pub(crate) region: Region,
     /// What the passes saw, as they saw it.
@@ -97,8 +99,29 @@ impl Run {
         [plate, frame]: [Arc<Image>; 2],
         decoded: &[f64],
     ) -> Result<Self, CoreError> {
+        let input = input(&stand, &frame).with_sharpness(sharpness);
+        Self::made((preset, &input), stand, [plate, frame], decoded)
+    }
+
+    /// The same with a shadow to taste.
+    pub(crate) fn styled(
+        style: ShadowStyle,
+        stand: Stand,
+        [plate, frame]: [Arc<Image>; 2],
+        decoded: &[f64],
+    ) -> Result<Self, CoreError> {
+        let input = input(&stand, &frame).with_shadow_style(style);
+        Self::made((Preset::Balanced, &input), stand, [plate, frame], decoded)
+    }
+
+    fn made(
+        (preset, input): (Preset, &FrameInput),
+        stand: Stand,
+        [plate, frame]: [Arc<Image>; 2],
+        decoded: &[f64],
+    ) -> Result<Self, CoreError> {
         let mut core = core_on(scene(&stand, &plate), preset)?;
-        let report = core.frame(&input(&stand, &frame).with_sharpness(sharpness))?;
+        let report = core.frame(input)?;
         let expected = match stand.setup.lights {
             [] => vec![Warning::NoLight { has_ambient: true }],
             _ => Vec::new(),
@@ -144,6 +167,7 @@ impl Run {
             tints: core.read_tints()?.expect("the toy moves"),
             direct_fraction: map(Map::DirectFraction)?.map(DVec4::truncate),
             picture: Raster::from_fn(size, |texel| texel_of(&picture, origin + texel)),
+            shadow_style: input.shadow_style,
             stand,
             plan,
         })

@@ -3,6 +3,7 @@
 mod error;
 mod fit_warnings;
 pub mod inspect;
+mod layers;
 mod preview;
 mod shaders;
 mod warm_up;

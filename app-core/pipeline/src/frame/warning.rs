@@ -181,12 +181,7 @@ impl fmt::Display for Warning {
                 f,
                 "the real shadow is seen on {n_pixels:.0} pixels alone: the strength of the new one is uncertain; show more of it, from higher up or from closer by"
             ),
-            Self::BounceAtLimit { is_black: true } => f.write_str(
-                "the table beside the toy is darker than beside a black one: a tone curve or HDR of the camera, or a light that is not listed; the new shadow may be too dark",
-            ),
-            Self::BounceAtLimit { is_black: false } => f.write_str(
-                "the table beside the toy is brighter than beside a white one: a bright thing nearby, or gloss; the new shadow may be too light",
-            ),
+            Self::BounceAtLimit { is_black } => f.write_str(bounce_at_limit(*is_black)),
             Self::LightsUnderConstrained { lights } => write!(
                 f,
                 "the real shadow does not tell the strength of {} by itself: lights are taken to be alike",
@@ -232,6 +227,14 @@ impl fmt::Display for Warning {
 impl Serialize for Warning {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
+    }
+}
+
+fn bounce_at_limit(is_black: bool) -> &'static str {
+    if is_black {
+        "the table beside the toy is darker than beside a black one: a tone curve or HDR of the camera, or a light that is not listed; the new shadow may be too dark"
+    } else {
+        "the table beside the toy is brighter than beside a white one: a bright thing nearby, or gloss; the new shadow may be too light"
     }
 }
 

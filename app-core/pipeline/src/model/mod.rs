@@ -11,9 +11,10 @@ pub mod state;
 
 use glam::Vec4;
 
-use crate::gpu::context::Gpu;
+use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::pass_run::PassGroup;
 use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::Texture;
 use crate::model::capture::{CapturePath, CaptureTargets};
 use crate::model::frame::region_parts::{Marks, RegionParts};
 use crate::model::frame::{FramePath, FrameTargets};
@@ -22,12 +23,13 @@ use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::model::state::SceneState;
 use crate::passes::globals::Globals;
-use crate::passes::pictures::{Picture, Pictures};
+use crate::passes::pictures::{Frame, Picture, PictureGrain, Pictures};
 use crate::passes::plate;
 use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::{Change, FrameDelta};
-use crate::readback::FloatMap;
 use crate::readback::inject::InjectedVisibility;
+use crate::readback::layers::RegionLayers;
+use crate::readback::{FloatMap, read_texture};
 use app_scene::geometry::bounds::Sphere;
 use app_scene::sharpness::Sharpness;
 
@@ -39,6 +41,8 @@ pub(crate) struct Model {
     captured: CaptureTargets,
     drawn: FrameTargets,
     passes: Passes,
+    /// What the shown shadow takes of the light, over what it truly takes.
+    shadow_strength: f32,
 }
 
 /// Every pass of the model.
@@ -79,6 +83,7 @@ impl Model {
                 frame: frame::Passes::new(gpu),
             },
             region: Region::new(gpu, plan, globals),
+            shadow_strength: 1.0,
         }
     }
 
@@ -109,6 +114,7 @@ impl Model {
             captured,
             drawn,
             passes,
+            shadow_strength,
         } = self;
         gpu.release_groups();
         drop((lighting, captured, drawn));
@@ -125,6 +131,7 @@ impl Model {
             captured,
             drawn,
             passes,
+            shadow_strength,
         }
     }
 
@@ -137,6 +144,13 @@ impl Model {
     /// Takes the picture as so soft from now on.
     pub(crate) fn soften(&mut self, gpu: &Gpu, sharpness: Sharpness) {
         self.region.soften(gpu, sharpness);
+    }
+
+    /// Shows shadows of that strength from now on, drawn from those points of each light, receiver by receiver; with none, from the
+    /// lights' own.
+    pub(crate) fn style_shadow(&mut self, gpu: &Gpu, strength: f32, points: Option<Vec<Vec<Vec4>>>) {
+        self.shadow_strength = strength;
+        self.drawn.light.soften(gpu, &self.region.plan, points);
     }
 
     /// The region's picture.
@@ -154,7 +168,10 @@ impl Model {
         let physical = known
             .filter(|_| delta.keeps_physical())
             .unwrap_or_else(|| marks(&toy.physical, &self.captured.light));
-        let shown = marks(&toy.shown, &self.drawn.light);
+        let mut shown = marks(&toy.shown, &self.drawn.light);
+        if self.shadow_strength != 1.0 {
+            shown.shadow_all();
+        }
         let (plan, uniform) = (&self.region.plan, &self.region.uniform);
         self.drawn.shown_toy = toy.shown.seen_rect(&uniform.by_camera(), plan.toy_box.size_px);
         self.drawn.parts = RegionParts::new([&physical, &shown]);
@@ -182,7 +199,19 @@ impl Model {
         };
         recorder.group = capture_path(delta.change);
         capture.encode(recorder, delta);
-        let frame = FramePath {
+        recorder.group = PassGroup::Frame;
+        let frame = self.frame_path(toy, pictures.frame, pictures.grain);
+        frame.encode(recorder, delta);
+    }
+
+    /// The frame path of a picture.
+    fn frame_path<'a>(
+        &'a self,
+        toy: &'a ToyMesh,
+        frame: Frame<'a>,
+        grain: Option<PictureGrain>,
+    ) -> FramePath<'a> {
+        FramePath {
             region: &self.region,
             captured: &self.captured,
             drawn: &self.drawn,
@@ -191,11 +220,39 @@ impl Model {
             lighting: &self.lighting,
             state: &self.state,
             toy,
-            frame: pictures.frame,
-            grain: pictures.grain,
-        };
-        recorder.group = PassGroup::Frame;
-        frame.encode(recorder, delta);
+            frame,
+            grain,
+            shadow_strength: self.shadow_strength,
+        }
+    }
+
+    /// Encodes the region's picture of the latest frame once more, in light.
+    pub(crate) fn encode_light(
+        &self,
+        recorder: &mut Recorder<'_>,
+        toy: &ToyMesh,
+        (frame, grain): (Frame<'_>, Option<PictureGrain>),
+    ) -> &Texture {
+        let target = self.drawn.by_pass.composite.light(recorder.gpu);
+        self.frame_path(toy, frame, grain).encode_light(recorder, target);
+        target
+    }
+
+    /// Waits for the device and returns the layers of the region's picture of the latest frame.
+    pub(crate) fn read_layers(
+        &self,
+        gpu: &Gpu,
+        toy: &ToyMesh,
+        frame: Frame<'_>,
+    ) -> Result<RegionLayers, GpuError> {
+        let mut recorder = Recorder::new(gpu, None);
+        let layers = self.drawn.by_pass.composite.layers(gpu);
+        self.frame_path(toy, frame, None)
+            .encode_layers(&mut recorder, layers);
+        recorder.submit();
+        let [clean_plate, shadow_ratio, toy, masks] =
+            layers.each_ref().map(|layer| read_texture(gpu, layer.raw()));
+        Ok([clean_plate?, shadow_ratio?, toy?, masks?])
     }
 
     /// Replaces visibilities from the next frame on.

@@ -122,6 +122,12 @@ impl Model {
         })
     }
 
+    /// Whether a receiver's front is at a place in the picture.
+    pub(crate) fn shows_receiver(&self, image_px: Vec2) -> bool {
+        let region_px = image_px - self.region.rect().origin_px.as_vec2();
+        receiver_point(&self.region.uniform, region_px).is_some()
+    }
+
     /// Waits for the device and returns the filled residuals on a receiver; empty where it has none.
     pub(crate) fn read_residual(&self, gpu: &Gpu, receiver: usize) -> Result<FloatMap, GpuError> {
         let grid = self.state.layout.grids[receiver];

@@ -1,6 +1,8 @@
 //! `present`: the camera image with the work region laid over it, code for code, or as much of it as is shown, for those who
 //! read the picture.
 
+use std::sync::OnceLock;
+
 use bytemuck::Zeroable;
 use wgpu::TextureFormat;
 
@@ -15,6 +17,8 @@ const SLOTS: &[Slot] = &[Slot::per_use::<Placement>(), Slot::Texture, Slot::Text
 pub(crate) const REGION_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// Format of the finished picture: codes, as a screen takes them.
 pub(crate) const OUTPUT_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+/// Format of the region's picture and of the finished one in light.
+pub(crate) const LIGHT_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 
 shared_struct! {
     /// Position and size of the region, and how much of its picture is shown.
@@ -28,18 +32,15 @@ shared_struct! {
 
 pub(crate) struct Pass {
     draw: Draw,
+    /// Compiled when the first picture in light is asked for.
+    of_light: OnceLock<Draw>,
 }
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let groups = [&[][..], SLOTS, &[], &[]];
         Self {
-            draw: gpu.draw(&DrawSpec::fullscreen(
-                &SHADER,
-                "fs_place",
-                groups,
-                &[OUTPUT_FORMAT],
-            )),
+            draw: draw(gpu, "fs_place", OUTPUT_FORMAT),
+            of_light: OnceLock::new(),
         }
     }
 
@@ -51,15 +52,41 @@ impl Pass {
         region: Option<RegionOverlay<'_>>,
         target: &TextureView,
     ) {
-        let placement = region.map_or(Placement::zeroed(), |overlay| Placement {
-            origin_px: overlay.rect.origin_px.to_array(),
-            size_px: overlay.rect.size_px.to_array(),
-            effect: overlay.effect,
-            unused: 0.0,
-        });
+        let placement = placement(region);
         let region = region.map_or(frame, |overlay| overlay.picture);
         let resources = [Resource::PerUse, frame.codes.into(), region.codes.into()];
         let own = recorder.bind_with(&self.draw, GROUP_PASS, &placement, &resources);
         recorder.fullscreen(&self.draw, &[own], &[target]);
     }
+
+    /// The same in light, as the device decodes it.
+    pub(crate) fn encode_light(
+        &self,
+        recorder: &mut Recorder<'_>,
+        frame: Picture<'_>,
+        region: Option<RegionOverlay<'_>>,
+        target: &TextureView,
+    ) {
+        let gpu = recorder.gpu;
+        let of_light = self.of_light.get_or_init(|| draw(gpu, "fs_light", LIGHT_FORMAT));
+        let placement = placement(region);
+        let region = region.map_or(frame, |overlay| overlay.picture);
+        let resources = [Resource::PerUse, frame.light.into(), region.light.into()];
+        let own = recorder.bind_with(of_light, GROUP_PASS, &placement, &resources);
+        recorder.fullscreen(of_light, &[own], &[target]);
+    }
+}
+
+fn draw(gpu: &Gpu, fragment: &'static str, format: TextureFormat) -> Draw {
+    let groups = [&[][..], SLOTS, &[], &[]];
+    gpu.draw(&DrawSpec::fullscreen(&SHADER, fragment, groups, &[format]))
+}
+
+fn placement(region: Option<RegionOverlay<'_>>) -> Placement {
+    region.map_or(Placement::zeroed(), |overlay| Placement {
+        origin_px: overlay.rect.origin_px.to_array(),
+        size_px: overlay.rect.size_px.to_array(),
+        effect: overlay.effect,
+        unused: 0.0,
+    })
 }

@@ -1,6 +1,8 @@
 //! Intermediate maps, read back for reports and tests.
 
+pub(crate) mod decoding;
 pub mod inject;
+pub mod layers;
 
 use wgpu::TextureFormat;
 

@@ -20,6 +20,7 @@ use crate::preset::Settings;
 use app_scene::frame::FrameInput;
 use app_scene::geometry::bounds::Bounds;
 use app_scene::scene::{Camera, Shown};
+use app_scene::shadow_style::ShadowStyle;
 use app_scene::toy::{ClipId, ToyError};
 
 /// What a new region has on each side beyond what it needs, so that a pose that reaches a little farther is no new view.
@@ -81,7 +82,7 @@ impl Stage {
         input: &FrameInput,
     ) -> Result<Result<Arc<Footprint>, PassThrough>, ToyError> {
         let warned = |warning| Ok(Err(PassThrough::Warned(warning)));
-        if self.shows_what_is_there(input) && !self.is_shadow_withheld {
+        if self.shows_what_is_there(input) && !self.is_shadow_withheld && !self.is_layered {
             return Ok(Err(PassThrough::PhysicalPose));
         }
         if input.effect == 0.0 {
@@ -109,7 +110,12 @@ impl Stage {
 
     /// The footprint of what is reached, in a view; none when it is out of the picture.
     fn footprint_in(&self, view: View, camera: &Camera) -> Option<Footprint> {
-        let (layout, reach) = (self.layout(), self.reach.as_ref()?);
+        let lights = self.reaching_lights();
+        let layout = SceneLayout {
+            lights: &lights,
+            ..self.layout()
+        };
+        let reach = self.reach.as_ref()?;
         let on_view = reach.on_view(&view, &layout);
         let least_region = on_view.region()?.grown(BORDER_PX, view.image_px);
         let region = least_region.grown(SPARE_PX, view.image_px);
@@ -134,12 +140,13 @@ impl Stage {
         })
     }
 
-    /// Whether the toy is to be shown as it really is and where it really stands.
+    /// Whether the toy is to be shown as it really is, where it really stands and with its true shadow.
     fn shows_what_is_there(&self, input: &FrameInput) -> bool {
         let is_elsewhere = input
             .world_from_shown
             .is_some_and(|world_from_shown| world_from_shown != input.world_from_object);
-        !is_elsewhere && input.shown_pose == self.scene.physical_pose
+        let is_shadow_true = self.shadow_style == ShadowStyle::TRUE;
+        !is_elsewhere && is_shadow_true && input.shown_pose == self.scene.physical_pose
     }
 
     /// Poses the toy as and where it is to be shown, and makes `reach` hold it.

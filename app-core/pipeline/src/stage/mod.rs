@@ -4,9 +4,11 @@ mod afford;
 pub(crate) mod camera_texture;
 mod footprint;
 pub(crate) mod method;
+mod output;
 mod placement;
 mod reuse;
 mod soft;
+mod style;
 mod supported;
 
 use std::sync::{Arc, OnceLock};
@@ -23,20 +25,21 @@ use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
 use crate::governor::QualityStep;
 use crate::gpu::{Gpu, GpuError, Recorder, Texture, n_pixels};
-use crate::passes::pictures::{ComposedFrame, Frame, PictureGrain, Pictures, RegionOverlay};
+use crate::passes::pictures::{Frame, PictureGrain, Pictures};
 use crate::passes::present;
-use crate::passes::present::OUTPUT_FORMAT;
 use crate::passes::thing_marks::Things;
 use crate::passes::toy_mesh::{Casting, ToyMesh};
 use crate::plan::{Change, FrameDelta, SkippedWork};
 use crate::plates::store::PlateStore;
 use crate::preset::Settings;
+use crate::readback::decoding::Decoding;
 use crate::readback::inject::InjectedVisibility;
 use crate::readback::{FloatMap, Map};
 use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
 use app_scene::geometry::bounds::Bounds;
 use app_scene::scene::{Camera, Image, Scene};
+use app_scene::shadow_style::ShadowStyle;
 use app_scene::sharpness::Sharpness;
 use app_scene::things::Things as GivenThings;
 use app_scene::toy;
@@ -92,10 +95,22 @@ pub(crate) struct Stage {
     reached_rects: Vec<PlaneRect>,
     /// How soft the latest picture is taken to be.
     sharpness: Sharpness,
+    /// How the latest frame's shadow is to look.
+    shadow_style: ShadowStyle,
+    /// How the shadow that was drawn last looks.
+    drawn_style: ShadowStyle,
     /// How much of the region's picture the latest frame shows; none where the camera image passes through.
     effect: Option<f64>,
+    /// The latest frame's noise.
+    grain: Option<PictureGrain>,
+    /// Whether frames are made that could pass through, since their layers are asked for.
+    is_layered: bool,
     /// The picture as a texture, once one was asked for.
     output: OnceLock<Texture>,
+    /// The same in light.
+    output_light: OnceLock<Texture>,
+    /// What the device makes of codes, once it was asked.
+    decoding: OnceLock<Decoding>,
 }
 
 /// The method with its state, and the latest frame that this was learned from.
@@ -174,13 +189,19 @@ impl Stage {
             state: None,
             reached_rects: Vec::new(),
             sharpness: Sharpness::SHARP,
+            shadow_style: ShadowStyle::TRUE,
+            drawn_style: ShadowStyle::TRUE,
             lights_inside: None,
             lights: Lights::new(&scene.lights, &receivers.anchored),
             receivers: receivers.anchored,
             receiver_indices: receivers.indices,
             receivers_warning: receivers.warning,
             effect: None,
+            grain: None,
+            is_layered: false,
             output: OnceLock::new(),
+            output_light: OnceLock::new(),
+            decoding: OnceLock::new(),
             settings,
             world_from_object: scene.world_from_object,
             is_object_placed: true,
@@ -206,39 +227,6 @@ impl Stage {
     /// Draws a pose that is shown again as if it were new.
     pub(crate) fn draw_every_pose(&mut self) {
         self.is_every_pose_new = true;
-    }
-
-    /// The latest picture, of which the region's part still has to be laid over the camera image.
-    pub(crate) fn composed(&self, gpu: &Gpu) -> ComposedFrame<'_> {
-        ComposedFrame {
-            frame: self.camera.frame(gpu),
-            region: self.overlay(),
-            size_px: self.size_px(),
-        }
-    }
-
-    fn overlay(&self) -> Option<RegionOverlay<'_>> {
-        self.method()
-            .zip(self.effect)
-            .map(|(method, effect)| RegionOverlay {
-                picture: method.picture(),
-                rect: method.region(),
-                #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
-                effect: effect as f32,
-            })
-    }
-
-    /// Draws that picture into a texture of its size: codes.
-    pub(crate) fn draw_picture(&self, gpu: &Gpu) -> &Texture {
-        let output = self
-            .output
-            .get_or_init(|| Texture::target(gpu, "output", self.size_px(), OUTPUT_FORMAT));
-        let mut recorder = Recorder::new(gpu, None);
-        let frame = self.camera.decoded(&mut recorder);
-        self.present
-            .encode(&mut recorder, frame, self.overlay(), &output.view);
-        recorder.submit();
-        output
     }
 
     /// The scene that is staged.
@@ -350,6 +338,7 @@ impl Stage {
             warnings: about_scene.chain(about_lights).collect(),
         };
         recorder.stages.begin("pose and footprint");
+        self.take_shadow_style(input);
         self.effect = match self.footprint(input)? {
             Err(reason) => {
                 reason.tell(&mut report);
@@ -371,15 +360,11 @@ impl Stage {
         report: &mut FrameReport,
     ) {
         let gpu = recorder.gpu;
-        // A refused frame, after which nothing is known, may not have brought its pose to the device.
-        let is_pose_known = self.state.is_some() && self.toy.shown.is(&self.posed);
-        let is_pose_new = self.is_every_pose_new || !is_pose_known;
-        if is_pose_new {
-            self.toy.shown.write(gpu, &self.posed);
-        }
+        let is_pose_new = self.take_shown_pose(gpu);
         recorder.stages.begin("reuse");
         self.take_things(gpu, input);
         let (change, keeps_sharpness) = self.update_method(gpu, input, footprint);
+        self.style_shadow(gpu, change);
         report.warnings.extend(self.cost_warning.clone());
         recorder.stages.begin("encode");
         let Some(state) = &mut self.state else {
@@ -421,9 +406,10 @@ impl Stage {
             Method::Baseline(_) => Frame::Picture(self.camera.keep_decoded(recorder)),
         };
         let picture = self.state.as_ref().map_or(0, |state| state.n_pictures);
+        self.grain = input.grain.map(|grain| PictureGrain { grain, picture });
         let pictures = Pictures {
             frame,
-            grain: input.grain.map(|grain| PictureGrain { grain, picture }),
+            grain: self.grain,
             n_before,
             exposure_ratio,
             plates: &self.plates.pictures.view,
@@ -453,6 +439,18 @@ impl Stage {
         if !self.shows_toy(&footprint.view) {
             report.warnings.push(Warning::ToyOutOfPicture);
         }
+    }
+
+    /// Brings the shown pose to the device, unless it is there and its shadow is in the frame's style; returns whether it is to be drawn.
+    fn take_shown_pose(&mut self, gpu: &Gpu) -> bool {
+        // A refused frame, after which nothing is known, may not have brought its pose to the device.
+        let is_known =
+            self.state.is_some() && self.toy.shown.is(&self.posed) && self.drawn_style == self.shadow_style;
+        let is_new = self.is_every_pose_new || !is_known;
+        if is_new {
+            self.toy.shown.write(gpu, &self.posed);
+        }
+        is_new
     }
 
     /// Takes the things of a picture, unless they are there already; the baseline knows of none.

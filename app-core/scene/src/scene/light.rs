@@ -128,6 +128,28 @@ impl Light {
         }
     }
 
+    /// The same light so many times as wide, as seen from a place in the world: the slope of its rim is so many times as large. One that
+    /// the place is within stays as it is.
+    #[must_use]
+    pub fn widened(&self, place_in_world: DVec3, factor: f64) -> Self {
+        let Some(slope) = self.slope_from(place_in_world) else {
+            return *self;
+        };
+        let angular_radius_rad = (factor * slope).atan();
+        match *self {
+            Self::Sphere {
+                position_in_world, ..
+            } => {
+                let distance_m = position_in_world.distance(place_in_world);
+                Self::sphere(position_in_world, distance_m * angular_radius_rad.sin())
+            }
+            Self::Directional {
+                direction_to_light_in_world,
+                ..
+            } => Self::directional(direction_to_light_in_world, angular_radius_rad),
+        }
+    }
+
     /// Vector from a place in the world to the light's centre, in metres, or the unit vector to a far light.
     #[must_use]
     pub fn vector_from(&self, place_in_world: DVec3) -> DVec3 {

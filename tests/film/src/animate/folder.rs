@@ -10,6 +10,7 @@ use std::{fs, io};
 use anyhow::{Context, bail, ensure};
 use app_core::preset::Preset;
 use app_core::session::{Files, MAX_INDEX_BYTES};
+use app_core::shadow_style::ShadowStyle;
 use desk::files::SESSION_FILE;
 use desk::output::{make_folder, remove_file, write_whole};
 use desk::stored::Stored;
@@ -31,6 +32,9 @@ const MAX_SESSION_FILE_BYTES: u64 = 1 << 30;
 pub struct Film {
     /// Version of the program.
     pub version: String,
+    /// What made its pictures.
+    #[serde(default)]
+    pub made_by: MadeBy,
     /// Name of the session.
     pub name: String,
     /// The session's files.
@@ -42,12 +46,30 @@ pub struct Film {
     pub is_moving: bool,
     /// How much work a frame may cost.
     pub preset: String,
+    /// How the shadow looks.
+    #[serde(default)]
+    pub shadow: ShadowStyle,
+    /// Bits of a picture's channels: 8 or 16.
+    #[serde(default = "eight")]
+    pub bits: u8,
+    /// Whether each picture's layers are written beside it.
+    #[serde(default)]
+    pub has_layers: bool,
     /// The text of the clips.
     pub clips: String,
     /// How they become frames.
     pub timing: Timing,
     /// All frames, in order.
     pub frames: Vec<FilmFrame>,
+}
+
+/// The program and the driver that make pictures: others may make them a little otherwise.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MadeBy {
+    /// Checksum of the program.
+    pub build: String,
+    /// Name of the graphics adapter with its driver.
+    pub driver: String,
 }
 
 /// A file that a film is made from.
@@ -75,7 +97,27 @@ pub struct FilmFrame {
     pub pose: FramePose,
 }
 
+/// What films have that say nothing else.
+fn eight() -> u8 {
+    8
+}
+
+impl FilmFrame {
+    /// The file of its layers, where it has any.
+    #[must_use]
+    pub fn layers_file(&self) -> PathBuf {
+        Path::new(&self.file).with_extension("exr")
+    }
+}
+
 impl Film {
+    /// Files of a frame: its picture, and its layers if there are any.
+    #[must_use]
+    pub fn files_of(&self, frame: &FilmFrame) -> Vec<PathBuf> {
+        let layers = self.has_layers.then(|| frame.layers_file());
+        [PathBuf::from(&frame.file)].into_iter().chain(layers).collect()
+    }
+
     /// The preset.
     ///
     /// # Errors
@@ -99,7 +141,8 @@ impl Film {
             let frames = film.frames.iter();
             frames.map(|frame| (frame.photograph, frame.pose)).collect()
         };
-        self.has_session_of(other) && self.preset == other.preset && shown(self) == shown(other)
+        let look = |film: &Self| (film.preset.clone(), film.shadow, film.bits, film.has_layers);
+        self.has_session_of(other) && look(self) == look(other) && shown(self) == shown(other)
     }
 }
 
@@ -234,7 +277,16 @@ impl FilmFolder {
         let _ = turn.lock();
         let before = Self::film_in(&self.path)?;
         // As it will be read.
-        let bytes = serde_json::to_vec_pretty(film)?;
+        let mut film = film.clone();
+        let mut bytes = serde_json::to_vec_pretty(&film)?;
+        let as_read: Film = serde_json::from_slice(&bytes)?;
+        if let Some(before) = before
+            .as_ref()
+            .filter(|before| !is_forced && before.has_pictures_of(&as_read))
+        {
+            film.made_by.clone_from(&before.made_by);
+            bytes = serde_json::to_vec_pretty(&film)?;
+        }
         let film: Film = serde_json::from_slice(&bytes)?;
         ensure!(
             !self.is_shared || before.as_ref().is_none_or(|before| *before == film),
@@ -289,6 +341,7 @@ impl FilmFolder {
         for frame in film.iter().flat_map(|film| &film.frames) {
             if !is_kept(frame) {
                 remove_file(&self.path.join(&frame.file))?;
+                remove_file(&self.path.join(frame.layers_file()))?;
             }
         }
         Ok(())

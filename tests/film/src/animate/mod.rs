@@ -1,5 +1,6 @@
 //! One photograph and clips become a film.
 
+pub mod fine;
 pub mod folder;
 pub mod frame_files;
 pub mod grammar;

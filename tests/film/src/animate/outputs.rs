@@ -29,6 +29,8 @@ const CONTACT_PX: u32 = 240;
 const N_CONTACTS: usize = 48;
 const N_COLUMNS: u32 = 8;
 const GAP_PX: u32 = 4;
+/// Shortest time that a picture of a GIF is shown for, in hundredths of a second: players take less for a tenth.
+const LEAST_GIF_DELAY: f64 = 2.0;
 /// How hard colours of a GIF are looked for, from 1, the most, to 30.
 const GIF_SPEED: i32 = 10;
 
@@ -79,11 +81,15 @@ pub fn write_previews(folder: &Path, film: &Film) -> anyhow::Result<String> {
     write_apng(folder, film)?;
     write_gif(folder, film)?;
     let files = format!("{CONTACT_FILE}, {APNG_FILE}, {GIF_FILE}");
-    Ok(if write_mp4(folder, film)? {
+    let mut said = if write_mp4(folder, film)? {
         format!("{files} and {MP4_FILE} show them all\n")
     } else {
         format!("{files} show them all; {MP4_FILE} is made where ffmpeg is installed\n")
-    })
+    };
+    if film.timing.fps > 100.0 / LEAST_GIF_DELAY {
+        said += &format!("{GIF_FILE} leaves some out: it can show at most 50 a second\n");
+    }
+    Ok(said)
 }
 
 fn write_contact(folder: &Path, film: &Film) -> anyhow::Result<()> {
@@ -157,10 +163,13 @@ fn write_gif(folder: &Path, film: &Film) -> anyhow::Result<()> {
         encoder.set_repeat(gif::Repeat::Infinite)?;
         let mut until = 0.0;
         for (index, frame) in film.frames.iter().enumerate() {
-            let small = shrunk(&picture(folder, frame)?, PREVIEW_PX);
-            let mut encoded = gif::Frame::from_rgb_speed(width_px, height_px, &small, GIF_SPEED);
             // Hundredths of a second, whose sum is the film's length.
             let end = (100.0 * (index + 1) as f64 / film.timing.fps).round();
+            if end - until < LEAST_GIF_DELAY {
+                continue;
+            }
+            let small = shrunk(&picture(folder, frame)?, PREVIEW_PX);
+            let mut encoded = gif::Frame::from_rgb_speed(width_px, height_px, &small, GIF_SPEED);
             #[allow(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,
@@ -176,7 +185,7 @@ fn write_gif(folder: &Path, film: &Film) -> anyhow::Result<()> {
     })
 }
 
-/// Hands the pictures to ffmpeg; false where there is none.
+/// Hands the pictures to ffmpeg; false where there is none. Without words on colour, players guess by the picture's size.
 fn write_mp4(folder: &Path, film: &Film) -> anyhow::Result<bool> {
     let partial = folder.join(format!("{MP4_FILE}.partial"));
     let process = Command::new("ffmpeg")
@@ -186,7 +195,15 @@ fn write_mp4(folder: &Path, film: &Film) -> anyhow::Result<bool> {
             "-i",
             "-",
             "-vf",
-            "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+            "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
+            "-colorspace",
+            "bt709",
+            "-color_primaries",
+            "bt709",
+            "-color_trc",
+            "bt709",
+            "-color_range",
+            "tv",
             "-pix_fmt",
             "yuv420p",
             "-f",

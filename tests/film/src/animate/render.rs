@@ -12,7 +12,6 @@ use app_core::core::Core;
 use app_core::frame::FrameInput;
 use app_core::gpu::AdapterChoice;
 use app_core::grain::Grain;
-use app_core::preset::Preset;
 use app_core::scene::{Pose, Scene, Shown};
 use app_core::session::{Capture, Session};
 use app_core::toy::Toy;
@@ -22,6 +21,7 @@ use desk::lens::through_lens;
 use desk::output::write_png;
 use desk::stored::Stored;
 
+use super::fine::{write_exr, write_png_16};
 use super::folder::{Film, FilmFolder, FilmFrame, SESSION_FOLDER};
 use super::timeline::{FramePose, Moment};
 
@@ -83,12 +83,15 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
         return Ok(());
     };
     let mut photograph = first.photograph.saturating_sub(N_LEARNED);
-    let mut input = photographed(&capture, &mut alignments, photograph, preset)?;
+    let mut input = photographed(&capture, &mut alignments, photograph, &film)?;
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), adapter))?;
     let scene = alignments.scene(capture.scene());
     let scene = alignments.changed_scene(&scene, photograph).unwrap_or(scene);
     let toy = scene.toy.clone();
     core.set_scene(with_film(scene, &film, input.world_from_shown)?, preset)?;
+    if film.has_layers {
+        core.want_layers()?;
+    }
     let mut warnings = Warnings::default();
     let of_alignment = alignments
         .of(photograph)
@@ -105,21 +108,28 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     while photograph < first.photograph {
         core.frame(&input.with_shown_pose(first_pose.clone()))?;
         photograph += 1;
-        input = photographed(&capture, &mut alignments, photograph, preset)?;
+        input = photographed(&capture, &mut alignments, photograph, &film)?;
     }
     for frame in missing.into_iter().take(n_pictures) {
         if frame.photograph != photograph {
             photograph = frame.photograph;
-            input = photographed(&capture, &mut alignments, photograph, preset)?;
+            input = photographed(&capture, &mut alignments, photograph, &film)?;
         }
         let input = input.clone().with_shown_pose(pose_of(&toy, &frame.pose)?);
         let failed = || frame.file.clone();
         let report = core.frame(&input).with_context(failed)?;
-        let picture = core.read_picture().with_context(failed)?;
-        write_png(
-            &folder.join(&frame.file),
-            &through_lens(&capture, photograph, picture)?,
-        )?;
+        if film.has_layers {
+            let (light, layers) = (core.read_light(), core.read_layers());
+            let path = folder.join(frame.layers_file());
+            write_exr(&path, &light.with_context(failed)?, &layers.with_context(failed)?)?;
+        }
+        let path = folder.join(&frame.file);
+        if film.bits > 8 {
+            write_png_16(&path, &core.read_light().with_context(failed)?)?;
+        } else {
+            let picture = core.read_picture().with_context(failed)?;
+            write_png(&path, &through_lens(&capture, photograph, picture)?)?;
+        }
         warnings.say(report.warnings.iter().map(ToString::to_string))?;
         let outcome = if report.region.is_some() {
             RETARGETED
@@ -136,13 +146,13 @@ fn photographed(
     capture: &Capture,
     alignments: &mut Alignments,
     index: usize,
-    preset: Preset,
+    film: &Film,
 ) -> anyhow::Result<FrameInput> {
     let frame = capture.frame(index)?;
     alignments.align(capture.scene(), index, &frame)?;
-    let input = alignments.input(index, &frame, preset);
+    let input = alignments.input(index, &frame, film.preset()?);
     let grain = Grain::of(capture.scene(), input.image.rgba(), &input.camera);
-    Ok(input.with_grain(grain))
+    Ok(input.with_grain(grain).with_shadow_style(film.shadow))
 }
 
 fn say(line: &str) -> io::Result<()> {
@@ -190,7 +200,7 @@ fn with_film(scene: Scene, film: &Film, world_from_shown: Option<glam::DMat4>) -
 pub fn missing<'a>(folder: &Path, film: &'a Film, range: &Range<u32>) -> Vec<&'a FilmFrame> {
     let frames = film.frames.iter().filter(|frame| range.contains(&frame.number));
     frames
-        .filter(|frame| !folder.join(&frame.file).exists())
+        .filter(|frame| !film.files_of(frame).iter().all(|file| folder.join(file).exists()))
         .collect()
 }
 

@@ -9,9 +9,13 @@ use std::time::Instant;
 use std::{env, fs};
 
 use anyhow::{Context, ensure};
-use app_core::preset::Preset;
+use app_core::core::Core;
+use app_core::gpu::AdapterChoice;
+use app_core::preset::{Preset, Settings};
 use app_core::session::{Capture, Session};
+use app_core::shadow_style::ShadowStyle;
 use app_core::toy::Toy;
+use app_core::wgpu;
 use desk::alignment::{Alignments, Asked};
 use desk::check::aligned_session;
 use desk::convert;
@@ -21,7 +25,7 @@ use desk::program::open_session;
 use desk::stored::Stored;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::folder::{Film, FilmFolder, FilmFrame, index_of, sources};
+use super::folder::{Film, FilmFolder, FilmFrame, MadeBy, index_of, sources};
 use super::frame_files::{FrameRange, NamePattern};
 use super::grammar::{ClipFacts, items};
 use super::outputs;
@@ -40,6 +44,12 @@ pub struct Order {
     pub timing: Timing,
     /// How much work a frame may cost.
     pub preset: Preset,
+    /// How the shadow looks.
+    pub shadow: ShadowStyle,
+    /// Bits of a picture's channels: 8 or 16.
+    pub bits: u8,
+    /// Whether each picture's layers are written beside it.
+    pub has_layers: bool,
     /// Whether camera, pose and lights are the session's.
     pub is_as_given: bool,
     /// Whether each frame shows the photograph of its time.
@@ -79,6 +89,7 @@ pub fn clip_facts(toy: &Toy) -> Vec<ClipFacts> {
 pub fn run(order: &Order) -> anyhow::Result<String> {
     let named = || order.session.display().to_string();
     let capture = Capture::open(open_session(&order.session)?).with_context(named)?;
+    check_output(order, &capture)?;
     let film = planned(order, &capture)?;
     let last = film.frames.last().context("a film without frames")?;
     let all = order.start..last.number + 1;
@@ -103,6 +114,7 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
         warnings = write_session(order, to)?;
         Ok(())
     })?;
+    let made_before = by_others(&folder, &film)?;
     outputs::write_xsheet(folder.path(), &film, &clip_facts(&capture.scene().toy))?;
     let n_missing = missing(folder.path(), &film, &range).len();
     let start = Instant::now();
@@ -119,6 +131,7 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
         .union(&made.warnings)
         .map(|warning| format!("warning: {warning}\n"))
         .collect();
+    said += &made_before;
     if made.n_passed_through > 0 {
         said += &format!(
             "{} of {n_missing} frames passed through: they show the photograph as it is\n",
@@ -139,6 +152,54 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
     Ok(said)
 }
 
+/// What there is to say where pictures that are there may be those of another program or driver.
+fn by_others(folder: &FilmFolder, film: &Film) -> anyhow::Result<String> {
+    let begun = FilmFolder::film_in(folder.path())?.context("there is no film.json")?;
+    let n_there = begun.frames.len() - missing(folder.path(), &begun, &(0..u32::MAX)).len();
+    let (by, now) = (&begun.made_by, &film.made_by);
+    Ok(if by == now || n_there == 0 {
+        String::new()
+    } else {
+        format!(
+            "warning: {n_there} of the pictures were there before, begun by {} on {}; this is {} on {}, which may make them a little otherwise: --force makes all again\n",
+            by.build, by.driver, now.build, now.driver
+        )
+    })
+}
+
+/// This program and the driver that it is going to use.
+fn made_by(order: &Order) -> anyhow::Result<MadeBy> {
+    let program = env::current_exe().context("this program's own path")?;
+    let bytes = fs::read(&program).with_context(|| program.display().to_string())?;
+    let adapter = order.adapter.clone();
+    let adapter = adapter.map_or(AdapterChoice::Fastest, AdapterChoice::Named);
+    let core = pollster::block_on(Core::headless(&wgpu::Instance::default(), &adapter))?;
+    Ok(MadeBy {
+        build: format!("build {:08x}", crc32fast::hash(&bytes)),
+        driver: core.adapter_name(),
+    })
+}
+
+/// Refuses what a preset or a session cannot give.
+fn check_output(order: &Order, capture: &Capture) -> anyhow::Result<()> {
+    let is_model = matches!(Settings::from(order.preset), Settings::Model(_));
+    let is_fine = order.bits > 8 || order.has_layers;
+    let preset = order.preset.name();
+    ensure!(
+        is_model || order.shadow == ShadowStyle::TRUE,
+        "--shadow-strength, --shadow-softness: preset {preset} draws shadows as published; take fast, balanced or best"
+    );
+    ensure!(
+        is_model || !is_fine,
+        "--bits 16, --exr: preset {preset} makes pictures of 8 bits without layers; take fast, balanced or best"
+    );
+    ensure!(
+        !is_fine || capture.lens(0)?.is_none(),
+        "--bits 16, --exr: the session has a lens, by which pictures of 8 bits alone are bent; leave them out"
+    );
+    Ok(())
+}
+
 fn planned(order: &Order, capture: &Capture) -> anyhow::Result<Film> {
     let scene = capture.scene();
     let clips = clip_facts(&scene.toy);
@@ -155,11 +216,15 @@ fn planned(order: &Order, capture: &Capture) -> anyhow::Result<Film> {
     let numbered = (order.start..).zip(poses);
     Ok(Film {
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        made_by: made_by(order)?,
         name: scene.name.clone(),
         sources: sources(&session, order.is_moving)?,
         is_as_given: order.is_as_given,
         is_moving: order.is_moving,
         preset: order.preset.name().to_owned(),
+        shadow: order.shadow,
+        bits: order.bits,
+        has_layers: order.has_layers,
         clips: order.clips.clone(),
         timing: order.timing,
         frames: numbered

@@ -1,11 +1,13 @@
 //! Makes a film of a session's photograph and clips of its toy.
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, ensure};
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
+use app_core::shadow_style::{SOFTNESS, STRENGTH, ShadowStyle};
 use clap::Parser;
 use desk::files::BUNDLED_SESSION;
 use desk::program::{exit_code, print, results_of};
@@ -57,6 +59,18 @@ struct Args {
     /// How much work a frame may cost
     #[arg(long, value_name = "NAME", default_value = "best")]
     preset: Preset,
+    /// How strong the shadow is, from 0, none, to 4: 1 is the truth, 2 takes twice the light
+    #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = parse_strength)]
+    shadow_strength: f64,
+    /// How soft the shadow is, from 0, that of points of light, to 4: 1 is the truth, 2 has an edge twice as wide
+    #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = parse_softness)]
+    shadow_softness: f64,
+    /// Bits of a picture's channels: 8, or 16
+    #[arg(long, value_name = "BITS", default_value = "8", value_parser = ["8", "16"])]
+    bits: String,
+    /// Write each picture as OpenEXR, too, of linear half floats, with layers: clean plate, shadow ratio, toy, masks
+    #[arg(long)]
+    exr: bool,
     /// Make these frames alone, by their numbers: 3, 3.., ..9 or 3..9, without the one after the dots. Several such runs may share a
     /// folder
     #[arg(long, value_name = "A..B")]
@@ -151,6 +165,12 @@ fn order(args: Args) -> anyhow::Result<Order> {
             to_secs: args.to,
         },
         preset: args.preset,
+        shadow: ShadowStyle {
+            strength: args.shadow_strength,
+            softness: args.shadow_softness,
+        },
+        bits: if args.bits == "16" { 16 } else { 8 },
+        has_layers: args.exr,
         is_as_given: args.as_given,
         is_moving: args.moving,
         start: args.start,
@@ -166,6 +186,19 @@ fn order(args: Args) -> anyhow::Result<Order> {
 fn parse_fps(text: &str) -> Result<f64, String> {
     let fps = text.parse().ok().filter(|fps| (1.0..=240.0).contains(fps));
     fps.ok_or_else(|| "from 1 to 240 frames a second".to_owned())
+}
+
+fn parse_strength(text: &str) -> Result<f64, String> {
+    within(text, &STRENGTH)
+}
+
+fn parse_softness(text: &str) -> Result<f64, String> {
+    within(text, &SOFTNESS)
+}
+
+fn within(text: &str, range: &RangeInclusive<f64>) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| format!("a number from {} to {}", range.start(), range.end()))
 }
 
 fn parse_secs(text: &str) -> Result<f64, String> {

@@ -5,8 +5,10 @@ use std::path::Path;
 use std::sync::Barrier;
 use std::thread;
 
-use film::animate::folder::{Film, FilmFolder, FilmFrame, SourceFile};
+use app_core::shadow_style::ShadowStyle;
+use film::animate::folder::{Film, FilmFolder, FilmFrame, MadeBy, SourceFile};
 use film::animate::grammar::items;
+use film::animate::render::missing;
 use film::animate::timeline::{Timing, frames};
 use harness::temporary::Temporary;
 
@@ -22,6 +24,7 @@ fn film(text: &str) -> Film {
     let poses = frames(&items(text, &clips).unwrap(), &clips, &timing).unwrap();
     Film {
         version: "1".to_owned(),
+        made_by: MadeBy::default(),
         name: "a toy".to_owned(),
         sources: vec![SourceFile {
             path: "toy.glb".to_owned(),
@@ -30,6 +33,9 @@ fn film(text: &str) -> Film {
         }],
         is_as_given: false,
         is_moving: false,
+        shadow: ShadowStyle::TRUE,
+        bits: 8,
+        has_layers: false,
         preset: "best".to_owned(),
         clips: text.to_owned(),
         timing,
@@ -79,7 +85,13 @@ fn pictures_stay_as_long_as_all_that_decides_on_them_does() {
     };
     let mut other_toy = other_preset.clone();
     other_toy.sources[0].crc32 = 3;
-    for other in [longer, other_preset, other_toy] {
+    let other_bits = Film {
+        bits: 16,
+        ..first.clone()
+    };
+    let mut other_shadow = first.clone();
+    other_shadow.shadow.strength = 0.5;
+    for other in [longer, other_preset, other_toy, other_bits, other_shadow] {
         let refused = begin(path, &other, false).unwrap_err();
         assert!(refused.to_string().contains("--force"), "{refused}");
         assert_eq!(pictures(path), [true, false, true]);
@@ -94,6 +106,52 @@ fn pictures_stay_as_long_as_all_that_decides_on_them_does() {
     fs::write(path.join("film.json"), "{").unwrap();
     assert!(begin(path, &first, false).is_err());
     assert_eq!(pictures(path), [true, false, true]);
+}
+
+/// Pictures stay where another build goes on with them, and the film says who began them until they are made again.
+#[test]
+fn a_film_says_what_began_it() {
+    let folder = Temporary::new("film-made-by");
+    let path = &folder.0.join("film");
+    let by = |build: &str| {
+        let mut film = film("Look");
+        film.made_by.build = build.to_owned();
+        film
+    };
+    begin(path, &by("one"), false).unwrap();
+    fs::write(path.join("1.png"), "").unwrap();
+    let taken = FilmFolder::take(path, false).unwrap();
+    taken.begin(&by("two"), false, |_| Ok(())).unwrap();
+    drop(taken);
+    assert_eq!(FilmFolder::film_in(path).unwrap(), Some(by("one")));
+    assert!(path.join("1.png").exists());
+    begin(path, &by("two"), true).unwrap();
+    assert!(!path.join("1.png").exists());
+}
+
+/// A frame is made when all of its files are, and layers go with the picture that they are of.
+#[test]
+fn layers_are_files_of_their_frame() {
+    let folder = Temporary::new("film-layers");
+    let path = &folder.0.join("film");
+    let plain = film("Look");
+    let layered = Film {
+        has_layers: true,
+        ..plain.clone()
+    };
+    let write = |file: &str| fs::write(path.join(file), "").unwrap();
+    let missing_in = |film: &Film| -> Vec<u32> {
+        let missing = missing(path, film, &(1..4));
+        missing.iter().map(|frame| frame.number).collect()
+    };
+    begin(path, &layered, false).unwrap();
+    ["1.png", "1.exr", "2.png", "3.exr"].into_iter().for_each(write);
+    assert_eq!(missing_in(&layered), [2, 3]);
+    assert_eq!(missing_in(&plain), [3]);
+    let refused = begin(path, &plain, false).unwrap_err();
+    assert!(refused.to_string().contains("--force"), "{refused}");
+    begin(path, &plain, true).unwrap();
+    assert!(!path.join("1.exr").exists() && !path.join("3.exr").exists());
 }
 
 #[test]

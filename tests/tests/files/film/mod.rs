@@ -1,5 +1,6 @@
 //! Films: what their text says, which pose each frame shows, and what their folder keeps.
 
+mod fine;
 mod folder;
 mod grammar;
 mod names;

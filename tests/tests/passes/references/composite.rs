@@ -3,7 +3,7 @@
 use glam::{DVec3, DVec4, UVec2};
 use reference::composite::{Shown, inside_border, receiver_color};
 use reference::model::{Pictures, Region};
-use reference::raster::Raster;
+use reference::raster::{Raster, texels_of};
 
 use crate::references::flat::{grid, region, scatter, truth, two_bulbs};
 
@@ -35,6 +35,7 @@ fn scene() -> (Region, Pictures, Shown) {
         solution: truth(2),
         residuals: vec![residual],
         grids: vec![grid(SIZE, 4)],
+        strength: 1.0,
     };
     (region(SIZE, two_bulbs()), pictures, shown)
 }
@@ -90,6 +91,29 @@ fn toy_taken_away_leaves_the_plate_at_the_frames_exposure() {
             "{actual}, not {expected}"
         );
     }
+}
+
+/// With none of its strength a shadow is no other than that of a toy that was taken away, with twice of it a gray receiver loses twice as
+/// much, and no light is less than none.
+#[test]
+fn a_shadow_takes_as_many_times_its_light_as_it_is_strong() {
+    let (region, mut pictures, mut shown) = scene();
+    pictures.seen = Raster::from_fn(SIZE, |_| 0.0);
+    shown.residuals = vec![Raster::from_fn(UVec2::ONE, |_| DVec3::ZERO)];
+    let mut of_strength = |strength| {
+        shown.strength = strength;
+        picture(&region, &pictures, &shown)
+    };
+    let [none, true_one, twice, most] = [0.0, 1.0, 2.0, 1e9].map(&mut of_strength);
+    let mut n_black = 0;
+    for at in texels_of(SIZE) {
+        let open = pictures.plate.at(at) * shown.solution.gain;
+        assert!((none.at(at) - open).abs().max_element() < 1e-12, "{at}");
+        let expected = (open + 2.0 * (true_one.at(at) - open)).max(DVec3::ZERO);
+        assert!((twice.at(at) - expected).abs().max_element() < 1e-12, "{at}");
+        n_black += u32::from(most.at(at) == DVec3::ZERO);
+    }
+    assert!(2 * n_black > SIZE.element_product(), "{n_black} are black");
 }
 
 #[test]

@@ -104,6 +104,11 @@ fn brighter([r, g, b, a]: [u8; 4]) -> [u8; 4] {
 
 /// As cameras do that make pictures brilliant: what is dark becomes darker, what is bright becomes brighter.
 fn with_contrast([r, g, b, a]: [u8; 4]) -> [u8; 4] {
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to 255"
+    )]
     let curved = |code: u8| {
         let x = f64::from(code) / 255.0;
         (255.0 * x * x * (3.0 - 2.0 * x)).round() as u8

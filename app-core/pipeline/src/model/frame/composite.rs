@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use bytemuck::Zeroable;
-use wgpu::StoreOp;
+use wgpu::{StoreOp, TextureFormat};
 
 use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::buffer::Buffer;
@@ -13,7 +13,7 @@ use crate::gpu::recorder::{Recorder, cleared};
 use crate::gpu::samplers::Sampler;
 use crate::gpu::shader::{Shader, shader};
 use crate::gpu::shared::shared_struct;
-use crate::gpu::texture::{Texture, TextureView};
+use crate::gpu::texture::{Texture, TextureView, half_float};
 use crate::model::diagnostics::outliers::{OUTLIER_ALL, OUTLIER_NONE, SHADOW_EVENNESS};
 use crate::model::frame::region_parts::RegionParts;
 use crate::model::frame::toy;
@@ -22,7 +22,7 @@ use crate::model::plan::Plan;
 use crate::model::state::grids::Grids;
 use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
 use crate::passes::pictures::{ByForm, Picture, PictureGrain, fill_parts, n_pixels_of};
-use crate::passes::present::REGION_FORMAT;
+use crate::passes::present::{LIGHT_FORMAT, REGION_FORMAT};
 
 pub(crate) const SHADER: Shader =
     shader!("frame/composite", structs: [Drawing], constants: [OUTLIER_NONE, OUTLIER_ALL, SHADOW_EVENNESS]);
@@ -33,6 +33,10 @@ const SLOTS: &[Slot] = &[
     Slot::Filtered,
     Slot::Sampler,
 ];
+/// Format of its layers: four of them are as many bytes a pixel as a pass may draw.
+const LAYER_FORMAT: TextureFormat = half_float(4);
+/// Clean plate, shadow ratio, toy and masks.
+pub(crate) const N_LAYERS: usize = 4;
 /// Group of what is read where shadows fall.
 const GROUP_SHADOW: usize = 2;
 /// Group of what is read near the toy.
@@ -56,15 +60,47 @@ shared_struct! {
         pub plate_noise: [f32; 2],
         pub beside: f32,
         pub channels: f32,
+        pub strength: f32,
+        pub unused: f32,
     }
 }
 
 pub(crate) struct Pass {
+    of_codes: Draws,
+    /// Compiled when the first picture in light is asked for.
+    of_light: OnceLock<Draws>,
+    /// Compiled when the first layers are asked for.
+    layers: OnceLock<Layered>,
+}
+
+/// What draws the picture in one format.
+struct Draws {
+    format: TextureFormat,
     /// Clear of the toy in either pose, and of its shadows: there nothing is made.
     open: ByForm<Draw>,
-    clean: Shadowed,
-    /// With grain, compiled when the first frame has any.
-    grained: OnceLock<Shadowed>,
+    plain: Shadowed,
+    /// With grain, with a shadow that is not as strong as the true one, with both: compiled when the first frame has it.
+    others: [OnceLock<Shadowed>; 3],
+}
+
+/// What sets a frame apart from most.
+#[derive(Clone, Copy)]
+struct Variant {
+    has_grain: bool,
+    has_strength: bool,
+}
+
+impl Variant {
+    const PLAIN: Self = Self {
+        has_grain: false,
+        has_strength: false,
+    };
+}
+
+/// The layers of the picture, all over the region.
+struct Layered {
+    drawn_once: ByForm<Draw>,
+    drawn_four_times: ByForm<Draw>,
 }
 
 /// Where shadows fall.
@@ -91,6 +127,8 @@ pub(crate) struct Inputs<'a> {
     /// Each pixel's own residual; without it the frame's own pixels serve.
     pub(crate) detail: Option<&'a TextureView>,
     pub(crate) grain: Option<PictureGrain>,
+    /// What the shown shadow takes of the light, over what it truly takes.
+    pub(crate) shadow_strength: f32,
 }
 
 /// Of the region's size.
@@ -98,6 +136,10 @@ pub(crate) struct Targets {
     pub(crate) picture: Texture,
     /// View of its sRGB codes, not decoded.
     codes: TextureView,
+    /// The picture in light, once it was asked for.
+    light: OnceLock<Texture>,
+    /// Its layers, once they were asked for.
+    layers: OnceLock<[Texture; N_LAYERS]>,
 }
 
 impl Targets {
@@ -106,7 +148,23 @@ impl Targets {
         Self {
             codes: picture.codes(gpu),
             picture,
+            light: OnceLock::new(),
+            layers: OnceLock::new(),
         }
+    }
+
+    /// For the picture in light.
+    pub(crate) fn light(&self, gpu: &Gpu) -> &Texture {
+        let size_px = self.picture.size_px();
+        self.light
+            .get_or_init(|| Texture::target(gpu, "composite light", size_px, LIGHT_FORMAT))
+    }
+
+    /// For clean plate, shadow ratio, toy and masks.
+    pub(crate) fn layers(&self, gpu: &Gpu) -> &[Texture; N_LAYERS] {
+        let target = |label| Texture::target(gpu, label, self.picture.size_px(), LAYER_FORMAT);
+        self.layers
+            .get_or_init(|| ["clean plate", "shadow ratio", "toy layer", "masks"].map(target))
     }
 
     /// Both views of the picture.
@@ -121,18 +179,75 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         Self {
-            open: draw(gpu, "fs_open", [&[], &[]], false),
-            clean: Shadowed::new(gpu, false),
-            grained: OnceLock::new(),
+            of_codes: Draws::new(gpu, REGION_FORMAT),
+            of_light: OnceLock::new(),
+            layers: OnceLock::new(),
         }
     }
 
+    /// Draws the picture as codes.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        self.of_codes.encode(recorder, inputs, &targets.picture.view);
+    }
+
+    /// Draws the picture in light, finer than codes.
+    pub(crate) fn encode_light(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &Texture) {
         let gpu = recorder.gpu;
-        let shadowed = match inputs.grain {
-            None => &self.clean,
-            Some(_) => self.grained.get_or_init(|| Shadowed::new(gpu, true)),
+        let draws = self.of_light.get_or_init(|| Draws::new(gpu, LIGHT_FORMAT));
+        draws.encode(recorder, inputs, &target.view);
+    }
+
+    /// Draws the layers of the picture, without grain.
+    pub(crate) fn encode_layers(
+        &self,
+        recorder: &mut Recorder<'_>,
+        inputs: &Inputs<'_>,
+        targets: &[Texture; N_LAYERS],
+    ) {
+        let gpu = recorder.gpu;
+        let layered = self.layers.get_or_init(|| Layered::new(gpu));
+        let draw = match inputs.toy.n_draws() {
+            1 => &layered.drawn_once,
+            _ => &layered.drawn_four_times,
         };
+        let draw = draw.of(gpu, &inputs.seen.frame);
+        let groups = [
+            inputs.seen.bind(recorder, draw),
+            recorder.bind(draw, GROUP_PASS, &inputs.of_all(&recorder.gpu.samplers.linear)),
+            recorder.bind_with(draw, GROUP_SHADOW, &inputs.drawing(), &inputs.of_shadow()),
+            recorder.bind(draw, GROUP_TOY, &inputs.of_toy()),
+        ];
+        recorder.fullscreen(draw, &groups, &targets.each_ref().map(|target| &target.view));
+    }
+}
+
+impl Draws {
+    fn new(gpu: &Gpu, format: TextureFormat) -> Self {
+        Self {
+            format,
+            open: draw(gpu, "fs_open", [&[], &[]], (Variant::PLAIN, &[format])),
+            plain: Shadowed::new(gpu, Variant::PLAIN, format),
+            others: Default::default(),
+        }
+    }
+
+    fn shadowed(&self, gpu: &Gpu, variant: Variant) -> &Shadowed {
+        let other = match (variant.has_grain, variant.has_strength) {
+            (false, false) => return &self.plain,
+            (true, false) => &self.others[0],
+            (false, true) => &self.others[1],
+            (true, true) => &self.others[2],
+        };
+        other.get_or_init(|| Shadowed::new(gpu, variant, self.format))
+    }
+
+    fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &TextureView) {
+        let gpu = recorder.gpu;
+        let variant = Variant {
+            has_grain: inputs.grain.is_some(),
+            has_strength: inputs.shadow_strength != 1.0,
+        };
+        let shadowed = self.shadowed(gpu, variant);
         let near_toy = match inputs.toy.n_draws() {
             1 => &shadowed.drawn_once,
             _ => &shadowed.drawn_four_times,
@@ -146,7 +261,7 @@ impl Pass {
         let drawing = inputs.drawing();
         let shadowed = recorder.bind_with(beside, GROUP_SHADOW, &drawing, &inputs.of_shadow());
         let of_toy = recorder.bind(near_toy, GROUP_TOY, &inputs.of_toy());
-        let (target, parts) = (&targets.picture.view, inputs.parts);
+        let parts = inputs.parts;
         let mut render = recorder.render(SHADER.name, &[Some(cleared(target))], None, StoreOp::Discard);
         render.begin(open, &of_open);
         fill_parts(&mut render, &parts.open);
@@ -160,21 +275,47 @@ impl Pass {
 }
 
 impl Shadowed {
-    fn new(gpu: &Gpu, has_grain: bool) -> Self {
+    fn new(gpu: &Gpu, variant: Variant, format: TextureFormat) -> Self {
+        let draw = |fragment, read| draw(gpu, fragment, read, (variant, &[format]));
         Self {
-            beside: draw(gpu, "fs_beside", [SHADOW_SLOTS, &[]], has_grain),
-            drawn_once: draw(gpu, "fs_drawn_once", [SHADOW_SLOTS, TOY_SLOTS], has_grain),
-            drawn_four_times: draw(gpu, "fs_drawn_four_times", [SHADOW_SLOTS, TOY_SLOTS], has_grain),
+            beside: draw("fs_beside", [SHADOW_SLOTS, &[]]),
+            drawn_once: draw("fs_drawn_once", [SHADOW_SLOTS, TOY_SLOTS]),
+            drawn_four_times: draw("fs_drawn_four_times", [SHADOW_SLOTS, TOY_SLOTS]),
         }
     }
 }
 
-fn draw(gpu: &Gpu, fragment: &'static str, read: [&'static [Slot]; 2], has_grain: bool) -> ByForm<Draw> {
+impl Layered {
+    fn new(gpu: &Gpu) -> Self {
+        // The clean plate is what a shadow of no strength leaves.
+        let variant = Variant {
+            has_grain: false,
+            has_strength: true,
+        };
+        let formats = (variant, &[LAYER_FORMAT; N_LAYERS][..]);
+        Self {
+            drawn_once: draw(gpu, "fs_layers_once", [SHADOW_SLOTS, TOY_SLOTS], formats),
+            drawn_four_times: draw(gpu, "fs_layers_four_times", [SHADOW_SLOTS, TOY_SLOTS], formats),
+        }
+    }
+}
+
+fn draw(
+    gpu: &Gpu,
+    fragment: &'static str,
+    read: [&'static [Slot]; 2],
+    (variant, formats): (Variant, &[TextureFormat]),
+) -> ByForm<Draw> {
     let groups = [SEEN_SLOTS, SLOTS, read[0], read[1]];
+    let formats = formats.to_vec();
     ByForm::new(gpu, move |gpu, form| {
         gpu.draw(&DrawSpec {
-            constants: vec![form, ("HAS_GRAIN", u32::from(has_grain))],
-            ..DrawSpec::fullscreen(&SHADER, fragment, groups, &[REGION_FORMAT])
+            constants: vec![
+                form,
+                ("HAS_GRAIN", u32::from(variant.has_grain)),
+                ("HAS_STRENGTH", u32::from(variant.has_strength)),
+            ],
+            ..DrawSpec::fullscreen(&SHADER, fragment, groups, &formats)
         })
     })
 }
@@ -183,6 +324,7 @@ impl<'a> Inputs<'a> {
     fn drawing(&self) -> Drawing {
         let clean = Drawing {
             has_detail: u32::from(self.detail.is_some()),
+            strength: self.shadow_strength,
             ..Drawing::zeroed()
         };
         self.grain

@@ -5,6 +5,7 @@ pub(crate) mod region_parts;
 use crate::geometry::rect::PixelRect;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
+use crate::gpu::texture::Texture;
 use crate::model::capture::CaptureTargets;
 use crate::model::frame::region_parts::{Marks, RegionParts};
 use crate::model::lighting;
@@ -58,6 +59,7 @@ pub(crate) struct FramePath<'a> {
     pub(crate) toy: &'a ToyMesh,
     pub(crate) frame: Frame<'a>,
     pub(crate) grain: Option<PictureGrain>,
+    pub(crate) shadow_strength: f32,
 }
 
 impl FramePath<'_> {
@@ -69,7 +71,7 @@ impl FramePath<'_> {
         let (passes, of) = (self.passes, &self.drawn.by_pass);
         let is_shape_new = !delta.keeps_pose();
         if is_shape_new {
-            self.encode_light(recorder);
+            self.encode_lighting(recorder);
             passes
                 .moved_mask
                 .encode(recorder, self.region, self.toy, &of.moved_mask);
@@ -83,7 +85,23 @@ impl FramePath<'_> {
         passes.composite.encode(recorder, &inputs, &of.composite);
     }
 
-    fn encode_light(&self, recorder: &mut Recorder<'_>) {
+    /// Draws the picture of what is there, in light.
+    pub(crate) fn encode_light(&self, recorder: &mut Recorder<'_>, target: &Texture) {
+        let inputs = self.composite_inputs();
+        self.passes.composite.encode_light(recorder, &inputs, target);
+    }
+
+    /// Draws the layers of what is there.
+    pub(crate) fn encode_layers(
+        &self,
+        recorder: &mut Recorder<'_>,
+        targets: &[Texture; composite::N_LAYERS],
+    ) {
+        let inputs = self.composite_inputs();
+        self.passes.composite.encode_layers(recorder, &inputs, targets);
+    }
+
+    fn encode_lighting(&self, recorder: &mut Recorder<'_>) {
         let (light, maps) = (self.light, &self.drawn.light);
         let posed = Posed {
             globals: self.region.globals_on_device(),
@@ -138,6 +156,7 @@ impl FramePath<'_> {
                 .as_ref()
                 .map(|residual| &residual.view),
             grain: self.grain,
+            shadow_strength: self.shadow_strength,
         }
     }
 

@@ -52,6 +52,11 @@ impl Marks {
         }
         Self { near, shadowed }
     }
+
+    /// Marks all as shadowed: the light changes wherever any of it is hidden.
+    pub(crate) fn shadow_all(&mut self) {
+        self.shadowed.mark_all();
+    }
 }
 
 /// Rectangles that fill the region.

@@ -30,6 +30,8 @@ pub(crate) struct LightMaps {
     pub(crate) self_shadow: self_shadow::Targets,
     /// Replaces the visibility of the lights that the passes compute.
     pub(crate) injected: Option<InjectedLights>,
+    /// Points that the shadow on receivers is drawn from, where these are others than the lights' own.
+    softened: Option<Vec<LightPointsBuffer>>,
 }
 
 /// Visibility of the lights from outside.
@@ -62,11 +64,21 @@ impl InjectedLights {
 }
 
 impl LightMaps {
+    /// Takes the points of each light, receiver by receiver, that the shadow on receivers is to be drawn from; with none, the lights'
+    /// own.
+    pub(crate) fn soften(&mut self, gpu: &Gpu, plan: &Plan, points: Option<Vec<Vec<Vec4>>>) {
+        let on_device = |(light, points)| {
+            LightPointsBuffer::new(gpu, points, plan.n_receivers, PartOfMap::of_light(plan, light))
+        };
+        self.softened = points.map(|points| points.into_iter().enumerate().map(on_device).collect());
+    }
+
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
         Self {
             visibility: occlusion::Targets::new(gpu, plan),
             self_shadow: self_shadow::Targets::new(gpu, plan),
             injected: None,
+            softened: None,
         }
     }
 }
@@ -127,7 +139,7 @@ impl Lighting {
         if let Some(injected) = &maps.injected {
             tiles.join(&injected.shadowed);
         }
-        for light in &self.lights {
+        for light in maps.softened.as_ref().unwrap_or(&self.lights) {
             for (receiver, points) in light.by_receiver().enumerate() {
                 // A light behind a receiver casts no shadow on it.
                 if points.iter().all(|point| point.y <= 0.0) {
@@ -173,8 +185,8 @@ impl Lighting {
         if self.lights.is_empty() {
             return;
         }
-        let lights: Vec<_> = self
-            .lights
+        let lights = maps.softened.as_ref().unwrap_or(&self.lights);
+        let lights: Vec<_> = lights
             .iter()
             .enumerate()
             .map(|(index, points)| Light {

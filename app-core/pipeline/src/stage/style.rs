@@ -1,0 +1,76 @@
+//! The shown shadow to taste: what a frame's style changes of what is there.
+
+use glam::Vec4;
+
+use super::Stage;
+use super::method::Method;
+use crate::gpu::Gpu;
+use crate::model::plan::Plan;
+use crate::plan::Change;
+use crate::preset::Settings;
+use app_scene::frame::FrameInput;
+use app_scene::scene::Light;
+use app_scene::shadow_style::ShadowStyle;
+
+/// How much wider lights are taken to be than they are, so that the work region holds both the real shadow and the shown one.
+fn widening(style: ShadowStyle) -> f64 {
+    style.softness.max(1.0)
+}
+
+impl Stage {
+    /// Takes the style of a frame; the baseline draws shadows as published.
+    pub(super) fn take_shadow_style(&mut self, input: &FrameInput) {
+        let style = match self.settings {
+            Settings::Model(_) => input.shadow_style,
+            Settings::Baseline(_) => ShadowStyle::TRUE,
+        };
+        if widening(style) != widening(self.shadow_style) {
+            self.cached_footprint = None;
+        }
+        self.shadow_style = style;
+    }
+
+    /// The lights whose shadows the work region has to hold.
+    pub(super) fn reaching_lights(&self) -> Vec<Light> {
+        self.lights_times(widening(self.shadow_style))
+    }
+
+    /// Makes the method draw shadows in the style of the frame, where that or the view has changed.
+    pub(super) fn style_shadow(&mut self, gpu: &Gpu, change: Change) {
+        if self.drawn_style == self.shadow_style && change < Change::View {
+            return;
+        }
+        self.drawn_style = self.shadow_style;
+        let style = self.shadow_style;
+        let Some(Method::Model(model)) = self.state.as_ref().map(|state| &state.method) else {
+            return;
+        };
+        let points = (style.softness != 1.0).then(|| self.softened_points(&model.region.plan));
+        if let Some(Method::Model(model)) = self.state.as_mut().map(|state| &mut state.method) {
+            #[allow(clippy::cast_possible_truncation, reason = "from 0 to 4")]
+            model.style_shadow(gpu, style.strength as f32, points);
+        }
+    }
+
+    /// Points over the lights as the shown shadow has them, receiver by receiver.
+    fn softened_points(&self, plan: &Plan) -> Vec<Vec<Vec4>> {
+        let lights = self.lights_times(self.shadow_style.softness);
+        let lights = lights.iter().zip(&plan.n_light_points);
+        lights
+            .map(|(light, n_points)| self.points_of(light, *n_points))
+            .collect()
+    }
+
+    /// The lights so many times as wide, as the toy sees them.
+    fn lights_times(&self, factor: f64) -> Vec<Light> {
+        let toy_in_world = self
+            .layout()
+            .world_from_anchor()
+            .transform_point3(self.toy_in_anchor());
+        let widened = |light: &Light| match factor {
+            1.0 => *light,
+            _ => light.widened(toy_in_world, factor),
+        };
+        self.lights.used.iter().map(widened).collect()
+    }
+}
