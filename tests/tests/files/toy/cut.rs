@@ -1,5 +1,7 @@
 //! What alpha cuts out is cut out of the triangles: what is left is there where alpha is, and nothing else.
 
+#![expect(clippy::cast_possible_truncation, reason = "alpha is from 0 to 255")]
+
 use std::collections::HashMap;
 use std::f32::consts::PI;
 use std::io::Cursor;

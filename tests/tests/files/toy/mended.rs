@@ -19,6 +19,10 @@ fn tree(uri: &str) -> Value {
 /// The same as text: corners, then normals.
 const DATA: &str = "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/";
 
+fn index(value: &Value) -> usize {
+    usize::try_from(value.as_u64().unwrap()).unwrap()
+}
+
 fn corners(bytes: &[u8]) -> Vec<Vec3> {
     let toy = Toy::from_glb(FILE, bytes).unwrap();
     let mut posed = PosedMesh::default();
@@ -79,8 +83,8 @@ fn neighbours_are_packed_in() {
     assert_eq!(corners(&whole), expected);
     let (json, bin) = measure::glb::chunks(&whole);
     assert_eq!(json["images"][1]["uri"], "missing.png");
-    let view = &json["bufferViews"][json["images"][0]["bufferView"].as_u64().unwrap() as usize];
-    let at = view["byteOffset"].as_u64().unwrap() as usize;
+    let view = &json["bufferViews"][index(&json["images"][0]["bufferView"])];
+    let at = index(&view["byteOffset"]);
     assert_eq!(bin[at..at + 3], [1, 2, 3]);
     assert_eq!(asked, ["parts/the toy.bin", "skin.png", "missing.png"]);
     // What is whole is not touched, and a buffer that is nowhere is named.

@@ -2,6 +2,8 @@
 //!
 //! Streams that are written out below are of the format's own encoder, meshoptimizer 1.0; those for filters are made here.
 
+#![expect(clippy::cast_possible_truncation, reason = "fractions of one, in few bits")]
+
 use app_core::toy::{Pose, PosedMesh, Toy};
 use glam::{DMat4, Vec3};
 use serde_json::{Value, json};

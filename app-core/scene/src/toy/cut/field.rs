@@ -131,6 +131,10 @@ impl Picture<'_> {
         while span / f64::from(1_u32 << level) > CELLS && level + 1 < self.levels.len() {
             level += 1;
         }
+        let whole = &self.levels[self.levels.len() - 1].ranges;
+        if level + 1 == self.levels.len() && whole.len() == 1 {
+            return whole[0].map(|alpha| f32::from(alpha) / 255.0);
+        }
         let [mut least, mut most] = [u8::MAX, 0];
         let (step, cells) = (f64::from(1_u32 << level), &self.levels[level]);
         let is_fine = level == 0;
@@ -152,7 +156,7 @@ impl Picture<'_> {
 
 /// Texels from one to another such that each cell of `step` texels has one, cells at the border being smaller.
 fn steps(from: f64, to: f64, step: f64) -> impl Iterator<Item = f64> {
-    /// Beyond, every cell of any picture has been seen.
+    /// Far more than the boxes around triangles have at their levels.
     const MOST: usize = 4096;
     let half = (step / 2.0).floor().max(1.0);
     let inner = (0..MOST).map(move |i| from + half * i as f64);

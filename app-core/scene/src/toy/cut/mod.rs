@@ -8,6 +8,7 @@
 mod field;
 mod grown;
 mod refine;
+mod welded;
 
 use glam::DVec3;
 

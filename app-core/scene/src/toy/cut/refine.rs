@@ -10,7 +10,7 @@ use std::collections::{HashMap, HashSet};
 use glam::{Vec2, Vec3};
 
 use super::field::{Corner, Field};
-use super::grown::welded;
+use super::welded::welded;
 use crate::toy::geometry::Geometry;
 
 /// The shortest edges that are divided.

@@ -6,7 +6,27 @@
     reason = "numbers are rounded into the bits that the format gives them"
 )]
 
-use super::Filter;
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::toy) enum Filter {
+    None,
+    Octahedral,
+    Quaternion,
+    Exponential,
+    Color,
+}
+
+impl Filter {
+    pub(in crate::toy) fn of(name: &str) -> Option<Self> {
+        Some(match name {
+            "NONE" => Self::None,
+            "OCTAHEDRAL" => Self::Octahedral,
+            "QUATERNION" => Self::Quaternion,
+            "EXPONENTIAL" => Self::Exponential,
+            "COLOR" => Self::Color,
+            _ => return None,
+        })
+    }
+}
 
 /// In place, over elements of `stride` bytes.
 pub(super) fn apply(filter: Filter, bytes: &mut [u8], stride: usize) {

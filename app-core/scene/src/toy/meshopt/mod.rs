@@ -7,6 +7,8 @@ mod filters;
 mod indices;
 mod vertices;
 
+pub(super) use filters::Filter;
+
 /// How a view is compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Compressed {
@@ -25,34 +27,12 @@ pub(super) enum Mode {
     Indices,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Filter {
-    None,
-    Octahedral,
-    Quaternion,
-    Exponential,
-    Color,
-}
-
 impl Mode {
     pub(super) fn of(name: &str) -> Option<Self> {
         Some(match name {
             "ATTRIBUTES" => Self::Attributes,
             "TRIANGLES" => Self::Triangles,
             "INDICES" => Self::Indices,
-            _ => return None,
-        })
-    }
-}
-
-impl Filter {
-    pub(super) fn of(name: &str) -> Option<Self> {
-        Some(match name {
-            "NONE" => Self::None,
-            "OCTAHEDRAL" => Self::Octahedral,
-            "QUATERNION" => Self::Quaternion,
-            "EXPONENTIAL" => Self::Exponential,
-            "COLOR" => Self::Color,
             _ => return None,
         })
     }
