@@ -177,6 +177,7 @@ fn a_blend_of_two_grainy_photographs_is_as_grainy_at_every_share() {
         channels: 0.2,
     };
     let variance = noise.variance(f64::from(LIGHT));
+    #[allow(clippy::cast_possible_truncation, reason = "of the range of light")]
     let grainy = |number: u32| {
         let pixels = (0..SIDE * SIDE).map(|k| grain_at([k % SIDE, k / SIDE], number, 0.3, 0.2));
         LightPicture {
