@@ -31,7 +31,7 @@ struct Drawing {
   plate_noise: vec2f,
   beside: f32,
   channels: f32,
-  // What the shown shadow takes of the light, over what it truly takes.
+  // How strong the shown shadow is, 1 being the truth.
   strength: f32,
   unused: f32,
 }
@@ -107,11 +107,13 @@ fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
   return select(model, mix(model, vec3f(1.0), clipped), plate > vec3f(BRIGHTEST_USABLE));
 }
 
-// The model of a receiver with so many times the shadow that `model` has, as far as there is light.
-fn strengthened(point: ReceiverPoint, model: vec3f, strength: f32) -> vec3f {
-  if strength == 1.0 { return model; }
-  let open = receiver_model(point, 1.0, vec4f(1.0));
-  return max(open + strength * (model - open), vec3f(0.0));
+// What a shadow to taste leaves of the light `open`, of which the true one leaves `left`. A weaker one takes its share of what the true
+// one takes; a stronger one is laid over itself, so that it keeps its hue and never takes more light than there is.
+fn strengthened(open: vec3f, left: vec3f, strength: f32) -> vec3f {
+  if strength <= 1.0 { return mix(open, left, strength); }
+  let part = select(vec3f(1.0), left / open, open > vec3f(0.0));
+  // Light that the toy throws onto the table is no shadow.
+  return open * pow(clamp(part, vec3f(0.0), vec3f(1.0)), vec3f(strength)) * max(part, vec3f(1.0));
 }
 
 // The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the
@@ -160,8 +162,8 @@ fn receiver(
   var models = receiver_models(point, vec2f(a_before, a_after), v_before, v_after);
   var a_shown = a_after;
   if HAS_STRENGTH {
-    models[1] = strengthened(point, models[1], strength);
-    a_shown = max(1.0 + strength * (a_after - 1.0), 0.0);
+    models[1] = strengthened(receiver_model(point, 1.0, vec4f(1.0)), models[1], strength);
+    a_shown = strengthened(vec3f(1.0), vec3f(a_after), strength).r;
   }
   let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
   let before = shown_model(b.rgb, clipped, models[0]);

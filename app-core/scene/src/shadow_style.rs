@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::{InputError, check};
 
-/// How strong the shown shadow may be: 4 is black wherever the true one takes a quarter of the light.
+/// How strong the shown shadow may be: with 4 a shadow that leaves half of the light leaves a sixteenth.
 pub const STRENGTH: RangeInclusive<f64> = 0.0..=4.0;
 /// How soft it may be: of a wider light a part would often lie below the table.
 pub const SOFTNESS: RangeInclusive<f64> = 0.0..=4.0;
@@ -15,8 +15,10 @@ pub const SOFTNESS: RangeInclusive<f64> = 0.0..=4.0;
 /// without it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShadowStyle {
-    /// Light that the shadow takes from the receivers, in linear light, over what it truly takes, within [`STRENGTH`]: 0 shows none,
-    /// 2 takes twice as much, as far as there is light. It holds for the shadow of the lights and for that of the ambient light.
+    /// How strong the shadow is on the receivers, in linear light, within [`STRENGTH`]. Up to 1 it is the share of the light that the
+    /// shadow takes of what it truly takes: 0 shows none. Beyond, the part that it leaves is taken to this power: 2 is the true shadow
+    /// laid over itself, which keeps its hue and is never blacker than black. It holds for the shadow of the lights and for that of the
+    /// ambient light.
     pub strength: f64,
     /// Width of the lights, as the shadow shows it, over their own, within [`SOFTNESS`]: penumbrae are as much wider, and 0 is the
     /// shadow of points. A light that is listed as a point keeps its hard shadow, and the ambient light's stays as it is.

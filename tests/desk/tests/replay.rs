@@ -102,12 +102,12 @@ fn only_the_frames_asked_for_are_written_and_an_old_replay_goes_first() {
     let whole = [
         &[MANIFEST_FILE.to_owned()],
         &whole[..],
-        &[INPUTS_FOLDER, MAPS_FOLDER, VALUES_FOLDER].map(str::to_owned),
+        &[PAGE_FILE, INPUTS_FOLDER, MAPS_FOLDER, REPORT_FILE, VALUES_FOLDER].map(str::to_owned),
     ];
     assert_eq!(
         out.names(),
         whole.concat(),
-        "what was whole stays, and no remnants"
+        "what was whole stays, with its report and page, and no remnants"
     );
 
     fs::remove_dir_all(&obstacle).unwrap();

@@ -12,3 +12,4 @@ pub mod photograph;
 pub mod sheet;
 pub mod small;
 pub mod thumbnail;
+pub mod video;

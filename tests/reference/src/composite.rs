@@ -35,8 +35,23 @@ pub struct Shown {
     pub residuals: Vec<Raster<DVec3>>,
     /// Where their cells lie.
     pub grids: Vec<PlaneGrid>,
-    /// What the shadow takes of the light, over what it truly takes.
+    /// Up to 1 the share that the shadow takes of what it truly takes; beyond, how often the true one is laid over itself.
     pub strength: f64,
+}
+
+/// What a shadow of a strength leaves of the light `open`, of which the true one leaves `left`.
+fn strengthened(open: DVec3, left: DVec3, strength: f64) -> DVec3 {
+    let of_channel = |open: f64, left: f64| {
+        if strength <= 1.0 {
+            open + strength * (left - open)
+        } else if open > 0.0 {
+            let part = left / open;
+            open * part.clamp(0.0, 1.0).powf(strength) * part.max(1.0)
+        } else {
+            0.0
+        }
+    };
+    DVec3::from_array([0, 1, 2].map(|channel| of_channel(open[channel], left[channel])))
 }
 
 /// Linear colour of the receiver at `texel` of the region, where nothing is as the camera saw it, and where all is: then a
@@ -57,13 +72,12 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
     };
     let before = model(&pictures.ambient, &pictures.visibility);
     let open = model_in(1.0, DVec4::ONE);
-    let after = open.lerp(model(&shown.ambient, &shown.visibility), shown.strength);
-    let [before, after] =
-        [before, after.max(DVec3::ZERO)].map(|model| shown_model(&shown.solution, point, model, plate));
+    let after = strengthened(open, model(&shown.ambient, &shown.visibility), shown.strength);
+    let [before, after] = [before, after].map(|model| shown_model(&shown.solution, point, model, plate));
     let change = if shown.solution.intensities.is_empty() {
         // How strong the shadow is stays open.
         let ambient = [&pictures.ambient, &shown.ambient].map(|map| coarse_at(map, region, at));
-        (1.0_f64.lerp(ambient[1], shown.strength).max(0.0) - ambient[0]).abs()
+        (strengthened(DVec3::ONE, DVec3::splat(ambient[1]), shown.strength).x - ambient[0]).abs()
     } else {
         (after - before).abs().max_element()
     };

@@ -18,6 +18,8 @@ const LEAST_CONDITIONING: f64 = 0.75;
 const LEAST_DIRECT_FRACTION: f32 = 0.03;
 /// Blackest and whitest: no paint throws back less than a hundredth of the light, or more than all but that.
 const POSSIBLE_BOUNCE: [f32; 2] = [0.01, 0.99];
+/// Light over the plate's below which a toy is dark: a dark table's may be brighter, and is then not accused.
+const DARK_TOY: f64 = 0.15;
 /// Pixels of real shadow below which its strength is uncertain: with up to 18 of them a direct fraction was off by 0.06 to
 /// 0.16, with 35 and more by at most 0.06.
 const FEWEST_PIXELS: f64 = 25.0;
@@ -127,7 +129,7 @@ impl Core {
             .filter(|(_, known)| *known < LEAST_CONDITIONING);
         let lights: Vec<usize> = unknown.map(|(light, _)| *light).collect();
         Ok(if lights.is_empty() {
-            bounce_at_limit(fit)
+            bounce_at_limit(fit, evidence)
         } else {
             Some(Warning::LightsUnderConstrained { lights })
         })
@@ -169,17 +171,15 @@ fn ambient_strength(fit: &Fit) -> f32 {
     (1.0 - (r + g + b) / 3.0).max(0.0)
 }
 
-/// That the bounce on the receiver which the toy stands on is none that a toy can have, in most channels.
-fn bounce_at_limit(fit: &Fit) -> Option<Warning> {
+/// That the bounce on the receiver which the toy stands on is none that a toy can have, in most channels; a channel in which the toy
+/// itself is dark may well have none.
+fn bounce_at_limit(fit: &Fit, evidence: &Evidence) -> Option<Warning> {
+    let toy = evidence.toy_over_plate()?;
     let [red, green, blue, _] = fit.receivers[0].bounce;
-    let n_where = |is_held: fn(f32) -> bool| {
-        [red, green, blue]
-            .into_iter()
-            .filter(|bounce| is_held(*bounce))
-            .count()
-    };
-    let is_black = n_where(|bounce| bounce < POSSIBLE_BOUNCE[0]) >= 2;
-    let is_white = n_where(|bounce| bounce > POSSIBLE_BOUNCE[1]) >= 2;
+    let channels = || [red, green, blue].into_iter().zip(toy);
+    let n_black = channels().filter(|(bounce, toy)| *bounce < POSSIBLE_BOUNCE[0] && *toy > DARK_TOY);
+    let is_black = n_black.count() >= 2;
+    let is_white = channels().filter(|(bounce, _)| *bounce > POSSIBLE_BOUNCE[1]).count() >= 2;
     (is_black || is_white).then_some(Warning::BounceAtLimit { is_black })
 }
 

@@ -41,7 +41,7 @@ pub(crate) struct Model {
     captured: CaptureTargets,
     drawn: FrameTargets,
     passes: Passes,
-    /// What the shown shadow takes of the light, over what it truly takes.
+    /// How strong the shown shadow is, 1 being the truth.
     shadow_strength: f32,
 }
 

@@ -118,6 +118,14 @@ impl Film {
         [PathBuf::from(&frame.file)].into_iter().chain(layers).collect()
     }
 
+    /// The photographs that it shows, in the order of its time, each once.
+    #[must_use]
+    pub fn photographs(&self) -> Vec<usize> {
+        let mut shown: Vec<usize> = self.frames.iter().map(|frame| frame.photograph).collect();
+        shown.dedup();
+        shown
+    }
+
     /// The preset.
     ///
     /// # Errors
@@ -161,6 +169,13 @@ pub fn sources(session: &Stored, is_moving: bool) -> anyhow::Result<Vec<SourceFi
     let others = [&index["toy"]["file"], &index["probe"]["image"]];
     let named = of_plates.chain(of_frames).chain(others).filter_map(Value::as_str);
     let mut paths: Vec<String> = named.chain([SESSION_FILE]).map(str::to_owned).collect();
+    let toy = index["toy"]["file"].as_str().unwrap_or_default();
+    if !toy.to_ascii_lowercase().ends_with(".glb") {
+        // Buffers and pictures may lie beside it.
+        let folder = toy.rsplit_once('/').map_or("", |(folder, _)| folder);
+        let all = session.paths()?.into_iter();
+        paths.extend(all.filter(|path| path.starts_with(folder)));
+    }
     paths.sort();
     paths.dedup();
     let source = |path: String| {
@@ -340,8 +355,8 @@ impl FilmFolder {
     ) -> anyhow::Result<()> {
         for frame in film.iter().flat_map(|film| &film.frames) {
             if !is_kept(frame) {
-                remove_file(&self.path.join(&frame.file))?;
-                remove_file(&self.path.join(frame.layers_file()))?;
+                let files = film.map(|film| film.files_of(frame)).unwrap_or_default();
+                files.iter().try_for_each(|file| remove_file(&self.path.join(file)))?;
             }
         }
         Ok(())

@@ -20,6 +20,7 @@ use desk::alignment::{Alignments, Asked};
 use desk::lens::through_lens;
 use desk::output::write_png;
 use desk::stored::Stored;
+use glam::DMat4;
 
 use super::fine::{write_exr, write_png_16};
 use super::folder::{Film, FilmFolder, FilmFrame, SESSION_FOLDER};
@@ -28,8 +29,8 @@ use super::timeline::{FramePose, Moment};
 /// Pictures that one process makes on a software driver: Mesa 22.3 keeps some MiB of each until the process ends.
 const N_PICTURES_OF_PROCESS: usize = 50;
 
-/// Photographs before its own that the first frame of a process of a moving film is made after: the core learns of a place from each, so
-/// that no step is seen where the next process goes on.
+/// Photographs of a moving film that a frame is made after, at least: the core learns of a place from each, so that no step is seen where
+/// the next process goes on.
 const N_LEARNED: usize = 12;
 
 /// The pose of a frame.
@@ -71,32 +72,21 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     let film = FilmFolder::film_in(folder)?.context("there is no film.json")?;
     let missing = missing(folder, &film, range);
     let capture = Capture::open(Stored::open(folder.join(SESSION_FOLDER))?)?;
-    // Each process aligns the photograph for itself, and so in the same way: no file holds all that is found. Those of a moving film
-    // were aligned when the session was copied.
-    let mut alignments = if film.is_as_given || film.is_moving {
-        Alignments::none()
-    } else {
-        Alignments::new(capture.scene(), Asked::default())
-    };
-    let preset = film.preset()?;
     let Some(first) = missing.first() else {
         return Ok(());
     };
-    let mut photograph = first.photograph.saturating_sub(N_LEARNED);
-    let mut input = photographed(&capture, &mut alignments, photograph, &film)?;
+    let mut studio = Studio::new(&film, &capture)?;
+    let input = studio.photographed(first.photograph)?;
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), adapter))?;
-    let scene = alignments.scene(capture.scene());
-    let scene = alignments.changed_scene(&scene, photograph).unwrap_or(scene);
+    let scene = studio.alignments.scene(capture.scene());
+    let scene = { studio.alignments.changed_scene(&scene, 0) }.unwrap_or(scene);
     let toy = scene.toy.clone();
-    core.set_scene(with_film(scene, &film, input.world_from_shown)?, preset)?;
+    core.set_scene(with_film(scene, &film, input.world_from_shown)?, film.preset()?)?;
     if film.has_layers {
         core.want_layers()?;
     }
     let mut warnings = Warnings::default();
-    let of_alignment = alignments
-        .of(photograph)
-        .into_iter()
-        .flat_map(|aligned| &aligned.alignment.warnings);
+    let of_alignment = { studio.alignments.of(0).into_iter() }.flat_map(|aligned| &aligned.alignment.warnings);
     warnings.say(capture.warnings().iter().map(ToString::to_string))?;
     warnings.say(of_alignment.map(ToString::to_string))?;
     let n_pictures = if core.is_software() {
@@ -104,32 +94,21 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     } else {
         usize::MAX
     };
-    let first_pose = pose_of(&toy, &first.pose)?;
-    while photograph < first.photograph {
-        core.frame(&input.with_shown_pose(first_pose.clone()))?;
-        photograph += 1;
-        input = photographed(&capture, &mut alignments, photograph, &film)?;
-    }
+    let photographs = film.photographs();
+    let mut shown = Position { index: None, input };
     for frame in missing.into_iter().take(n_pictures) {
-        if frame.photograph != photograph {
-            photograph = frame.photograph;
-            input = photographed(&capture, &mut alignments, photograph, &film)?;
+        let pose = pose_of(&toy, &frame.pose)?;
+        let at = { photographs.iter() }.position(|photograph| *photograph == frame.photograph);
+        for index in shown.to_learn(at.unwrap_or_default()) {
+            shown.index = Some(index);
+            shown.input = studio.photographed(photographs[index])?;
+            if Some(index) != at {
+                core.frame(&shown.input.clone().with_shown_pose(pose.clone()))?;
+            }
         }
-        let input = input.clone().with_shown_pose(pose_of(&toy, &frame.pose)?);
-        let failed = || frame.file.clone();
-        let report = core.frame(&input).with_context(failed)?;
-        if film.has_layers {
-            let (light, layers) = (core.read_light(), core.read_layers());
-            let path = folder.join(frame.layers_file());
-            write_exr(&path, &light.with_context(failed)?, &layers.with_context(failed)?)?;
-        }
-        let path = folder.join(&frame.file);
-        if film.bits > 8 {
-            write_png_16(&path, &core.read_light().with_context(failed)?)?;
-        } else {
-            let picture = core.read_picture().with_context(failed)?;
-            write_png(&path, &through_lens(&capture, photograph, picture)?)?;
-        }
+        let report = core.frame(&shown.input.clone().with_shown_pose(pose));
+        let report = report.with_context(|| frame.file.clone())?;
+        write_picture(folder, &studio, frame, &core)?;
         warnings.say(report.warnings.iter().map(ToString::to_string))?;
         let outcome = if report.region.is_some() {
             RETARGETED
@@ -138,21 +117,84 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
         };
         say(&format!("{outcome}{}", frame.number))?;
     }
+    warnings.say(core.read_fit_warnings()?.iter().map(ToString::to_string))?;
     Ok(())
 }
 
-/// A photograph of the session as the core is given it.
-fn photographed(
-    capture: &Capture,
-    alignments: &mut Alignments,
-    index: usize,
-    film: &Film,
-) -> anyhow::Result<FrameInput> {
-    let frame = capture.frame(index)?;
-    alignments.align(capture.scene(), index, &frame)?;
-    let input = alignments.input(index, &frame, film.preset()?);
-    let grain = Grain::of(capture.scene(), input.image.rgba(), &input.camera);
-    Ok(input.with_grain(grain).with_shadow_style(film.shadow))
+/// Where in the film's photographs the core is.
+struct Position {
+    /// Among those that the film shows; none before the first.
+    index: Option<usize>,
+    input: FrameInput,
+}
+
+impl Position {
+    /// Photographs that the core is to be shown for that at `index` to be the latest: it, after those before it.
+    fn to_learn(&self, index: usize) -> Range<usize> {
+        match self.index {
+            Some(latest) if latest == index => index..index,
+            Some(latest) if latest < index => (latest + 1).max(index.saturating_sub(N_LEARNED))..index + 1,
+            _ => index.saturating_sub(N_LEARNED)..index + 1,
+        }
+    }
+}
+
+/// What the pictures are made from.
+struct Studio<'a> {
+    film: &'a Film,
+    capture: &'a Capture,
+    alignments: Alignments,
+    /// Where the toy is shown throughout; none where it stands.
+    world_from_shown: Option<DMat4>,
+}
+
+impl<'a> Studio<'a> {
+    fn new(film: &'a Film, capture: &'a Capture) -> anyhow::Result<Self> {
+        let aligned = || Alignments::new(capture.scene(), Asked::default());
+        Ok(Self {
+            film,
+            capture,
+            // Each process aligns the photograph for itself, and so in the same way: no file holds all that is found.
+            alignments: if film.is_as_given || film.is_moving {
+                Alignments::none()
+            } else {
+                aligned()
+            },
+            world_from_shown: capture.frame(0)?.world_from_shown,
+        })
+    }
+
+    /// A photograph as the core is given it.
+    fn photographed(&mut self, index: usize) -> anyhow::Result<FrameInput> {
+        let frame = self.capture.frame(index)?;
+        if self.film.is_moving {
+            // They were aligned when the session was copied; what is seen in those before is not kept.
+            self.alignments = Alignments::none();
+        }
+        self.alignments.align(self.capture.scene(), index, &frame)?;
+        let input = self.alignments.input(index, &frame, self.film.preset()?);
+        let grain = Grain::of(self.capture.scene(), input.image.rgba(), &input.camera);
+        let input = input.with_grain(grain).with_shadow_style(self.film.shadow);
+        Ok(input.with_world_from_shown(self.world_from_shown))
+    }
+}
+
+/// Writes the picture that the core has made, and its layers if they are wanted; the picture last, since it says that both are there.
+fn write_picture(folder: &Path, studio: &Studio, frame: &FilmFrame, core: &Core) -> anyhow::Result<()> {
+    let failed = || frame.file.clone();
+    if studio.film.has_layers {
+        let (light, layers) = (core.read_light(), core.read_layers());
+        let path = folder.join(frame.layers_file());
+        write_exr(&path, &light.with_context(failed)?, &layers.with_context(failed)?)?;
+    }
+    let path = folder.join(&frame.file);
+    if studio.film.bits > 8 {
+        write_png_16(&path, &core.read_light().with_context(failed)?)?;
+    } else {
+        let picture = core.read_picture().with_context(failed)?;
+        write_png(&path, &through_lens(studio.capture, frame.photograph, picture)?)?;
+    }
+    Ok(())
 }
 
 fn say(line: &str) -> io::Result<()> {
@@ -177,7 +219,7 @@ impl Warnings {
 }
 
 /// The scene that knows all that is going to be shown, so that no frame depends on those that were made before it.
-fn with_film(scene: Scene, film: &Film, world_from_shown: Option<glam::DMat4>) -> anyhow::Result<Scene> {
+fn with_film(scene: Scene, film: &Film, world_from_shown: Option<DMat4>) -> anyhow::Result<Scene> {
     let mut poses: Vec<&FramePose> = Vec::new();
     for frame in &film.frames {
         if !poses.contains(&&frame.pose) {

@@ -16,8 +16,6 @@ use app_core::session::{Capture, Session};
 use app_core::shadow_style::ShadowStyle;
 use app_core::toy::Toy;
 use app_core::wgpu;
-use desk::alignment::{Alignments, Asked};
-use desk::check::aligned_session;
 use desk::convert;
 use desk::files::SESSION_FILE;
 use desk::output::write_whole;
@@ -28,9 +26,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::folder::{Film, FilmFolder, FilmFrame, MadeBy, index_of, sources};
 use super::frame_files::{FrameRange, NamePattern};
 use super::grammar::{ClipFacts, items};
+use super::moving;
 use super::outputs;
 use super::render::{PASSED_THROUGH, WARNING, missing};
-use super::timeline::{ROUNDING_SECS, Timing, frames, photograph_at};
+use super::timeline::{Timing, frames, photograph_at};
 
 /// What is asked for.
 pub struct Order {
@@ -109,11 +108,7 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
             let _ = writeln!(io::stderr(), "{line}");
         }
     };
-    let mut warnings = BTreeSet::new();
-    folder.begin(&film, order.is_forced, |to| {
-        warnings = write_session(order, to)?;
-        Ok(())
-    })?;
+    folder.begin(&film, order.is_forced, |to| write_session(order, &film, to, &say))?;
     let made_before = by_others(&folder, &film)?;
     outputs::write_xsheet(folder.path(), &film, &clip_facts(&capture.scene().toy))?;
     let n_missing = missing(folder.path(), &film, &range).len();
@@ -127,7 +122,7 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
             n_missing as f64 / secs
         ),
     };
-    let mut said: String = warnings
+    let mut said: String = moving::warnings(folder.path())?
         .union(&made.warnings)
         .map(|warning| format!("warning: {warning}\n"))
         .collect();
@@ -144,7 +139,7 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
         film.frames.len(),
         order.out.display()
     );
-    said += &said_of_photographs(order, &film)?;
+    said += &moving::said_of_photographs(&order.session, &film)?;
     if !is_part && !order.is_without_preview {
         say("writing previews");
         said += &outputs::write_previews(folder.path(), &film)?;
@@ -156,7 +151,14 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
 fn by_others(folder: &FilmFolder, film: &Film) -> anyhow::Result<String> {
     let begun = FilmFolder::film_in(folder.path())?.context("there is no film.json")?;
     let n_there = begun.frames.len() - missing(folder.path(), &begun, &(0..u32::MAX)).len();
-    let (by, now) = (&begun.made_by, &film.made_by);
+    let now = &film.made_by;
+    let by = match &begun.made_by {
+        by if *by == MadeBy::default() => &MadeBy {
+            build: "an earlier version".to_owned(),
+            driver: "an unknown driver".to_owned(),
+        },
+        by => by,
+    };
     Ok(if by == now || n_there == 0 {
         String::new()
     } else {
@@ -209,7 +211,7 @@ fn planned(order: &Order, capture: &Capture) -> anyhow::Result<Film> {
     let name = name.unwrap_or_else(|| NamePattern::of_session(&scene.name));
     let session = Stored::open(&order.session)?;
     let times_secs = if order.is_moving {
-        photograph_times(&session)?
+        moving::times_secs(&session)?
     } else {
         vec![0.0]
     };
@@ -231,69 +233,30 @@ fn planned(order: &Order, capture: &Capture) -> anyhow::Result<Film> {
             .map(|(number, pose)| FilmFrame {
                 number,
                 file: name.file(number),
-                photograph: photograph_at(&times_secs, f64::from(number - order.start) / order.timing.fps),
+                photograph: photograph_at(&times_secs, order.timing.from_secs + f64::from(number - order.start) / order.timing.fps),
                 pose,
             })
             .collect(),
     })
 }
 
-/// When each photograph of a session was taken, in seconds from the first.
-fn photograph_times(session: &Stored) -> anyhow::Result<Vec<f64>> {
-    let index = index_of(session)?;
-    let frames = index["frames"].as_array().into_iter().flatten();
-    let times: Vec<f64> = frames.filter_map(|frame| frame["time"].as_f64()).collect();
-    let first = times.first().copied().unwrap_or_default();
-    ensure!(
-        times.is_sorted(),
-        "{SESSION_FILE}: frames[].time: a moving film needs photographs in the order of their times"
-    );
-    Ok(times.into_iter().map(|time| time - first).collect())
-}
-
-/// What becomes of a session's other photographs.
-fn said_of_photographs(order: &Order, film: &Film) -> anyhow::Result<String> {
-    let session = Stored::open(&order.session)?;
-    let index = index_of(&session)?;
-    let frames = index["frames"].as_array().into_iter().flatten();
-    let photographs: BTreeSet<&str> = frames.filter_map(|frame| frame["image"].as_str()).collect();
-    if !order.is_moving {
-        return Ok(match photographs.len() {
-            0 | 1 => String::new(),
-            n => format!("the first of {n} photographs is animated; --moving shows each at its time\n"),
-        });
-    }
-    let end_secs = photograph_times(&session)?.last().copied().unwrap_or_default();
-    let film_secs = (film.frames.len() as f64 - 1.0) / film.timing.fps;
-    Ok(if film_secs > end_secs + ROUNDING_SECS {
-        format!("the photographs end at {end_secs:.2} s: the last one stays to the film's end\n")
-    } else {
-        String::new()
-    })
-}
-
 /// A copy of the session: what is made later is made of that. Of a film of one photograph it has the first frame alone; each process
-/// aligns that for itself. All photographs of a moving film are aligned here, one after the other. Returns what there is to warn of.
-fn write_session(order: &Order, to: &Path) -> anyhow::Result<BTreeSet<String>> {
-    let session = Stored::open(&order.session)?;
-    if order.is_moving && !order.is_as_given {
-        let capture = Capture::open(open_session(&order.session)?)?;
-        let alignments = Alignments::find(&capture, 0..capture.n_frames(), Asked::default())?;
-        aligned_session::write(&session, to, &alignments)?;
-        let aligned = (0..capture.n_frames()).filter_map(|frame| alignments.of(frame));
-        let warnings = aligned.flat_map(|aligned| &aligned.alignment.warnings);
-        return Ok(warnings.map(ToString::to_string).collect());
+/// aligns that for itself. The photographs of a moving film are aligned here, as far as it shows them.
+fn write_session(order: &Order, film: &Film, to: &Path, say: &dyn Fn(&str)) -> anyhow::Result<()> {
+    if film.is_moving && !film.is_as_given {
+        let last = film.frames.iter().map(|frame| frame.photograph).max();
+        return moving::write_aligned(&order.session, to, last.map_or(0, |last| last + 1), say);
     }
-    convert::write(&session, None, to)?;
-    if order.is_moving {
-        return Ok(BTreeSet::new());
+    convert::write(&Stored::open(&order.session)?, None, to)?;
+    if film.is_moving {
+        return Ok(());
     }
     let mut index = index_of(&Stored::open(to)?)?;
     if let Some(frames) = index["frames"].as_array_mut() {
         frames.truncate(1);
     }
     write_whole(&to.join(SESSION_FILE), format!("{index:#}\n").as_bytes())?;
-    Ok(BTreeSet::new())
+    Ok(())
 }
 
 /// What the processes said.

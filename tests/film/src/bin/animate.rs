@@ -50,7 +50,7 @@ struct Args {
     /// Frames in which a clip's start takes over from the pose before it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=240))]
     blend: u32,
-    /// Where to begin in what the clips say, in seconds
+    /// Where to begin in what the clips say, and with --moving in the recording, in seconds
     #[arg(long, value_name = "SECS", default_value_t = 0.0, value_parser = parse_secs)]
     from: f64,
     /// Where to end
@@ -59,7 +59,7 @@ struct Args {
     /// How much work a frame may cost
     #[arg(long, value_name = "NAME", default_value = "best")]
     preset: Preset,
-    /// How strong the shadow is, from 0, none, to 4: 1 is the truth, 2 takes twice the light
+    /// How strong the shadow is, from 0, none, to 4: 1 is the truth, 2 is laid over itself
     #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = parse_strength)]
     shadow_strength: f64,
     /// How soft the shadow is, from 0, that of points of light, to 4: 1 is the truth, 2 has an edge twice as wide

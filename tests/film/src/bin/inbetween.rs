@@ -103,6 +103,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     }
     eprintln!();
     let mut lines = findings(&film.keys);
+    lines.extend(film.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.push(format!(
         "{} pictures, {SHEET_FILE}, {CONTACT_FILE}, {REPORT_FILE} and {PAGE_FILE}, which compares them with the keys, in {}\n",
         film.n_frames,

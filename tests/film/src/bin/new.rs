@@ -15,7 +15,8 @@ use glam::DVec3;
 #[derive(Parser)]
 #[command(name = "new", bin_name = "cargo xtask new")]
 struct Args {
-    /// Photographs of the place without the toy, if there are any, and one of the toy last; PNG or JPEG
+    /// Photographs of the place without the toy, if there are any, and one of the toy last; PNG or JPEG, or a video of a camera that
+    /// stands still, if ffmpeg is installed: `animate --moving` then shows each of its pictures at its time
     #[arg(required = true, value_name = "PLATE... PHOTO")]
     photographs: Vec<PathBuf>,
     /// The toy's model, a .glb

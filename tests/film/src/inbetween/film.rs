@@ -1,5 +1,6 @@
 //! The film: each frame made from the keys beside it, blended and written.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use app_core::core::{Core, CoreError};
@@ -26,6 +27,9 @@ use crate::sheet::Cell;
 pub(super) const ONION_FOLDER: &str = "onion";
 /// Of the key before, the frame and the key after in an onion skin.
 const ONION_WEIGHTS: [f32; 3] = [0.25, 0.5, 0.25];
+
+/// Noise of frames is numbered from here, far from the pictures' own that the core makes.
+const OWN_NOISE: u32 = 1 << 31;
 
 /// How pictures are called: a text before and after a number of at least four digits.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -71,6 +75,8 @@ pub struct Film {
     pub n_frames: usize,
     /// What was found of the keys.
     pub keys: Keys,
+    /// What may be wrong with pictures that were made of them.
+    pub warnings: Vec<String>,
 }
 
 /// A key that the core has learned.
@@ -79,6 +85,7 @@ struct Ready<'a> {
     key: &'a Key,
     core: Core,
     world_from_shown: DMat4,
+    is_said: bool,
 }
 
 impl<'a> Ready<'a> {
@@ -92,7 +99,20 @@ impl<'a> Ready<'a> {
             key,
             core,
             world_from_shown: keys.world_from_shown,
+            is_said: false,
         })
+    }
+
+    /// What the core has learned of the key that may be wrong; once.
+    fn warnings(&mut self) -> Result<Vec<String>, InbetweenError> {
+        if self.is_said {
+            return Ok(Vec::new());
+        }
+        self.is_said = true;
+        let index = self.index;
+        let warnings = self.core.read_fit_warnings();
+        let warnings = warnings.map_err(|reason| InbetweenError::Core { index, reason })?;
+        Ok(warnings.iter().map(|warning| format!("key {index}: {warning}")).collect())
     }
 
     /// The toy in a pose at the place where all frames show it.
@@ -133,6 +153,7 @@ pub fn make(
         output: &output,
         ready: Vec::new(),
         last: None,
+        warnings: BTreeSet::new(),
     };
     let mut report = Report::new(shot, &keys, core);
     let mut cells = Vec::new();
@@ -142,11 +163,14 @@ pub fn make(
         cells.push(Cell::new(&image, entry.is_key));
         report.frames.push(entry);
     }
+    report.warnings.extend(maker.warnings.iter().cloned());
+    let warnings = maker.warnings.into_iter().collect();
     write_report(&output, &report, &cells)?;
     write_page(&output, &report, &keys, options.has_onion)?;
     Ok(Film {
         n_frames: moments.len(),
         keys,
+        warnings,
     })
 }
 
@@ -160,6 +184,8 @@ struct Maker<'a> {
     ready: Vec<Ready<'a>>,
     /// The latest moment with what was made of it, for frames that hold it.
     last: Option<(Moment, FrameEntry, Image)>,
+    /// What the core has warned of.
+    warnings: BTreeSet<String>,
 }
 
 impl Maker<'_> {
@@ -208,7 +234,7 @@ impl Maker<'_> {
                 .find_map(|key| keys.keys[*key].input.grain)
                 .map(|grain| FrameGrain {
                     grain,
-                    frame: u32::try_from(index).unwrap_or(u32::MAX),
+                    frame: OWN_NOISE | u32::try_from(index).unwrap_or(u32::MAX),
                 }),
         };
         let image = if is_key && self.options.keeps_keys {
@@ -252,7 +278,10 @@ impl Maker<'_> {
             self.ready.push(ready);
         }
         let ready = self.ready.iter_mut().find(|ready| ready.index == key);
-        ready.ok_or(InbetweenError::NoKey)?.picture(pose)
+        let ready = ready.ok_or(InbetweenError::NoKey)?;
+        let picture = ready.picture(pose)?;
+        self.warnings.extend(ready.warnings()?);
+        Ok(picture)
     }
 
     /// The pose at a moment.

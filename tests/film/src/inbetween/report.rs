@@ -76,7 +76,7 @@ impl From<Off> for OffEntry {
 pub(super) struct Report {
     pub(super) shot: String,
     adapter: String,
-    warnings: Vec<String>,
+    pub(super) warnings: Vec<String>,
     findings: Vec<String>,
     is_shown_on_mark: bool,
     keys: Vec<KeyEntry>,

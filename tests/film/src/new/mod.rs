@@ -8,6 +8,7 @@ mod table;
 mod view;
 mod written;
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -18,6 +19,7 @@ use desk::output::write_png;
 use glam::{DMat4, DVec3};
 
 use crate::photograph::{Photograph, focal_px};
+use crate::video::{MAX_PICTURES, PICTURES_PER_SEC, Video, is_video};
 
 pub use error::NewError;
 pub use shot::Key;
@@ -69,6 +71,8 @@ pub struct Made {
 struct Given {
     plates: Vec<Photograph>,
     photograph: Photograph,
+    /// The video that it is the first picture of.
+    video: Option<Video>,
     /// Of further prints.
     keys: Vec<Photograph>,
     toy: Arc<Toy>,
@@ -98,11 +102,11 @@ pub fn new(wanted: &Wanted, out: &Path) -> anyhow::Result<Made> {
         "{}: another run writes there, or was ended: remove it",
         partial.display()
     );
-    let given = read(wanted)?;
+    let given = read(wanted, &out.with_extension("video"))?;
     let found = found::find(&given, wanted)?;
     written::write(&given, &found, wanted, &partial)?;
     write_png(&partial.join(DRAWING), &found.drawn(&given)?)?;
-    std::fs::rename(&partial, out).with_context(|| out.display().to_string())?;
+    fs::rename(&partial, out).with_context(|| out.display().to_string())?;
     let mut facts = given.facts.clone();
     facts.extend(found.facts());
     Ok(Made {
@@ -112,13 +116,18 @@ pub fn new(wanted: &Wanted, out: &Path) -> anyhow::Result<Made> {
     })
 }
 
-fn read(wanted: &Wanted) -> anyhow::Result<Given> {
-    let mut photographs = Vec::new();
-    for path in &wanted.photographs {
-        photographs.push(Photograph::read(path)?);
+/// Reads all; `folder` may be made for pictures of videos, and is gone with what is returned.
+fn read(wanted: &Wanted, folder: &Path) -> anyhow::Result<Given> {
+    let (last, others) = wanted
+        .photographs
+        .split_last()
+        .context("a photograph of the toy is needed")?;
+    let mut plates = Vec::new();
+    for path in others {
+        let (plate, _) = read_first(path, folder, 1)?;
+        plates.push(plate);
     }
-    let photograph = photographs.pop().context("a photograph of the toy is needed")?;
-    let plates = photographs;
+    let (photograph, video) = read_first(last, folder, MAX_PICTURES)?;
     let mut keys = Vec::new();
     for key in &wanted.keys {
         keys.push(Photograph::read(&key.path)?);
@@ -172,6 +181,7 @@ fn read(wanted: &Wanted) -> anyhow::Result<Given> {
         facts: facts.collect(),
         plates,
         photograph,
+        video,
         keys,
         toy: toy.into(),
         toy_bytes,
@@ -180,6 +190,24 @@ fn read(wanted: &Wanted) -> anyhow::Result<Given> {
         height_m,
         corners,
     })
+}
+
+/// A photograph, or the first picture of a video with the video.
+fn read_first(path: &Path, folder: &Path, n_most: u32) -> anyhow::Result<(Photograph, Option<Video>)> {
+    if !is_video(path) {
+        return Ok((Photograph::read(path)?, None));
+    }
+    let video = Video::open(path, folder, n_most)?;
+    let mut photograph = Photograph::read(&video.pictures()[0])?;
+    path.clone_into(&mut photograph.path);
+    let n_pictures = video.pictures().len();
+    photograph.notes.push(match n_most {
+        1 => "is a video: its first picture is taken".to_owned(),
+        _ => format!(
+            "is a video: {n_pictures} pictures are taken, {PICTURES_PER_SEC} a second, as of a camera that stands still"
+        ),
+    });
+    Ok((photograph, Some(video)))
 }
 
 fn same_size(plate: &Photograph, photograph: &Photograph) -> Result<(), NewError> {

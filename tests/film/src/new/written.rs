@@ -1,6 +1,6 @@
 //! The session's folder.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use app_core::scene::{Camera, Image};
 use app_core::session::record::{
@@ -14,9 +14,24 @@ use desk::output::{make_folder, write_png, write_whole};
 use super::found::Found;
 use super::{Given, Wanted, shot};
 use crate::inbetween::shot::Shot;
+use crate::photograph::Photograph;
+use crate::video::PICTURES_PER_SEC;
 
 const TOY: &str = "toy.glb";
 const PHOTOGRAPH: &str = "photograph.png";
+
+/// Pictures that follow the photograph in its video.
+fn following(given: &Given) -> &[PathBuf] {
+    given.video.as_ref().map_or(&[], |video| &video.pictures()[1..])
+}
+
+/// Of a video's pictures, counted from 0.
+fn picture_file(index: usize) -> String {
+    match index {
+        0 => PHOTOGRAPH.to_owned(),
+        _ => format!("photograph_{index:05}.png"),
+    }
+}
 
 fn plate_file(index: usize) -> String {
     format!("plate_{index}.png")
@@ -30,7 +45,11 @@ pub(super) fn write(given: &Given, found: &Found, wanted: &Wanted, out: &Path) -
     for (index, plate) in plates {
         write_png(&out.join(plate_file(index)), &plate.image)?;
     }
-    write_png(&out.join(PHOTOGRAPH), &given.photograph.image)?;
+    write_png(&out.join(picture_file(0)), &given.photograph.image)?;
+    for (index, path) in following(given).iter().enumerate() {
+        let picture = Photograph::read(path)?;
+        write_png(&out.join(picture_file(index + 1)), &picture.image)?;
+    }
     let record = record(given, found, wanted);
     if !wanted.keys.is_empty() {
         shot::write(given, record.clone(), wanted, out)?;
@@ -80,11 +99,14 @@ fn record(given: &Given, found: &Found, wanted: &Wanted) -> CaptureRecord {
                 world_from_camera: columns(&plate.camera),
             })
             .collect(),
-        frames: vec![FrameRecord {
-            image: PHOTOGRAPH.to_owned(),
-            world_from_camera: columns(&found.input.camera),
-            ..FrameRecord::default()
-        }],
+        frames: (0..=following(given).len())
+            .map(|index| FrameRecord {
+                image: picture_file(index),
+                time: index as f64 / f64::from(PICTURES_PER_SEC),
+                world_from_camera: columns(&found.input.camera),
+                ..FrameRecord::default()
+            })
+            .collect(),
         probe: None,
         uncertainty: None,
     }

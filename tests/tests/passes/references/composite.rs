@@ -93,10 +93,10 @@ fn toy_taken_away_leaves_the_plate_at_the_frames_exposure() {
     }
 }
 
-/// With none of its strength a shadow is no other than that of a toy that was taken away, with twice of it a gray receiver loses twice as
-/// much, and no light is less than none.
+/// With none of its strength a shadow is no other than that of a toy that was taken away, with half of it a gray receiver loses half as
+/// much, and one of twice the strength is two, one over the other.
 #[test]
-fn a_shadow_takes_as_many_times_its_light_as_it_is_strong() {
+fn a_weak_shadow_takes_its_share_and_a_strong_one_is_laid_over_itself() {
     let (region, mut pictures, mut shown) = scene();
     pictures.seen = Raster::from_fn(SIZE, |_| 0.0);
     shown.residuals = vec![Raster::from_fn(UVec2::ONE, |_| DVec3::ZERO)];
@@ -104,12 +104,14 @@ fn a_shadow_takes_as_many_times_its_light_as_it_is_strong() {
         shown.strength = strength;
         picture(&region, &pictures, &shown)
     };
-    let [none, true_one, twice, most] = [0.0, 1.0, 2.0, 1e9].map(&mut of_strength);
+    let [none, half, true_one, twice, most] = [0.0, 0.5, 1.0, 2.0, 1e9].map(&mut of_strength);
     let mut n_black = 0;
     for at in texels_of(SIZE) {
         let open = pictures.plate.at(at) * shown.solution.gain;
         assert!((none.at(at) - open).abs().max_element() < 1e-12, "{at}");
-        let expected = (open + 2.0 * (true_one.at(at) - open)).max(DVec3::ZERO);
+        let expected = open.midpoint(true_one.at(at));
+        assert!((half.at(at) - expected).abs().max_element() < 1e-12, "{at}");
+        let expected = true_one.at(at) * true_one.at(at) / open;
         assert!((twice.at(at) - expected).abs().max_element() < 1e-12, "{at}");
         n_black += u32::from(most.at(at) == DVec3::ZERO);
     }

@@ -39,6 +39,9 @@ pub(crate) struct Evidence {
     receiver: Share,
     shadow: Share,
     toy: Share,
+    /// Light of the toy's pixels, and what the plate would have had there.
+    toy_light: [f64; 3],
+    plate_light: [f64; 3],
     straight: Spread,
     swapped: Spread,
 }
@@ -68,8 +71,12 @@ impl Evidence {
         }
         let (frame, plate) = (pixel.frame, [r, g, b]);
         if of_toy > 0.0 {
-            self.toy
-                .add(is_same(frame, [r * gain[0], g * gain[1], b * gain[2]]));
+            let lit = [r * gain[0], g * gain[1], b * gain[2]];
+            self.toy.add(is_same(frame, lit));
+            for channel in 0..3 {
+                self.toy_light[channel] += f64::from(frame[channel]);
+                self.plate_light[channel] += f64::from(lit[channel]);
+            }
         }
         if seen == 0.0 {
             return;
@@ -108,6 +115,13 @@ impl Evidence {
     #[must_use]
     pub(crate) fn toy_as_plate(&self) -> Option<f64> {
         self.toy.value()
+    }
+
+    /// Light of the toy over that of the plate behind it, channel by channel.
+    #[must_use]
+    pub(crate) fn toy_over_plate(&self) -> Option<[f64; 3]> {
+        let is_known = self.toy.value().is_some() && self.plate_light.iter().all(|light| *light > 0.0);
+        is_known.then(|| [0, 1, 2].map(|channel| self.toy_light[channel] / self.plate_light[channel]))
     }
 
     /// How much colours of lit pixels differ between picture and plate: the spread of ln(frame / plate) over pixels and

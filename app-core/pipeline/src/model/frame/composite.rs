@@ -127,7 +127,7 @@ pub(crate) struct Inputs<'a> {
     /// Each pixel's own residual; without it the frame's own pixels serve.
     pub(crate) detail: Option<&'a TextureView>,
     pub(crate) grain: Option<PictureGrain>,
-    /// What the shown shadow takes of the light, over what it truly takes.
+    /// How strong the shown shadow is, 1 being the truth.
     pub(crate) shadow_strength: f32,
 }
 
