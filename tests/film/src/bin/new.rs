@@ -74,9 +74,10 @@ fn run(args: Args) -> anyhow::Result<()> {
     lines.extend(made.warnings.iter().map(|warning| format!("warning: {warning}")));
     let next = if wanted.keys.is_empty() {
         format!(
-            "animate '{}' --clips {}",
+            "animate '{}' --clips {}{}",
             args.out.display(),
-            made.clip.unwrap_or_else(|| "CLIP".to_owned())
+            made.clip.unwrap_or_else(|| "CLIP".to_owned()),
+            if made.is_video { " --moving" } else { "" }
         )
     } else {
         format!("inbetween '{}'", args.out.display())

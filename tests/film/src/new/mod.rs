@@ -65,6 +65,8 @@ pub struct Made {
     pub warnings: Vec<String>,
     /// The toy's first clip.
     pub clip: Option<String>,
+    /// Whether the session has all pictures of a video.
+    pub is_video: bool,
 }
 
 /// What is read before anything is searched.
@@ -113,6 +115,7 @@ pub fn new(wanted: &Wanted, out: &Path) -> anyhow::Result<Made> {
         facts,
         warnings: found.warnings(&given),
         clip: given.toy.clip_names().into_iter().next(),
+        is_video: given.video.is_some(),
     })
 }
 

@@ -1,6 +1,11 @@
 //! Names and numbers of pictures.
 
+use std::fs;
+use std::path::Path;
+
 use film::animate::frame_files::{FrameRange, NamePattern};
+use film::video::{Video, is_video};
+use harness::temporary::Temporary;
 
 #[test]
 fn a_number_stands_where_the_signs_are() {
@@ -33,4 +38,19 @@ fn ranges_are_of_the_films_own_numbers() {
         let parsed = refused.parse::<FrameRange>();
         assert!(parsed.is_err(), "{refused}");
     }
+}
+
+#[test]
+fn a_video_is_known_by_its_ending_and_leaves_nothing_if_it_cannot_be_read() {
+    let named = ["walk.MP4", "walk.mov", "walk.png", "mp4"].map(|name| is_video(Path::new(name)));
+    assert_eq!(named, [true, true, false, false]);
+
+    let folder = Temporary::new("video");
+    let (video, pictures) = (folder.0.join("walk.mp4"), folder.0.join("pictures"));
+    fs::create_dir_all(&folder.0).unwrap();
+    fs::write(&video, "no video").unwrap();
+    // With ffmpeg, and without.
+    let error = Video::open(&video, &pictures, 1).unwrap_err();
+    assert!(format!("{error:#}").contains("walk.mp4: "), "{error:#}");
+    assert!(!pictures.exists());
 }
