@@ -1,6 +1,6 @@
 //! CPU reference of `composite.wgsl`: the picture where it shows the receiver.
 
-use glam::{DVec3, DVec4, FloatExt, UVec2};
+use glam::{DVec3, DVec4, UVec2};
 
 use super::grid::PlaneGrid;
 use super::model::{BRIGHTEST_USABLE, Pictures, ReceiverPoint, Region, Solution, centre_px, coarse_at};

@@ -49,7 +49,12 @@ pub(super) fn read_tree(bytes: &[u8]) -> Result<Tree<'_>, Flaw> {
     } else {
         chunks(bytes)?
     };
-    check_limit("bytes", n_bytes_beside_data(&text), MAX_JSON_BYTES, JSON_WITHOUT_DATA)?;
+    check_limit(
+        "bytes",
+        n_bytes_beside_data(&text),
+        MAX_JSON_BYTES,
+        JSON_WITHOUT_DATA,
+    )?;
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
     // Some exporters pad with zeros in place of blanks.
     let n_bytes = text

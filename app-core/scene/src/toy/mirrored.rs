@@ -99,8 +99,7 @@ fn moved_by_flips(rig: &Rig, clip: &Clip, surfaces: &[Surface]) -> Vec<usize> {
     let skins: Vec<bool> = skins
         .map(|skin| skin.joints.iter().any(|&joint| nodes[joint]))
         .collect();
-    let is_moved =
-        |surface: &Surface| nodes[surface.node] || surface.skin.is_some_and(|skin| skins[skin]);
+    let is_moved = |surface: &Surface| nodes[surface.node] || surface.skin.is_some_and(|skin| skins[skin]);
     let all = surfaces.iter().enumerate();
     all.filter_map(|(place, surface)| is_moved(surface).then_some(place))
         .collect()

@@ -127,7 +127,8 @@ impl Packing<'_> {
             let Ok(bytes) = self.neighbour(&format!("images[{i}].uri"), uri) else {
                 continue;
             };
-            let view = json!({ "buffer": 0, "byteOffset": self.append(&bytes)?.start, "byteLength": bytes.len() });
+            let view =
+                json!({ "buffer": 0, "byteOffset": self.append(&bytes)?.start, "byteLength": bytes.len() });
             let views = json.get_mut("bufferViews").and_then(Value::as_array_mut);
             let number = match views {
                 Some(views) => {

@@ -88,7 +88,13 @@ fn first_number(file: &str, known: &Known, last_frame: u64) -> Result<u64, Impor
 }
 
 impl Metadata {
-    fn frame(&self, file: &str, index: usize, image: String, has_times: bool) -> Result<ImportedFrame, ImportError> {
+    fn frame(
+        &self,
+        file: &str,
+        index: usize,
+        image: String,
+        has_times: bool,
+    ) -> Result<ImportedFrame, ImportError> {
         let numbers = &self.poses[index];
         let field = format!("poses[{index}]");
         let &[qx, qy, qz, qw, x, y, z] = numbers.as_slice() else {

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
 use app_core::session::Capture;
-use app_core::toy::Toy;
 use app_core::session::record::{
     BackgroundRecord, CaptureRecord, Encoding, FrameRecord, Index, PoseRecord, ToyRecord,
 };
+use app_core::toy::Toy;
 use glam::{DMat4, DQuat, DVec3};
 use serde::de::DeserializeOwned;
 

@@ -71,7 +71,11 @@ fn what_cannot_be_a_session_is_refused_and_leaves_no_folder() {
     let heic = Small::new("heic");
     heic.file("transforms.json", transforms(camera).as_bytes());
     heic.file("a.png", b"\0\0\0\x18ftypheic");
-    let error = heic.import(Format::Nerfstudio, &lacking()).err().unwrap().to_string();
+    let error = heic
+        .import(Format::Nerfstudio, &lacking())
+        .err()
+        .unwrap()
+        .to_string();
     assert!(error.contains("a.png (the file): the picture is HEIC"), "{error}");
 
     let small = Small::new("refused");

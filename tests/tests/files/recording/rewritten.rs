@@ -229,7 +229,11 @@ fn without_sequence_numbers_pictures_behind_a_gap_are_left_out() {
         .map(|(_, place)| place)
         .collect();
     assert!(chunks.len() > 2);
-    let first = small.flushed.iter().find(|flushed| flushed.n_chunks == 1).unwrap();
+    let first = small
+        .flushed
+        .iter()
+        .find(|flushed| flushed.n_chunks == 1)
+        .unwrap();
     let mut damaged = anew.clone();
     damaged[chunks[1].end - 9] ^= 0x55;
     let removed = [&anew[..chunks[1].start], &anew[chunks[1].end..]].concat();

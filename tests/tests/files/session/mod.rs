@@ -265,10 +265,16 @@ fn each_damaged_file_is_named() {
 #[test]
 fn heads_of_other_kinds_are_named() {
     let mut parts = Parts::good();
+    parts.index.as_object_mut().unwrap().remove("probe");
     parts
         .files
         .insert("frame.png".to_owned(), b"\0\0\0\x18ftypheic".to_vec());
-    let error = parts.open().unwrap().check_pictures(0..1).unwrap_err().to_string();
+    let error = parts
+        .open()
+        .unwrap()
+        .check_pictures(0..1)
+        .unwrap_err()
+        .to_string();
     assert!(
         error.contains("frame.png (frames[0].image): the picture is HEIC"),
         "{error}"

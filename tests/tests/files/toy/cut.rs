@@ -202,7 +202,11 @@ fn a_part_that_is_small_at_rest_is_cut_as_finely() {
 #[test]
 fn what_has_too_many_triangles_to_be_cut_is_said() {
     const SIDE: u16 = 229;
-    let mut glb = card(1.0, true, json!({ "alphaMode": "MASK", "pbrMetallicRoughness": {} }));
+    let mut glb = card(
+        1.0,
+        true,
+        json!({ "alphaMode": "MASK", "pbrMetallicRoughness": {} }),
+    );
     let mut places = Vec::new();
     let mut colors = Vec::new();
     for y in 0..=SIDE {

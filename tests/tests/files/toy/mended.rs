@@ -158,10 +158,7 @@ fn data_in_the_text_does_not_count_as_text() {
     let refused = Toy::from_glb(FILE, json.to_string().as_bytes())
         .unwrap_err()
         .to_string();
-    assert!(
-        refused.contains("JSON text without its data URIs"),
-        "{refused}"
-    );
+    assert!(refused.contains("JSON text without its data URIs"), "{refused}");
 }
 
 #[test]

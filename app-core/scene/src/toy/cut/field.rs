@@ -111,9 +111,10 @@ impl<'a> Field<'a> {
     pub(super) fn is_clear(&self, corners: [Corner; 3]) -> bool {
         /// What 8 bits can hold apart from 1.
         const OPAQUE: f32 = 1.0 - 0.5 / 255.0;
-        let range = self.picture.as_ref().map_or([1.0; 2], |picture| {
-            picture.range(corners.map(|corner| corner.uv))
-        });
+        let range = self
+            .picture
+            .as_ref()
+            .map_or([1.0; 2], |picture| picture.range(corners.map(|corner| corner.uv)));
         self.bounds(range, corners)[0] < OPAQUE
     }
 

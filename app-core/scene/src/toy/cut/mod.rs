@@ -115,10 +115,7 @@ fn keep_glass(surfaces: &[Surface], parts: &[Part], cut: &mut [Option<Geometry>]
         .filter(|(_, made)| made.as_ref().is_some_and(|made| made.indices.is_empty()))
         .map(|(part, _)| part.geometry)
         .collect();
-    if !surfaces
-        .iter()
-        .all(|surface| emptied.contains(&surface.geometry))
-    {
+    if !surfaces.iter().all(|surface| emptied.contains(&surface.geometry)) {
         return;
     }
     for (part, made) in parts.iter().zip(cut) {
@@ -193,9 +190,7 @@ fn parts<'a>(shape: &Shape, looks: &Looks<'a>) -> (Vec<Part<'a>>, f64) {
         });
         let part = &mut parts[place];
         part.n_surfaces += 1;
-        part.scale = part
-            .scale
-            .max(size(&here) / part.own_size.max(f64::MIN_POSITIVE));
+        part.scale = part.scale.max(size(&here) / part.own_size.max(f64::MIN_POSITIVE));
     }
     (parts, all.as_ref().map_or(0.0, size))
 }
