@@ -8,11 +8,12 @@ use app_core::recording::Recording;
 use app_core::session::{Capture, FileError, Files, GroundTruth, Session, check_path};
 use app_core::toy::{Pose, PosedMesh, Toy};
 use glam::{DMat4, Vec3};
+use serde_json::json;
 
 use desk::check::wrong_of_picture;
 use desk::import;
 use desk::import::Format;
-use measure::glb::container;
+use measure::glb::{chunks, container};
 
 /// A `capture.json` of pictures of 2 x 2 pixels whose toy is [`TOY`].
 pub const INDEX: &[u8] = include_bytes!("../fuzz/seeds/capture/good.json");
@@ -57,6 +58,30 @@ pub fn toy(bytes: &[u8]) {
 /// As [`toy`].
 pub fn toy_chunks(bytes: &[u8]) {
     toy(&glb_from_chunks(bytes));
+}
+
+/// Packs a glTF of several files, of which this is the text, and reads the toy; returns whether it could be. Every neighbour has the
+/// bytes of [`TOY`].
+///
+/// # Panics
+/// As [`toy`].
+pub fn packed(bytes: &[u8]) -> bool {
+    let (_, bin) = chunks(TOY);
+    let whole = app_core::toy::packed("fuzzed.gltf", bytes, &mut |_| Ok(bin.to_vec()));
+    let toy = whole.and_then(|whole| Toy::from_glb("fuzzed.gltf", &whole));
+    toy.is_ok_and(|toy| {
+        check_toy(&toy);
+        true
+    })
+}
+
+/// The text of [`TOY`] with its bytes and a picture beside it.
+#[must_use]
+pub fn text_of_toy() -> Vec<u8> {
+    let (mut json, _) = chunks(TOY);
+    json["buffers"][0]["uri"] = "toy.bin".into();
+    json["images"] = json!([{ "uri": "skin.png" }]);
+    json.to_string().into_bytes()
 }
 
 /// Opens a session whose `capture.json` is these bytes, and reads its frames.

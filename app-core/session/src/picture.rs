@@ -63,7 +63,7 @@ pub(super) fn check_head(bytes: &[u8], size: PictureSize, is_mask: bool) -> Resu
         check_size(&decoder, size)?;
         decoder.color_type()
     } else {
-        return Err(PictureError::Format);
+        return Err(other_kind(bytes));
     };
     if is_mask && kind != ColorType::Rgba8 {
         return Err(PictureError::NotAMask);
@@ -92,10 +92,15 @@ fn decode(bytes: &[u8], size: PictureSize) -> Result<DynamicImage, PictureError>
         }
         decode_sized(decoder, size)
     } else {
-        Err(match app_scene::picture::kind(bytes) {
-            Some((format, way_out)) => PictureError::OtherFormat { format, way_out },
-            None => PictureError::Format,
-        })
+        Err(other_kind(bytes))
+    }
+}
+
+/// What is said of bytes that are neither PNG nor JPEG.
+fn other_kind(bytes: &[u8]) -> PictureError {
+    match app_scene::picture::kind(bytes) {
+        Some((format, way_out)) => PictureError::OtherFormat { format, way_out },
+        None => PictureError::Format,
     }
 }
 

@@ -421,7 +421,7 @@ impl<'a> Run<'a> {
         alignments: &Alignments,
     ) -> Result<Report, ReplayError> {
         let scene = session.scene();
-        let fit = self.core.read_fit()?;
+        let fit = of_core(self.core.read_fit(), ended)?.flatten();
         let report = Report {
             session: scene.name.clone(),
             preset: self.preset.name(),
@@ -467,6 +467,7 @@ fn write_maps(
 }
 
 fn warnings_of(session: &dyn Session, core: &Core, ended: Option<&str>) -> Result<Vec<String>, CoreError> {
+    let of_fit = of_core(core.read_fit_warnings(), ended)?;
     let ended = ended.map(|reason| format!("the replay ended before its last frame: {reason}"));
     let of_session = session.warnings().iter().map(ToString::to_string);
     let of_values = doubts::of_scene(session.scene());
@@ -474,8 +475,13 @@ fn warnings_of(session: &dyn Session, core: &Core, ended: Option<&str>) -> Resul
         .into_iter()
         .chain(of_session)
         .chain(of_values)
-        .chain(core.read_fit_warnings()?.iter().map(ToString::to_string))
+        .chain(of_fit.iter().flatten().map(ToString::to_string))
         .collect())
+}
+
+/// What a core says; nothing if it does not answer after the replay ended, as a device that is lost.
+fn of_core<T>(answer: Result<T, CoreError>, ended: Option<&str>) -> Result<Option<T>, CoreError> {
+    answer.map(Some).or_else(|error| ended.map(|_| None).ok_or(error))
 }
 
 fn take(out: &Path) -> Result<Rc<OutputFolder>, ReplayError> {

@@ -131,6 +131,11 @@ proptest! {
     }
 
     #[test]
+    fn a_changed_toy_of_several_files_is_read_or_refused(changes in changes()) {
+        fuzz::packed(&changed(&fuzz::text_of_toy(), &changes));
+    }
+
+    #[test]
     fn a_changed_session_is_read_or_refused(changes in changes()) {
         fuzz::capture(&changed(INDEX, &changes));
     }
@@ -215,6 +220,8 @@ fn the_seeds_are_good() {
     let toy = Toy::from_glb("toy.glb", TOY).unwrap();
     assert!(fuzz::pose(&toy, &Pose::Authored, &DMat4::IDENTITY));
     assert_eq!(toy.clip_names(), ["Wave"]);
+    assert!(fuzz::packed(&fuzz::text_of_toy()));
+    assert!(!fuzz::packed(b"{}"));
     assert!(fuzz::opens(INDEX, TOY, PICTURE));
     assert!(!fuzz::opens(b"{}", TOY, PICTURE));
     assert!(fuzz::opens_recording(RECORDING));

@@ -38,6 +38,7 @@ pub(super) struct Tree<'a> {
 
 const HEADER_BYTES: u32 = 12;
 const JSON_CHUNK: &str = "JSON chunk";
+const JSON_WITHOUT_DATA: &str = "JSON text without its data URIs";
 
 /// Reads binary glTF, or glTF as JSON alone.
 pub(super) fn read_tree(bytes: &[u8]) -> Result<Tree<'_>, Flaw> {
@@ -48,7 +49,12 @@ pub(super) fn read_tree(bytes: &[u8]) -> Result<Tree<'_>, Flaw> {
     } else {
         chunks(bytes)?
     };
-    check_limit("bytes", text.len(), MAX_JSON_BYTES, JSON_CHUNK)?;
+    check_limit(
+        "bytes",
+        n_bytes_beside_data(&text),
+        MAX_JSON_BYTES,
+        JSON_WITHOUT_DATA,
+    )?;
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
     // Some exporters pad with zeros in place of blanks.
     let n_bytes = text
@@ -67,6 +73,19 @@ pub(super) fn read_tree(bytes: &[u8]) -> Result<Tree<'_>, Flaw> {
         true => Err(foreign::first_version()),
         false => Ok(Tree { json, bin }),
     }
+}
+
+/// Bytes of a JSON text without its data URIs, which become bytes and no values of their own.
+///
+/// Behind a quotation mark stands `data:` only within a string, which ends at the next mark at the latest.
+fn n_bytes_beside_data(text: &[u8]) -> usize {
+    let mut n_bytes = 0;
+    let mut is_data = false;
+    for part in text.split_inclusive(|byte| *byte == b'"') {
+        is_data = !is_data && part.starts_with(b"data:");
+        n_bytes += if is_data { 0 } else { part.len() };
+    }
+    n_bytes
 }
 
 type Chunks<'a> = (Cow<'a, [u8]>, Option<Cow<'a, [u8]>>);

@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 
 /// Size of a toy's file.
 pub(super) const MAX_FILE_BYTES: usize = 256 << 20;
-/// Its JSON chunk, of which three bytes can become a node of some hundred.
+/// Its JSON text without data URIs, of which three bytes can become a node of some hundred.
 pub(super) const MAX_JSON_BYTES: usize = 16 << 20;
 /// Vertices of all drawn surfaces together.
 pub(super) const MAX_VERTICES: usize = 4 << 20;

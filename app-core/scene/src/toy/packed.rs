@@ -1,6 +1,7 @@
 //! One file of several: a glTF whose buffers and pictures lie beside it becomes binary glTF that has them in it.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use serde_json::{Map, Value, json};
 
@@ -41,8 +42,8 @@ fn pack<'a>(
         read,
     };
     let own = bin.unwrap_or_default();
-    let starts = packing.buffers(&mut json, &own)?;
-    move_views(&mut json, &starts);
+    let places = packing.buffers(&mut json, &own)?;
+    move_views(&mut json, &places)?;
     packing.images(&mut json)?;
     packing.glb(json).map(Cow::Owned)
 }
@@ -56,11 +57,11 @@ struct Packing<'r> {
     read: &'r mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 }
 
-/// Where a buffer begins in the one of the packed file; `Err` is the number of one that stays for itself.
-type Start = Result<usize, usize>;
+/// The bytes of a buffer in the one of the packed file; `Err` is the number of one that stays for itself.
+type Place = Result<Range<usize>, usize>;
 
 impl Packing<'_> {
-    fn append(&mut self, bytes: &[u8]) -> Result<usize, Flaw> {
+    fn append(&mut self, bytes: &[u8]) -> Result<Range<usize>, Flaw> {
         let start = self.bin.len();
         check_limit(
             "bytes",
@@ -69,8 +70,9 @@ impl Packing<'_> {
             "buffers",
         )?;
         self.bin.extend_from_slice(bytes);
+        let end = self.bin.len();
         self.bin.resize(self.bin.len().next_multiple_of(8), 0);
-        Ok(start)
+        Ok(start..end)
     }
 
     fn neighbour(&mut self, field: &str, uri: &str) -> Result<Vec<u8>, Flaw> {
@@ -84,12 +86,12 @@ impl Packing<'_> {
     }
 
     /// Makes one buffer of all that have bytes.
-    fn buffers(&mut self, json: &mut Value, own: &[u8]) -> Result<Vec<Start>, Flaw> {
+    fn buffers(&mut self, json: &mut Value, own: &[u8]) -> Result<Vec<Place>, Flaw> {
         let buffers = json
             .get_mut("buffers")
             .and_then(Value::as_array_mut)
             .map(std::mem::take);
-        let mut starts = Vec::new();
+        let mut places = Vec::new();
         let mut kept = vec![Value::Null];
         for (i, buffer) in buffers.into_iter().flatten().enumerate() {
             let field = format!("buffers[{i}].uri");
@@ -101,15 +103,18 @@ impl Packing<'_> {
                 Some(Uri::Elsewhere(uri)) => Some(Cow::Owned(self.neighbour(&field, uri)?)),
             };
             match bytes {
-                Some(bytes) => starts.push(Ok(self.append(&bytes)?)),
+                Some(bytes) => {
+                    check_length(&buffer, bytes.len(), &format!("buffers[{i}]"))?;
+                    places.push(Ok(self.append(&bytes)?));
+                }
                 None => {
-                    starts.push(Err(kept.len()));
+                    places.push(Err(kept.len()));
                     kept.push(buffer);
                 }
             }
         }
         json["buffers"] = kept.into();
-        Ok(starts)
+        Ok(places)
     }
 
     fn images(&mut self, json: &mut Value) -> Result<(), Flaw> {
@@ -122,7 +127,8 @@ impl Packing<'_> {
             let Ok(bytes) = self.neighbour(&format!("images[{i}].uri"), uri) else {
                 continue;
             };
-            let view = json!({ "buffer": 0, "byteOffset": self.append(&bytes)?, "byteLength": bytes.len() });
+            let view =
+                json!({ "buffer": 0, "byteOffset": self.append(&bytes)?.start, "byteLength": bytes.len() });
             let views = json.get_mut("bufferViews").and_then(Value::as_array_mut);
             let number = match views {
                 Some(views) => {
@@ -166,38 +172,60 @@ impl Packing<'_> {
     }
 }
 
+/// Refuses a buffer that is shorter than the file states.
+fn check_length(buffer: &Value, available: usize, field: &str) -> Result<(), Flaw> {
+    let stated = buffer.get("byteLength").and_then(Value::as_u64);
+    check_end(stated.unwrap_or_default(), available, field)
+}
+
+fn check_end(end: u64, available: usize, field: &str) -> Result<(), Flaw> {
+    match end <= available as u64 {
+        true => Ok(()),
+        false => Err(ToyProblem::OutOfRange { end, available }.at(field)),
+    }
+}
+
 /// Lets views, and what is compressed in them, refer to the one buffer.
-fn move_views(json: &mut Value, starts: &[Start]) {
+fn move_views(json: &mut Value, places: &[Place]) -> Result<(), Flaw> {
     let views = json.get_mut("bufferViews").and_then(Value::as_array_mut);
-    for view in views.into_iter().flatten().filter_map(Value::as_object_mut) {
+    for (i, view) in views.into_iter().flatten().enumerate() {
+        let Some(view) = view.as_object_mut() else {
+            continue;
+        };
+        let field = format!("bufferViews[{i}]");
         let extensions = view.get_mut("extensions").and_then(Value::as_object_mut);
-        for (_, compressed) in extensions
+        for (name, compressed) in extensions
             .into_iter()
             .flatten()
             .filter(|(name, _)| MESHOPT.contains(&name.as_str()))
         {
             if let Some(compressed) = compressed.as_object_mut() {
-                move_view(compressed, starts);
+                move_view(compressed, places, &format!("{field}.extensions.{name}"))?;
             }
         }
-        move_view(view, starts);
+        move_view(view, places, &field)?;
     }
+    Ok(())
 }
 
-fn move_view(view: &mut Map<String, Value>, starts: &[Start]) {
+/// A view beyond its own buffer is refused, since bytes of the next one follow.
+fn move_view(view: &mut Map<String, Value>, places: &[Place], field: &str) -> Result<(), Flaw> {
     let number = |key: &str| view.get(key).and_then(Value::as_u64);
     let buffer = number("buffer").and_then(|buffer| usize::try_from(buffer).ok());
     let offset = number("byteOffset").unwrap_or_default();
-    match buffer.and_then(|buffer| starts.get(buffer)) {
-        Some(Ok(start)) => {
+    let end = offset.saturating_add(number("byteLength").unwrap_or_default());
+    match buffer.and_then(|buffer| places.get(buffer)) {
+        Some(Ok(place)) => {
+            check_end(end, place.len(), field)?;
             view.insert("buffer".to_owned(), 0.into());
             view.insert(
                 "byteOffset".to_owned(),
-                offset.saturating_add(*start as u64).into(),
+                offset.saturating_add(place.start as u64).into(),
             );
         }
         Some(Err(kept)) => drop(view.insert("buffer".to_owned(), (*kept).into())),
         // A reference to no buffer stays one.
         None => drop(view.insert("buffer".to_owned(), u32::MAX.into())),
     }
+    Ok(())
 }

@@ -56,9 +56,17 @@ impl Surface {
 
 /// Whether most vertices have a transform that mirrors.
 pub(super) fn is_mirrored(surface: &Surface, geometry: &Geometry, rest: &RigPose) -> bool {
-    let n_vertices = geometry.positions.len();
+    let n = n_transforms(surface, geometry);
     let mirrors = |&v: &usize| surface.anchor_from_mesh(geometry, v, rest).matrix3.determinant() < 0.0;
-    2 * (0..n_vertices).filter(mirrors).count() > n_vertices
+    2 * (0..n).filter(mirrors).count() > n
+}
+
+/// First vertices that have all the transforms that any has: one if the node moves the surface, else all.
+pub(super) fn n_transforms(surface: &Surface, geometry: &Geometry) -> usize {
+    match (&geometry.influences, surface.skin) {
+        (Some(_), Some(_)) => geometry.positions.len(),
+        _ => geometry.positions.len().min(1),
+    }
 }
 
 /// Draws that are the same in every pose: triangles, coordinates and colours.

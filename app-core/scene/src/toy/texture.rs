@@ -32,6 +32,26 @@ impl fmt::Debug for Texture {
     }
 }
 
+/// What is said of a picture that is not read.
+fn left_out(field: String, bytes: Option<&[u8]>, image: &Image) -> ToyWarning {
+    let outside = match image.uri.as_deref().map(base64::read) {
+        Some(Uri::Elsewhere(uri)) if bytes.is_none() => Some(uri),
+        _ => None,
+    };
+    match (bytes.and_then(picture::kind), outside) {
+        (Some((format, way_out)), _) => ToyWarning::FormatIgnored {
+            field,
+            format,
+            way_out,
+        },
+        (None, Some(uri)) => ToyWarning::ImageOutside {
+            field,
+            name: base64::percent_decoded(uri).unwrap_or_else(|| uri.to_owned()),
+        },
+        (None, None) => ToyWarning::ImageIgnored { field },
+    }
+}
+
 /// The pictures decoded so far, each once.
 pub(super) struct TextureStore<'a> {
     pub(super) source: &'a Source<'a>,
@@ -77,15 +97,7 @@ impl<'a> TextureStore<'a> {
                 Some(self.textures.len() - 1)
             }
             (bytes, _) => {
-                let known = bytes.as_deref().and_then(picture::kind);
-                warnings.push(match known {
-                    Some((format, way_out)) => ToyWarning::FormatIgnored {
-                        field,
-                        format,
-                        way_out,
-                    },
-                    None => ToyWarning::ImageIgnored { field },
-                });
+                warnings.push(left_out(field, bytes.as_deref(), image));
                 None
             }
         };

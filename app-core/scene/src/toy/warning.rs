@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::words::Text;
+
 /// An unsupported feature of a toy's file; the toy is usable all the same.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
@@ -56,8 +58,19 @@ pub enum ToyWarning {
         /// Path of the primitive.
         field: String,
     },
-    /// A picture that is outside the file or neither PNG, JPEG nor WebP: the plain colour is used.
-    #[error("{field}: the image is not embedded PNG, JPEG or WebP, left out: the plain colour is used")]
+    /// A picture outside the file that nobody gave: the plain colour is used.
+    #[error(
+        "{field}: {} is not beside the toy or cannot be read, left out: the plain colour is used",
+        Text(name)
+    )]
+    ImageOutside {
+        /// Path of the image.
+        field: String,
+        /// Its name, as seen from the toy's file.
+        name: String,
+    },
+    /// A picture that is neither PNG, JPEG nor WebP: the plain colour is used.
+    #[error("{field}: the image is not PNG, JPEG or WebP, left out: the plain colour is used")]
     ImageIgnored {
         /// Path of the image.
         field: String,
@@ -124,6 +137,14 @@ pub enum ToyWarning {
         /// Path of the node.
         field: String,
     },
+    /// Parts below a scale that changes its sign, and too many vertices to look at in each pose of the clip.
+    #[error(
+        "{field}: the clip may mirror parts that have too many vertices to look at: they are drawn from both sides"
+    )]
+    MirroredUnknown {
+        /// Path of the animation.
+        field: String,
+    },
     /// A part that blends with what is behind: cut where it is more clear than not.
     #[error(
         "{field}: alphaMode is BLEND, which is not followed: the toy is cut where alpha is below .5, and whole elsewhere"
@@ -139,6 +160,20 @@ pub enum ToyWarning {
         field: String,
         /// Size of the finest cut.
         texels: u32,
+    },
+    /// A part that is not cut by alpha, because even coarse cuts would make too many triangles.
+    #[error(
+        "{field}: is not cut by alpha and drawn whole, because its parts would have too many triangles: simplify the mesh"
+    )]
+    NotCut {
+        /// Path of the material.
+        field: String,
+    },
+    /// A part that blends with what is behind, of which nothing is cut, or of which nothing would be left.
+    #[error("{field}: alphaMode is BLEND, which is not followed: drawn whole")]
+    BlendWhole {
+        /// Path of the material.
+        field: String,
     },
     /// An animated property of the file that is none of a node.
     #[error("{field}: animates {pointer:?}, which is not followed")]

@@ -133,8 +133,8 @@ pub enum Loss {
         /// How many there were.
         n_written: u32,
     },
-    /// Frames whose picture stood in a chunk that is lost.
-    #[error("{n_frames} frames are left out, since their picture is lost")]
+    /// Frames whose picture stood in a chunk that is lost, or stands behind one without its number.
+    #[error("{n_frames} frames are left out, since their picture is lost or cannot be told from others")]
     Pictures {
         /// How many there are.
         n_frames: u32,

@@ -86,6 +86,8 @@ pub(super) struct Found {
     pub(super) pictures: BTreeMap<u32, Span>,
     /// Sequence number and place, in the order they are found.
     numbered: Vec<(u32, Span)>,
+    /// How many were found before the first gap, if there is one.
+    n_before_gap: Option<usize>,
     /// Whether a chunk of a session is there more than once.
     pub(super) has_two_sessions: bool,
     pub(super) files: BTreeMap<String, Span>,
@@ -167,6 +169,10 @@ impl Found {
     fn take(&mut self, home: Home, message: &Message, read: Read) {
         match read {
             Read::Session(session) => {
+                let expected = self.chunks.last().map_or(0, |chunk| chunk.saturating_add(1));
+                if session.chunk != expected {
+                    self.gap();
+                }
                 self.has_two_sessions |= !self.chunks.insert(session.chunk);
                 self.session = Some(*session);
             }
@@ -203,15 +209,31 @@ impl Found {
         self.channels.contains_key(&id)
     }
 
+    /// Something may be missing here.
+    pub(super) fn gap(&mut self) {
+        self.n_before_gap.get_or_insert(self.numbered.len());
+    }
+
     /// Numbers the pictures: by their sequence numbers, or by their order where a program that wrote the recording anew did
-    /// not keep those.
+    /// not keep those. The order says nothing of pictures behind a gap, which are left out.
     pub(super) fn number_pictures(&mut self) {
         let numbered = std::mem::take(&mut self.numbered);
         self.pictures = numbered.iter().copied().collect();
         if self.pictures.len() < numbered.len() {
+            let n = self.n_before_gap.unwrap_or(numbered.len());
             let spans = numbered.into_iter().map(|(_, span)| span);
-            self.pictures = (0..).zip(spans).collect();
+            self.pictures = (0..).zip(spans.take(n)).collect();
+        } else if self.n_before_gap.is_none() && !self.has_all_pictures() {
+            // A program that counts from another number than 0.
+            let first = self.pictures.keys().next().copied().unwrap_or(0);
+            let pictures = std::mem::take(&mut self.pictures).into_iter();
+            self.pictures = pictures.map(|(number, span)| (number - first, span)).collect();
         }
+    }
+
+    fn has_all_pictures(&self) -> bool {
+        let mut frames = self.frames.iter();
+        frames.all(|frame| self.pictures.contains_key(&frame.picture))
     }
 
     /// What the whole shows to be lost: chunks and files that were counted, pictures that frames name, texts beyond the

@@ -142,6 +142,9 @@ impl Scan<'_> {
     }
 
     fn lose(&mut self, loss: Loss) {
+        if matches!(loss, Loss::Skipped { .. }) {
+            self.found.gap();
+        }
         if self.found.losses.len() < MAX_LOSSES {
             self.found.losses.push(loss);
         }

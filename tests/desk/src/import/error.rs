@@ -52,6 +52,11 @@ pub enum ImportReason {
     /// Nine numbers that are no rotation.
     #[error("the matrix is no rotation")]
     NotARotation,
+    /// A matrix that shears, mirrors or projects.
+    #[error(
+        "the matrix is no pose: its columns must be at right angles, of one length and not mirrored, and its last row 0 0 0 1"
+    )]
+    NotAPose,
     /// A camera of another kind.
     #[error(
         "{0:?}: that camera model cannot be taken: undistort the pictures first, as `colmap image_undistorter` or `ns-process-data` do"
@@ -90,6 +95,14 @@ pub enum ImportReason {
         numbers: [u64; 2],
         /// Of the index.
         last_frame: u64,
+    },
+    /// A picture in another format that is known.
+    #[error("the picture is {format}, and only PNG and JPEG are read: {way_out}")]
+    OtherFormat {
+        /// What it is.
+        format: &'static str,
+        /// What makes a picture of it that is read.
+        way_out: &'static str,
     },
     /// Neither PNG nor JPEG, or damaged.
     #[error("neither a PNG nor a JPEG whose size can be read")]

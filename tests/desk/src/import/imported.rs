@@ -42,3 +42,15 @@ pub struct Imported {
     /// What was left out or taken otherwise than written, for people.
     pub notes: Vec<String>,
 }
+
+impl Imported {
+    /// Frames that have a time.
+    pub(super) fn n_times(&self) -> usize {
+        self.frames.iter().filter(|frame| frame.time_s.is_some()).count()
+    }
+
+    /// Whether all frames have a time; if only some have one, none is used.
+    pub(super) fn has_times(&self) -> bool {
+        self.n_times() == self.frames.len()
+    }
+}

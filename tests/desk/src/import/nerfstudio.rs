@@ -3,14 +3,17 @@
 //! Camera axes are OpenGL's, which are ours; the world has +Z up; matrices are written row by row. Principal points are
 //! taken as they are: `cx` is half the width in the middle. Scale and the scene itself are not in it, and times hardly ever.
 
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 use serde::Deserialize;
 
 use super::error::{ImportError, ImportReason};
 use super::imported::{Imported, ImportedFrame};
 use super::lens::Lens;
 use super::paths::{Known, Taken};
-use super::values::{number, ordered, time_s, without_picture};
+use super::values::{is_scaled_rotation, number, ordered, time_s, without_picture};
+
+/// How far the last row of a matrix may be from 0 0 0 1.
+const SAME_ROW: f64 = 1e-6;
 
 #[derive(Deserialize)]
 struct Transforms {
@@ -212,5 +215,10 @@ fn matrix(file: &str, field: &str, rows: &[Vec<f64>]) -> Result<DMat4, ImportErr
         }
         *row = DVec4::from_array(four);
     }
-    Ok(DMat4::from_cols(all[0], all[1], all[2], all[3]).transpose())
+    let matrix = DMat4::from_cols(all[0], all[1], all[2], all[3]).transpose();
+    let is_affine = all[3].abs_diff_eq(DVec4::W, SAME_ROW);
+    match is_affine && is_scaled_rotation(&DMat3::from_mat4(matrix)) {
+        true => Ok(matrix),
+        false => Err(ImportError::new(file, field, ImportReason::NotAPose)),
+    }
 }

@@ -5,8 +5,9 @@ use std::io::Cursor;
 use app_core::scene::{Image, Intrinsics};
 use app_core::session::Files;
 use app_core::session::record::LensRecord;
+use app_scene::picture;
 use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder, ImageReader, Limits};
+use image::{ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits};
 
 use super::error::{ImportError, ImportReason};
 use super::imported::Imported;
@@ -189,9 +190,18 @@ fn read(files: &dyn Files, path: &str) -> Result<Vec<u8>, ImportError> {
 /// By the picture's header.
 fn size_px(files: &dyn Files, path: &str) -> Result<[u32; 2], ImportError> {
     let bytes = read(files, path)?;
+    let is_read = matches!(
+        image::guess_format(&bytes),
+        Ok(ImageFormat::Png | ImageFormat::Jpeg)
+    );
+    if let (false, Some((format, way_out))) = (is_read, picture::kind(&bytes)) {
+        let reason = ImportReason::OtherFormat { format, way_out };
+        return Err(ImportError::new(path, "the file", reason));
+    }
     let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
     let size = reader
         .ok()
+        .filter(|_| is_read)
         .and_then(|reader| reader.into_dimensions().ok())
         .ok_or_else(|| ImportError::new(path, "the file", ImportReason::NotAPicture))?;
     Ok(size.into())

@@ -133,6 +133,26 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), ImportReason> {
     }
 }
 
+impl Header {
+    /// Refuses a texture whose coordinates stand in the faces alone, as MeshLab writes them.
+    fn check_texture(&self) -> Result<(), ImportReason> {
+        let is_of_faces = |property: &Property| property.name == "texcoord" && property.list.is_some();
+        let mut elements = self.elements.iter();
+        let in_faces = elements
+            .clone()
+            .any(|element| element.name == "face" && element.properties.iter().any(is_of_faces));
+        let in_vertices =
+            elements.any(|element| element.name == "vertex" && Columns::of(element).tex_coord.is_some());
+        if self.texture.is_some() && in_faces && !in_vertices {
+            return Err(wrong(
+                "its texture coordinates stand in its faces: export it with texture coordinates per vertex, as by the filter \
+                 `Convert PerWedge UV into PerVertex UV` of MeshLab",
+            ));
+        }
+        Ok(())
+    }
+}
+
 fn encoding(name: &str) -> Result<Encoding, ImportReason> {
     match name {
         "ascii" => Ok(Encoding::Text),
@@ -242,6 +262,7 @@ fn mesh(header: &Header, body: &[u8]) -> Result<Mesh, ImportReason> {
         rest: body,
     };
     let mut mesh = Mesh::default();
+    header.check_texture()?;
     for element in &header.elements {
         if element.n > MAX_ELEMENTS || (element.n > 0 && element.properties.is_empty()) {
             return Err(ImportReason::Count(element.n));

@@ -34,7 +34,7 @@ pub(super) fn parse(file: &str, text: &str, known: &Known) -> Result<Imported, I
     let n_poses = metadata.poses.len();
     let last_frame = n_poses.saturating_sub(1) as u64;
     let first_number = first_number(file, known, last_frame)?;
-    let mut frames = Vec::new();
+    let mut found = Vec::new();
     let mut missing = Vec::new();
     for index in 0..n_poses {
         let number = index as u64 + first_number;
@@ -42,11 +42,22 @@ pub(super) fn parse(file: &str, text: &str, known: &Known) -> Result<Imported, I
             .into_iter()
             .flat_map(|folder| ["jpg", "png"].map(|kind| format!("{folder}{number}.{kind}")));
         match known.first(names) {
-            Some(image) => frames.push(metadata.frame(file, index, image)?),
+            Some(image) => found.push((index, image)),
             None => missing.push(format!("rgbd/{number}.jpg")),
         }
     }
+    let n_times = metadata.times_s.as_ref().map_or(0, Vec::len);
+    let has_times = found.last().is_some_and(|(last, _)| *last < n_times);
+    let frames = found
+        .into_iter()
+        .map(|(index, image)| metadata.frame(file, index, image, has_times));
+    let frames = frames.collect::<Result<Vec<_>, _>>()?;
     let mut notes = Vec::from_iter(without_picture(&missing, n_poses));
+    if n_times > 0 && !has_times {
+        notes.push(format!(
+            "frameTimestamps has {n_times} times for {n_poses} poses: none is used"
+        ));
+    }
     if first_number > 0 {
         notes.push("the pictures are counted from 1".to_owned());
     }
@@ -77,7 +88,13 @@ fn first_number(file: &str, known: &Known, last_frame: u64) -> Result<u64, Impor
 }
 
 impl Metadata {
-    fn frame(&self, file: &str, index: usize, image: String) -> Result<ImportedFrame, ImportError> {
+    fn frame(
+        &self,
+        file: &str,
+        index: usize,
+        image: String,
+        has_times: bool,
+    ) -> Result<ImportedFrame, ImportError> {
         let numbers = &self.poses[index];
         let field = format!("poses[{index}]");
         let &[qx, qy, qz, qw, x, y, z] = numbers.as_slice() else {
@@ -88,7 +105,7 @@ impl Metadata {
             return Err(ImportError::new(file, field, reason));
         };
         let intrinsics = self.intrinsics.iter().flatten().nth(index);
-        let times_s = self.times_s.as_deref().unwrap_or_default();
+        let times_s = self.times_s.as_deref().filter(|_| has_times).unwrap_or_default();
         let size = |name, value: Option<f64>| value.map(|value| number(file, name, value)).transpose();
         Ok(ImportedFrame {
             time_s: time_s(file, index, times_s, self.fps)?,

@@ -8,8 +8,8 @@ use super::paths::natural;
 
 /// No clock shows more, seconds either way.
 const MAX_TIME_S: f64 = 1e10;
-/// How far the determinant of a rotation may be from 1: some files have four digits.
-const SAME_VOLUME: f64 = 0.02;
+/// How far lengths, angles and the determinant of a rotation may be from those of one, as parts of 1: some files have four digits.
+const ROUNDED: f64 = 0.02;
 
 /// OpenCV's camera axes (y down, z forward) from ours, or the other way.
 pub(super) const OPENCV_FROM_CAMERA: DMat4 = DMat4::from_cols_array(&[
@@ -75,6 +75,18 @@ pub(super) fn pose(
     ))
 }
 
+/// Whether columns are at right angles, of one length and not mirrored.
+pub(super) fn is_scaled_rotation(matrix: &DMat3) -> bool {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let squares = [x, y, z].map(DVec3::length_squared);
+    let largest = squares.into_iter().fold(0.0, f64::max);
+    let near = |difference: f64| difference.abs() <= ROUNDED * largest;
+    largest.is_normal()
+        && matrix.determinant() > 0.0
+        && squares.into_iter().all(|square| near(largest - square))
+        && [x.dot(y), y.dot(z), z.dot(x)].into_iter().all(near)
+}
+
 /// A pose of a rotation, row by row, and a position.
 pub(super) fn pose_of_rows(
     file: &str,
@@ -83,7 +95,7 @@ pub(super) fn pose_of_rows(
     position: [f64; 3],
 ) -> Result<DMat4, ImportError> {
     let rotation = DMat3::from_cols_array(&rows).transpose();
-    if (rotation.determinant() - 1.0).abs() > SAME_VOLUME {
+    if !is_scaled_rotation(&rotation) || (rotation.determinant() - 1.0).abs() > ROUNDED {
         return Err(ImportError::new(file, field, ImportReason::NotARotation));
     }
     let rotation = DQuat::from_mat3(&rotation).normalize();

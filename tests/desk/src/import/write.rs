@@ -8,6 +8,7 @@ use app_core::session::Capture;
 use app_core::session::record::{
     BackgroundRecord, CaptureRecord, Encoding, FrameRecord, Index, PoseRecord, ToyRecord,
 };
+use app_core::toy::Toy;
 use glam::{DMat4, DQuat, DVec3};
 use serde::de::DeserializeOwned;
 
@@ -63,7 +64,6 @@ pub struct Lacking {
 impl Lacking {
     /// What is needed beside the format and was not said, as arguments.
     fn missing(&self, imported: &Imported) -> Vec<&'static str> {
-        let has_times = imported.frames.iter().all(|frame| frame.time_s.is_some());
         let needed = [
             ("--toy FILE", self.toy.is_none()),
             (
@@ -75,7 +75,7 @@ impl Lacking {
             ("--plates A-B|none", self.plates.is_none()),
             ("--up X,Y,Z", self.up.is_none() && imported.up.is_none()),
             ("--metres NUMBER", self.metres.is_none() && !imported.is_metric),
-            ("--fps NUMBER", self.fps.is_none() && !has_times),
+            ("--fps NUMBER", self.fps.is_none() && !imported.has_times()),
         ];
         needed
             .into_iter()
@@ -112,6 +112,19 @@ impl Lacking {
         );
         Ok((DQuat::from_rotation_arc(up, DVec3::Y), metres))
     }
+
+    /// When each frame was taken, from the first one on.
+    fn times_s(&self, imported: &Imported) -> anyhow::Result<Vec<f64>> {
+        let fps = self.fps.unwrap_or(1.0);
+        ensure!(fps.is_normal() && fps > 0.0, "--fps: {fps} is not above 0");
+        let stated: Option<Vec<f64>> = imported.frames.iter().map(|frame| frame.time_s).collect();
+        Ok(match stated {
+            Some(times_s) => times_s.iter().map(|time_s| time_s - times_s[0]).collect(),
+            None => (0..imported.frames.len())
+                .map(|place| place as f64 / fps)
+                .collect(),
+        })
+    }
 }
 
 impl Lacking {
@@ -133,7 +146,9 @@ impl Lacking {
         if bytes.starts_with(b"ply") {
             return glb_of_ply_file(toy, &bytes).with_context(|| toy.display().to_string());
         }
-        read_toy(toy)
+        let bytes = read_toy(toy)?;
+        Toy::from_glb(&toy.display().to_string(), &bytes)?;
+        Ok(bytes)
     }
 }
 
@@ -193,7 +208,30 @@ pub fn write(
         fs::remove_dir(out)?;
         bail!("{}: lies in the recording itself", out.display());
     }
-    write_whole(&out.join("toy.glb"), &toy)?;
+    let capture = write_files(files, imported, &fitted, (&toy, index), out).inspect_err(|_| {
+        // What is left of it is no session; the error says why.
+        let _ = fs::remove_dir_all(out);
+    })?;
+    let n_times = imported.n_times();
+    let mixed = (n_times > 0 && !imported.has_times()).then(|| {
+        let n = imported.frames.len();
+        format!("only {n_times} of {n} frames have a time: all are counted by --fps")
+    });
+    let notes = imported.notes.iter().chain(&fitted.notes).cloned();
+    Ok(Written {
+        notes: notes.chain(mixed).collect(),
+        capture,
+    })
+}
+
+fn write_files(
+    files: &Folder,
+    imported: &Imported,
+    fitted: &Fitted,
+    (toy, index): (&[u8], CaptureRecord),
+    out: &Path,
+) -> anyhow::Result<Capture> {
+    write_whole(&out.join("toy.glb"), toy)?;
     for (place, frame) in imported.frames.iter().enumerate() {
         let file = out.join(fitted.path(&frame.image));
         make_folder(file.parent().unwrap_or(out))?;
@@ -203,11 +241,7 @@ pub fn write(
         &out.join(SESSION_FILE),
         &serde_json::to_vec_pretty(&Index::from(index))?,
     )?;
-    let notes = imported.notes.iter().chain(&fitted.notes).cloned();
-    Ok(Written {
-        notes: notes.collect(),
-        capture: Capture::open(Folder::open(out)?)?,
-    })
+    Ok(Capture::open(Folder::open(out)?)?)
 }
 
 /// `capture.json`.
@@ -257,17 +291,14 @@ fn index(
 
 /// Entries of all frames, plates included.
 fn frames(imported: &Imported, fitted: &Fitted, lacking: &Lacking) -> anyhow::Result<Vec<FrameRecord>> {
-    let first = imported.frames.first().context("no frame")?;
     let (rotation, metres) = lacking.world_from_recorded(imported)?;
-    let begin_s = first.time_s.unwrap_or(0.0);
+    let times_s = lacking.times_s(imported)?;
     let entry = |(place, frame): (usize, &ImportedFrame)| {
-        let counted_s = lacking.fps.map_or(0.0, |fps| place as f64 / fps);
-        let time_s = frame.time_s.map_or(counted_s, |time_s| time_s - begin_s);
         let (_, of_camera, position) = frame.recorded_from_camera.to_scale_rotation_translation();
         let world_from_camera =
             DMat4::from_rotation_translation(rotation * of_camera, rotation * (metres * position));
         FrameRecord {
-            time: time_s,
+            time: times_s[place],
             image: fitted.path(&frame.image),
             intrinsics: fitted.intrinsics.get(place).map(Into::into),
             world_from_camera: world_from_camera.to_cols_array(),

@@ -225,6 +225,12 @@ fn the_toy_of_several_objects_is_asked_for() {
     let error = parse(Format::Bop, [camera.as_bytes(), mirrored.as_bytes()], &there);
     let error = error.err().unwrap().to_string();
     assert_eq!(error, "scene_gt.json (12.cam_R_m2c): the matrix is no rotation");
+    // Of the same volume.
+    let sheared = mirrored.replace("[1,0,0,0,1,0,0,0,-1]", "[1,0.5,0,0,1,0,0,0,1]");
+    assert_ne!(sheared, mirrored);
+    let error = parse(Format::Bop, [camera.as_bytes(), sheared.as_bytes()], &there);
+    let error = error.err().unwrap().to_string();
+    assert_eq!(error, "scene_gt.json (12.cam_R_m2c): the matrix is no rotation");
 }
 
 /// A pyramid of a square and four triangles, in millimetres.
@@ -300,6 +306,16 @@ fn a_mesh_is_the_same_however_it_is_written() {
     );
     let error = glb_of_ply(cloud.as_bytes(), &|_| None).err().unwrap().to_string();
     assert!(error.contains("a cloud of points is no toy"), "{error}");
+}
+
+/// As MeshLab writes it.
+#[test]
+fn a_texture_whose_coordinates_stand_in_the_faces_is_not_lost_silently() {
+    let text = "ply\nformat ascii 1.0\ncomment TextureFile skin.png\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 1 0 0 1\n";
+    let read = |text: &str| glb_of_ply(text.as_bytes(), &|_| Some(b"\x89PNG".to_vec()));
+    let error = read(text).err().unwrap().to_string();
+    assert!(error.contains("texture coordinates per vertex"), "{error}");
+    assert!(read(&text.replace("comment TextureFile skin.png\n", "")).is_ok());
 }
 
 #[test]

@@ -130,6 +130,47 @@ fn record3d_has_more_poses_than_pictures_and_columns_first() {
     assert_eq!(imported.up, None, "gravity is lost");
 }
 
+/// Times of a list that ends too early are not mixed with those of `fps`.
+#[test]
+fn record3d_has_times_for_all_frames_or_counts_all() {
+    let metadata = METADATA.replace("[0,0.0166,0.05]", "[7]");
+    let imported = record3d(&metadata).unwrap();
+    let times: Vec<_> = imported.frames.iter().map(|frame| frame.time_s).collect();
+    assert_eq!(times, [Some(0.0), Some(1.0 / 60.0)]);
+    assert!(
+        imported.notes.iter().any(|note| note.contains("none is used")),
+        "{:?}",
+        imported.notes
+    );
+}
+
+#[test]
+fn matrices_that_are_no_poses_are_refused() {
+    let pose = "[[1,0,0,1],[0,0,-1,2],[0,1,0,3],[0,0,0,1]]";
+    assert!(nerfstudio(TRANSFORMS).is_ok());
+    // A scale is one of the whole scene, and is left out; four digits are enough.
+    for good in [
+        "[[2,0,0,1],[0,0,-2,2],[0,2,0,3],[0,0,0,1]]",
+        "[[0.7071,-0.7071,0,1],[0.7071,0.7071,0,2],[0,0,1,3],[0,0,0,1]]",
+    ] {
+        assert!(nerfstudio(&TRANSFORMS.replace(pose, good)).is_ok(), "{good}");
+    }
+    for wrong in [
+        "[[1,0,0,1],[0,0,1,2],[0,1,0,3],[0,0,0,1]]",
+        "[[1,0.2,0,1],[0,0,-1,2],[0,1,0,3],[0,0,0,1]]",
+        "[[1,0,0,1],[0,0,-1,2],[0,1.2,0,3],[0,0,0,1]]",
+        "[[0,0,0,1],[0,0,0,2],[0,0,0,3],[0,0,0,1]]",
+        "[[1,0,0,1],[0,0,-1,2],[0,1,0,3],[1,2,3,1]]",
+    ] {
+        let error = nerfstudio(&TRANSFORMS.replace(pose, wrong)).err().unwrap();
+        let error = error.to_string();
+        assert!(
+            error.contains("frames[0].transform_matrix") && error.contains("the matrix is no pose"),
+            "{wrong}: {error}"
+        );
+    }
+}
+
 #[test]
 fn nerfstudio_has_rows_and_z_up_and_its_own_intrinsics() {
     let imported = nerfstudio(TRANSFORMS).unwrap();

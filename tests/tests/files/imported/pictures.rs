@@ -2,7 +2,7 @@
 
 use app_core::scene::Image;
 use app_core::session::Session;
-use desk::import::{Format, Written};
+use desk::import::{Format, Lacking, Written};
 
 use crate::imported::small::{Small, grey, lacking};
 
@@ -65,6 +65,59 @@ fn other_pictures_are_refused() {
 }
 
 /// What a pinhole sees at a place: smooth, and another value at each side of it.
+#[test]
+fn what_cannot_be_a_session_is_refused_and_leaves_no_folder() {
+    let camera = r#""w":192,"h":108,"fl_x":170,"cx":95,"cy":55"#;
+    let heic = Small::new("heic");
+    heic.file("transforms.json", transforms(camera).as_bytes());
+    heic.file("a.png", b"\0\0\0\x18ftypheic");
+    let error = heic
+        .import(Format::Nerfstudio, &lacking())
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(error.contains("a.png (the file): the picture is HEIC"), "{error}");
+
+    let small = Small::new("refused");
+    small.file("transforms.json", transforms(camera).as_bytes());
+    small.picture("a.png", &grey(SIZE_PX));
+    small.file("toy.glb", b"whatever");
+    let toy = small.folder.0.join("recording/toy.glb");
+    let plane = lacking().receiver[0].replace("[1,1]", "[-1,1]");
+    #[rustfmt::skip] // One case a line.
+    let cases = [
+        (Lacking { fps: Some(-30.0), ..lacking() }, "--fps: -30 is not above 0"),
+        (Lacking { toy: Some(toy), ..lacking() }, "toy.glb"),
+        (Lacking { receiver: vec![plane], ..lacking() }, "receivers[0].half_extent"),
+    ];
+    for (lacking, expected) in cases {
+        let error = small.import(Format::Nerfstudio, &lacking).err().unwrap();
+        let error = format!("{error:#}");
+        assert!(error.contains(expected), "{error}");
+        assert!(!small.folder.0.join("session").exists(), "{expected}");
+    }
+}
+
+#[test]
+fn times_count_if_all_frames_have_one() {
+    let camera = r#""w":192,"h":108,"fl_x":170,"cx":95,"cy":55"#;
+    let text = transforms(camera);
+    let (head, frame) = text.split_once("[{").unwrap();
+    let frame = frame.strip_suffix("}]}").unwrap();
+    let second = frame.replace("a.png", "b.png");
+    for (of_second, times, n_notes) in [(r#","time":9"#, [0.0, 2.0], 0), ("", [0.0, 1.0 / 30.0], 1)] {
+        let small = Small::new("times");
+        let text = format!(r#"{head}[{{{frame},"time":7}},{{{second}{of_second}}}]}}"#);
+        small.file("transforms.json", text.as_bytes());
+        small.picture("a.png", &grey(SIZE_PX));
+        small.picture("b.png", &grey(SIZE_PX));
+        let written = small.import(Format::Nerfstudio, &lacking()).unwrap();
+        let found = [0, 1].map(|index| written.capture.frame(index).unwrap().time_secs);
+        assert_eq!(found, times);
+        assert_eq!(written.notes.len(), n_notes, "{:?}", written.notes);
+    }
+}
+
 fn pattern([x, y]: [f64; 2]) -> f64 {
     120.0 + 50.0 * (14.0 * x + 3.0 * y).sin() + 40.0 * (11.0 * y - 2.0 * x).cos()
 }

@@ -195,21 +195,61 @@ fn lengths_of_compressed_chunks_are_not_believed() {
     assert!(start.elapsed().as_secs() < 60, "{:?}", start.elapsed());
 }
 
-#[test]
-fn sequence_numbers_that_a_program_did_not_keep_are_counted() {
-    let small = small(N_FRAMES);
-    let bytes = with_chunks(&small.bytes, |records| {
+/// With other sequence numbers.
+fn renumbered(bytes: &[u8], number: impl Fn(u32) -> u32) -> Vec<u8> {
+    with_chunks(bytes, |records| {
         let mut anew = Vec::new();
         for one in each(records) {
-            let at = anew.len();
+            let at = anew.len() + HEAD_BYTES + 2;
             anew.extend_from_slice(one);
             if one[0] == MESSAGE {
-                anew[at + HEAD_BYTES + 2..at + HEAD_BYTES + 6].fill(0);
+                let kept = u32::from_le_bytes(anew[at..at + 4].try_into().unwrap());
+                anew[at..at + 4].copy_from_slice(&number(kept).to_le_bytes());
             }
         }
         chunk("lz4", &anew, &lz4(&anew), anew.len() as u64)
-    });
-    is_whole(&open(&bytes).unwrap());
+    })
+}
+
+#[test]
+fn sequence_numbers_that_a_program_did_not_keep_are_counted() {
+    let small = small(N_FRAMES);
+    is_whole(&open(&renumbered(&small.bytes, |_| 0)).unwrap());
+    is_whole(&open(&renumbered(&small.bytes, |kept| kept + 1)).unwrap());
+}
+
+/// Which pictures those behind the gap are is not known without their numbers: none is given to a wrong frame.
+#[test]
+fn without_sequence_numbers_pictures_behind_a_gap_are_left_out() {
+    let small = small(N_FRAMES);
+    let anew = renumbered(&small.bytes, |_| 0);
+    let chunks: Vec<_> = records(&anew)
+        .into_iter()
+        .filter(|(opcode, _)| *opcode == CHUNK)
+        .map(|(_, place)| place)
+        .collect();
+    assert!(chunks.len() > 2);
+    let first = small
+        .flushed
+        .iter()
+        .find(|flushed| flushed.n_chunks == 1)
+        .unwrap();
+    let mut damaged = anew.clone();
+    damaged[chunks[1].end - 9] ^= 0x55;
+    let removed = [&anew[..chunks[1].start], &anew[chunks[1].end..]].concat();
+    for (what, bytes) in [("damaged", damaged), ("removed", removed)] {
+        let recording = open(&bytes).unwrap();
+        assert_eq!(
+            compare(&recording).unwrap(),
+            (0..first.n_frames).collect::<Vec<_>>(),
+            "{what}"
+        );
+        let is_told = recording
+            .losses()
+            .iter()
+            .any(|loss| matches!(loss, Loss::Pictures { .. }));
+        assert!(is_told, "{what}: {:?}", recording.losses());
+    }
 }
 
 #[test]

@@ -240,7 +240,9 @@ fn each_damaged_file_is_named() {
         ("frame.png", "frames[0].image", cut("frame.png", 20), "damaged"),
         ("frame.png", "frames[0].image", png(DynamicImage::new_rgb8(3, 2)), "3 x 2 px, but the session's is 2 x 2"),
         ("frame.png", "frames[0].image", with_size(100_000), "100000 x 100000 px"),
-        ("frame.png", "frames[0].image", Some(b"GIF89a".to_vec()), "neither PNG nor JPEG"),
+        ("frame.png", "frames[0].image", Some(b"GIF89a".to_vec()), "the picture is GIF, and only PNG and JPEG are read"),
+        ("frame.png", "frames[0].image", Some(b"\0\0\0\x18ftypheic".to_vec()), "the picture is HEIC"),
+        ("frame.png", "frames[0].image", Some(b"whatever".to_vec()), "neither PNG nor JPEG"),
         ("mask.png", "frames[0].mask", png(DynamicImage::new_rgb8(2, 2)), "not an 8-bit RGBA picture"),
         ("plate.jpg", "backgrounds[0].image", None, "does not exist"),
         ("plate.jpg", "backgrounds[0].image", cut("plate.jpg", 4), "cut short"),
@@ -257,6 +259,26 @@ fn each_damaged_file_is_named() {
         }
         expect_error(parts, file, field, reason);
     }
+}
+
+/// Looking at the heads of pictures says the same of other kinds as decoding them.
+#[test]
+fn heads_of_other_kinds_are_named() {
+    let mut parts = Parts::good();
+    parts.index.as_object_mut().unwrap().remove("probe");
+    parts
+        .files
+        .insert("frame.png".to_owned(), b"\0\0\0\x18ftypheic".to_vec());
+    let error = parts
+        .open()
+        .unwrap()
+        .check_pictures(0..1)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("frame.png (frames[0].image): the picture is HEIC"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -161,6 +161,79 @@ fn blend_is_cut_at_a_half_and_said() {
         json!({ "alphaMode": "BLEND", "pbrMetallicRoughness": glass }),
     ));
     assert_eq!(glass.indices().len(), 6);
+    let whole = |toy: &Toy| matches!(toy.warnings(), [ToyWarning::BlendWhole { .. }]);
+    assert!(whole(&glass), "{:?}", glass.warnings());
+    // What blends and loses nothing is drawn whole, too, and what is opaque needs no blending.
+    for (alpha, is_said) in [(0.7, true), (1.0, false)] {
+        let factor = json!({ "baseColorFactor": [1.0, 1.0, 1.0, alpha] });
+        let toy = read(&card(
+            1.0,
+            true,
+            json!({ "alphaMode": "BLEND", "pbrMetallicRoughness": factor }),
+        ));
+        assert_eq!(toy.indices().len(), 6);
+        assert_eq!(whole(&toy), is_said, "{alpha}: {:?}", toy.warnings());
+        assert_eq!(toy.warnings().is_empty(), !is_said);
+    }
+}
+
+/// A clip may make a part large that is small at rest, or not there; the largest place of a shape counts.
+#[test]
+fn a_part_that_is_small_at_rest_is_cut_as_finely() {
+    let material = json!({ "alphaMode": "MASK" });
+    let n_triangles = |scales: &[f64]| {
+        let mut glb = card(1.0, true, material.clone());
+        glb.json["nodes"] = json!([]);
+        for scale in scales {
+            glb.push("nodes", json!({ "mesh": 0, "scale": [scale, scale, scale] }));
+        }
+        let nodes: Vec<usize> = (0..scales.len()).collect();
+        glb.json["scenes"] = json!([{ "nodes": nodes }]);
+        read(&glb).indices().len() / 3 / scales.len()
+    };
+    let expected = n_triangles(&[1.0]);
+    assert!(expected > 500, "{expected}");
+    assert_eq!(n_triangles(&[0.0, 1.0]), expected);
+    assert_eq!(n_triangles(&[0.001, 1.0]), expected);
+    assert_eq!(n_triangles(&[1.0, 0.001]), expected);
+    assert_eq!(n_triangles(&[0.0]), expected);
+}
+
+#[test]
+fn what_has_too_many_triangles_to_be_cut_is_said() {
+    const SIDE: u16 = 229;
+    let mut glb = card(
+        1.0,
+        true,
+        json!({ "alphaMode": "MASK", "pbrMetallicRoughness": {} }),
+    );
+    let mut places = Vec::new();
+    let mut colors = Vec::new();
+    for y in 0..=SIDE {
+        for x in 0..=SIDE {
+            places.extend([f32::from(x), f32::from(y), 0.0]);
+            colors.extend([1.0, 1.0, 1.0, f32::from(u8::from(x + y > 0))]);
+        }
+    }
+    let mut indices = Vec::new();
+    for y in 0..SIDE {
+        for x in 0..SIDE {
+            let [a, b] = [y, y + 1].map(|y| y * (SIDE + 1) + x);
+            indices.extend([a, a + 1, b + 1, a, b + 1, b]);
+        }
+    }
+    let attributes =
+        json!({ "POSITION": glb.floats("VEC3", &places), "COLOR_0": glb.floats("VEC4", &colors) });
+    let indices = glb.u16s("SCALAR", &indices);
+    glb.json["meshes"][0]["primitives"][0] =
+        json!({ "attributes": attributes, "indices": indices, "material": 0 });
+    let toy = read(&glb);
+    assert_eq!(toy.indices().len() / 3, 2 * usize::from(SIDE).pow(2));
+    assert!(
+        matches!(toy.warnings(), [ToyWarning::NotCut { .. }]),
+        "{:?}",
+        toy.warnings()
+    );
 }
 
 #[test]

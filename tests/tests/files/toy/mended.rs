@@ -103,6 +103,65 @@ fn neighbours_are_packed_in() {
 }
 
 #[test]
+fn a_neighbour_that_is_cut_short_is_not_read_on_into_the_next() {
+    let corners: Vec<u8> = CORNERS.iter().flat_map(|value| value.to_le_bytes()).collect();
+    let normals: Vec<u8> = [0.0_f32, 0.0, 1.0]
+        .repeat(3)
+        .iter()
+        .flat_map(|value| value.to_le_bytes())
+        .collect();
+    let mut json = tree("one.bin");
+    json["buffers"] = json!([
+        { "uri": "one.bin", "byteLength": corners.len() },
+        { "uri": "two.bin", "byteLength": normals.len() },
+    ]);
+    json["bufferViews"] = json!([
+        { "buffer": 0, "byteLength": corners.len() },
+        { "buffer": 1, "byteLength": normals.len() },
+    ]);
+    json["accessors"][1]["bufferView"] = 1.into();
+    json["accessors"][1]["byteOffset"] = 0.into();
+    let pack = |json: &Value, n_cut: usize| {
+        let mut neighbour = |name: &str| match name {
+            "one.bin" => Ok(corners[..corners.len() - n_cut].to_vec()),
+            _ => Ok(normals.clone()),
+        };
+        packed(FILE, json.to_string().as_bytes(), &mut neighbour)
+            .map(|whole| whole.into_owned())
+            .map_err(|error| error.to_string())
+    };
+    assert!(Toy::from_glb(FILE, &pack(&json, 0).unwrap()).is_ok());
+    let refused = pack(&json, 4).unwrap_err();
+    assert!(
+        refused.contains("buffers[0]: reaches to byte 36, but there are 32"),
+        "{refused}"
+    );
+    // A length that is wrong itself does not open the way to the next file.
+    json["buffers"][0]["byteLength"] = 32.into();
+    let refused = pack(&json, 4).unwrap_err();
+    assert!(
+        refused.contains("bufferViews[0]: reaches to byte 36, but there are 32"),
+        "{refused}"
+    );
+}
+
+/// As exporters write them that put all into one text.
+#[test]
+fn data_in_the_text_does_not_count_as_text() {
+    let mut json = tree(DATA);
+    json["images"] = json!([{ "uri": format!("data:image/png;base64,{}", "A".repeat(17 << 20)) }]);
+    assert_eq!(
+        corners(json.to_string().as_bytes()),
+        corners(tree(DATA).to_string().as_bytes())
+    );
+    json["images"] = json!([{ "name": "A".repeat(17 << 20) }]);
+    let refused = Toy::from_glb(FILE, json.to_string().as_bytes())
+        .unwrap_err()
+        .to_string();
+    assert!(refused.contains("JSON text without its data URIs"), "{refused}");
+}
+
+#[test]
 fn numbers_that_are_a_little_off_are_mended_and_said() {
     let mut glb = triangle();
     glb.json["materials"] =

@@ -135,8 +135,9 @@ fn looks_are_read_per_part() {
     glb.json["images"] = json!([{ "uri": "skin.png" }]);
     let plain = Toy::from_glb(FILE, &glb.bytes()).unwrap();
     assert_eq!(plain.materials()[1].base_color_texture, None);
-    assert!(plain.warnings().contains(&ToyWarning::ImageIgnored {
-        field: "images[0]".to_owned()
+    assert!(plain.warnings().contains(&ToyWarning::ImageOutside {
+        field: "images[0]".to_owned(),
+        name: "skin.png".to_owned(),
     }));
 }
 

@@ -5,6 +5,9 @@
     reason = "texels are counted in 64 bits and brought into the picture before they are looked up"
 )]
 
+use std::collections::HashMap;
+use std::rc::Rc;
+
 use glam::{DVec2, Vec2};
 
 use crate::toy::material::{Material, Wrap};
@@ -27,7 +30,28 @@ struct Picture<'a> {
     texture: &'a Texture,
     wraps: [Wrap; 2],
     /// Least and greatest alpha of 1, 2 x 2, 4 x 4, … texels.
-    levels: Vec<Level>,
+    levels: Rc<[Level]>,
+}
+
+/// Textures, and levels of those that were asked for, each made once.
+pub(super) struct Pyramids<'a> {
+    textures: &'a [Texture],
+    known: HashMap<usize, Rc<[Level]>>,
+}
+
+impl<'a> Pyramids<'a> {
+    pub(super) fn new(textures: &'a [Texture]) -> Self {
+        Self {
+            textures,
+            known: HashMap::new(),
+        }
+    }
+
+    fn of(&mut self, index: usize) -> (&'a Texture, Rc<[Level]>) {
+        let texture = &self.textures[index];
+        let levels = self.known.entry(index).or_insert_with(|| levels(texture).into());
+        (texture, Rc::clone(levels))
+    }
 }
 
 struct Level {
@@ -36,13 +60,13 @@ struct Level {
 }
 
 impl<'a> Field<'a> {
-    pub(super) fn new(material: &Material, textures: &'a [Texture], cutoff: f32) -> Self {
+    pub(super) fn new(material: &Material, pyramids: &mut Pyramids<'a>, cutoff: f32) -> Self {
         let picture = material.base_color_texture.map(|used| {
-            let texture = &textures[used.texture];
+            let (texture, levels) = pyramids.of(used.texture);
             Picture {
                 texture,
                 wraps: [used.wrap_u, used.wrap_v],
-                levels: levels(texture),
+                levels,
             }
         });
         let [.., factor] = material.base_color_linear;
@@ -78,13 +102,29 @@ impl<'a> Field<'a> {
             return differ;
         };
         differ || {
-            let alphas = corners.map(|corner| corner.alpha);
-            let [least, most] = picture.range(corners.map(|corner| corner.uv));
-            let margin = |picture: f32, alpha: f32| self.factor * picture * alpha - self.cutoff;
-            let lowest = margin(least, alphas.into_iter().fold(f32::INFINITY, f32::min));
-            let highest = margin(most, alphas.into_iter().fold(0.0, f32::max));
-            lowest < 0.0 && highest >= 0.0
+            let [lowest, highest] = self.bounds(picture.range(corners.map(|corner| corner.uv)), corners);
+            lowest < self.cutoff && highest >= self.cutoff
         }
+    }
+
+    /// Whether something of a triangle is clear, if only a little.
+    pub(super) fn is_clear(&self, corners: [Corner; 3]) -> bool {
+        /// What 8 bits can hold apart from 1.
+        const OPAQUE: f32 = 1.0 - 0.5 / 255.0;
+        let range = self
+            .picture
+            .as_ref()
+            .map_or([1.0; 2], |picture| picture.range(corners.map(|corner| corner.uv)));
+        self.bounds(range, corners)[0] < OPAQUE
+    }
+
+    /// Bounds on alpha over a triangle on which the picture has this range.
+    fn bounds(&self, [least, most]: [f32; 2], corners: [Corner; 3]) -> [f32; 2] {
+        let alphas = corners.map(|corner| corner.alpha);
+        [
+            self.factor * least * alphas.into_iter().fold(f32::INFINITY, f32::min),
+            self.factor * most * alphas.into_iter().fold(0.0, f32::max),
+        ]
     }
 }
 

@@ -10,6 +10,8 @@ mod grown;
 mod refine;
 mod welded;
 
+use std::collections::{HashMap, HashSet};
+
 use glam::DVec3;
 
 use super::geometry::Geometry;
@@ -19,8 +21,8 @@ use super::surface::Surface;
 use super::texture::Texture;
 use super::warning::ToyWarning;
 use crate::geometry::bounds::Bounds;
-use field::Field;
-use refine::{Finest, refined};
+use field::{Field, Pyramids};
+use refine::{Finest, is_clear, refined};
 
 /// What is left of BLEND; blending needs what is behind.
 const BLEND_CUTOFF: f32 = 0.5;
@@ -51,8 +53,10 @@ struct Part<'a> {
     /// How often it is drawn.
     n_surfaces: usize,
     field: Field<'a>,
-    /// Lengths at rest, over those in the file.
+    /// Lengths at rest, over those in the file; the largest of all surfaces.
     scale: f64,
+    /// Size in the file.
+    own_size: f64,
     material: usize,
     is_blend: bool,
 }
@@ -64,58 +68,105 @@ pub(super) fn apply(shape: &mut Shape, looks: &Looks, warnings: &mut Vec<ToyWarn
         return;
     }
     let (parts, size) = parts(shape, looks);
-    let mut texels = 1;
-    let cut = loop {
-        let finest = |part: &Part| Finest {
-            texels: texels as f32,
-            length: FINEST * size / part.scale.max(f64::MIN_POSITIVE),
-        };
-        match all_cut(shape.geometries, &parts, finest) {
-            Some(cut) => break cut,
-            None if texels < COARSEST => texels *= 2,
-            None => break Vec::new(),
-        }
-    };
-    let is_emptied = |g: usize| {
-        cut.iter()
-            .any(|(part, made)| parts[*part].geometry == g && made.indices.is_empty())
-    };
-    // A toy of glass alone is drawn whole.
-    let is_all_gone = shape.surfaces.iter().all(|surface| is_emptied(surface.geometry));
-    for (part, made) in cut {
-        let part = &parts[part];
-        let field = format!("materials[{}]", part.material);
-        if part.is_blend && is_all_gone {
-            continue;
-        }
-        let mut say = |warning: ToyWarning| {
-            if !warnings.contains(&warning) {
+    let (texels, mut cut) = finest_cut(shape.geometries, &parts, size);
+    keep_glass(shape.surfaces, &parts, &mut cut);
+    let cut_materials: HashSet<usize> = parts
+        .iter()
+        .zip(&cut)
+        .filter_map(|(part, made)| made.is_some().then_some(part.material))
+        .collect();
+    for (part, made) in parts.iter().zip(cut) {
+        let geometry = &mut shape.geometries[part.geometry];
+        let is_cut = cut_materials.contains(&part.material);
+        for warning in part.warnings(is_cut, texels) {
+            if !warnings.contains(&warning) && (is_cut || is_clear(geometry, &part.field)) {
                 warnings.push(warning);
             }
-        };
-        if part.is_blend {
-            say(ToyWarning::BlendCut { field: field.clone() });
         }
-        if texels > 1 {
-            say(ToyWarning::CutCoarse { field, texels });
+        if let Some(made) = made {
+            *geometry = made;
         }
-        shape.geometries[part.geometry] = made;
     }
     lay_anew(shape);
+}
+
+/// What is left of each part that loses something, and the texels that it is cut to; none where even the coarsest cut has too
+/// many triangles.
+fn finest_cut(geometries: &[Geometry], parts: &[Part], size: f64) -> (Option<u32>, Vec<Option<Geometry>>) {
+    let mut texels = 1;
+    while texels <= COARSEST {
+        let finest = |part: &Part| Finest {
+            texels: texels as f32,
+            length: FINEST * part.toy_size(size),
+        };
+        if let Some(cut) = all_cut(geometries, parts, finest) {
+            return (Some(texels), cut);
+        }
+        texels *= 2;
+    }
+    (None, parts.iter().map(|_| None).collect())
+}
+
+/// Leaves a toy of glass alone whole.
+fn keep_glass(surfaces: &[Surface], parts: &[Part], cut: &mut [Option<Geometry>]) {
+    let emptied: HashSet<usize> = parts
+        .iter()
+        .zip(&*cut)
+        .filter(|(_, made)| made.as_ref().is_some_and(|made| made.indices.is_empty()))
+        .map(|(part, _)| part.geometry)
+        .collect();
+    if !surfaces.iter().all(|surface| emptied.contains(&surface.geometry)) {
+        return;
+    }
+    for (part, made) in parts.iter().zip(cut) {
+        if part.is_blend {
+            *made = None;
+        }
+    }
+}
+
+impl Part<'_> {
+    /// Size of the toy in units of the file, as this part is enlarged at rest; its own where it is as good as hidden there, since a
+    /// clip enlarges it.
+    fn toy_size(&self, size: f64) -> f64 {
+        /// Parts that are this small beside the toy are hidden.
+        const HIDDEN: f64 = 1e-6;
+        let here = self.scale * self.own_size;
+        match here > HIDDEN * size {
+            true => size / self.scale,
+            false => self.own_size,
+        }
+    }
+
+    /// What is said of its material, if alpha is below 1 somewhere in it.
+    fn warnings(&self, is_cut: bool, texels: Option<u32>) -> Vec<ToyWarning> {
+        let field = || format!("materials[{}]", self.material);
+        let Some(texels) = texels else {
+            return vec![ToyWarning::NotCut { field: field() }];
+        };
+        let mut warnings = Vec::new();
+        if self.is_blend && is_cut {
+            warnings.push(ToyWarning::BlendCut { field: field() });
+        } else if self.is_blend {
+            warnings.push(ToyWarning::BlendWhole { field: field() });
+        }
+        if is_cut && texels > 1 {
+            let field = field();
+            warnings.push(ToyWarning::CutCoarse { field, texels });
+        }
+        warnings
+    }
 }
 
 /// The geometries to cut, and the size of the toy.
 fn parts<'a>(shape: &Shape, looks: &Looks<'a>) -> (Vec<Part<'a>>, f64) {
     let mut all: Option<Bounds> = None;
     let mut parts: Vec<Part> = Vec::new();
+    let mut place_of: HashMap<usize, usize> = HashMap::new();
+    let mut pyramids = Pyramids::new(looks.textures);
     for surface in shape.surfaces.iter() {
         let geometry = &shape.geometries[surface.geometry];
-        let active = geometry.active_targets(shape.rig.morph_weights(shape.rest, surface.node));
-        let mut posed: Vec<DVec3> = Vec::with_capacity(geometry.positions.len());
-        surface.deform(geometry, shape.rest, &active, |_, position, _| {
-            posed.push(position)
-        });
-        let here = Bounds::around(posed.into_iter());
+        let here = bounds(shape, surface);
         let corners = all.iter().flat_map(Bounds::corners).chain(here.corners());
         all = Some(Bounds::around(corners.collect::<Vec<_>>().into_iter()));
         let material = &looks.materials[surface.material];
@@ -124,46 +175,59 @@ fn parts<'a>(shape: &Shape, looks: &Looks<'a>) -> (Vec<Part<'a>>, f64) {
             Alpha::Mask(cutoff) => cutoff,
             Alpha::Blend => BLEND_CUTOFF,
         };
-        if let Some(known) = parts.iter_mut().find(|part| part.geometry == surface.geometry) {
-            known.n_surfaces += 1;
-            continue;
-        }
-        let own = Bounds::around(geometry.positions.iter().map(|position| position.as_dvec3()));
-        parts.push(Part {
-            geometry: surface.geometry,
-            n_surfaces: 1,
-            field: Field::new(material, looks.textures, cutoff),
-            scale: size(&here) / size(&own).max(f64::MIN_POSITIVE),
-            material: surface.material,
-            is_blend: material.alpha == Alpha::Blend,
+        let place = *place_of.entry(surface.geometry).or_insert_with(|| {
+            let own = Bounds::around(geometry.positions.iter().map(|position| position.as_dvec3()));
+            parts.push(Part {
+                geometry: surface.geometry,
+                n_surfaces: 0,
+                field: Field::new(material, &mut pyramids, cutoff),
+                scale: 0.0,
+                own_size: size(&own),
+                material: surface.material,
+                is_blend: material.alpha == Alpha::Blend,
+            });
+            parts.len() - 1
         });
+        let part = &mut parts[place];
+        part.n_surfaces += 1;
+        part.scale = part.scale.max(size(&here) / part.own_size.max(f64::MIN_POSITIVE));
     }
     (parts, all.as_ref().map_or(0.0, size))
+}
+
+/// Of a surface at rest.
+fn bounds(shape: &Shape, surface: &Surface) -> Bounds {
+    let geometry = &shape.geometries[surface.geometry];
+    let active = geometry.active_targets(shape.rig.morph_weights(shape.rest, surface.node));
+    let mut posed: Vec<DVec3> = Vec::with_capacity(geometry.positions.len());
+    surface.deform(geometry, shape.rest, &active, |_, position, _| {
+        posed.push(position)
+    });
+    Bounds::around(posed.into_iter())
 }
 
 fn size(bounds: &Bounds) -> f64 {
     (bounds.max - bounds.min).max(DVec3::ZERO).length()
 }
 
-/// What is left of each part that loses something; `None` if these are too many triangles.
+/// For each part, what is left of it if it loses something; `None` if these are too many triangles.
 fn all_cut(
     geometries: &[Geometry],
     parts: &[Part],
     finest: impl Fn(&Part) -> Finest,
-) -> Option<Vec<(usize, Geometry)>> {
+) -> Option<Vec<Option<Geometry>>> {
     let mut n_triangles = 0;
     let mut cut = Vec::new();
-    for (index, part) in parts.iter().enumerate() {
+    for part in parts {
         let geometry = &geometries[part.geometry];
         let most = (MAX_TRIANGLES - n_triangles) / part.n_surfaces + geometry.triangles().len();
         let mesh = refined(geometry, &part.field, &finest(part), most)?;
-        if let Some(mesh) = mesh.cut(&part.field) {
-            n_triangles += part.n_surfaces * mesh.triangles.len();
-            if n_triangles > MAX_TRIANGLES {
-                return None;
-            }
-            cut.push((index, grown::geometry(geometry, &mesh)));
+        let mesh = mesh.cut(&part.field);
+        n_triangles += part.n_surfaces * mesh.as_ref().map_or(0, |mesh| mesh.triangles.len());
+        if n_triangles > MAX_TRIANGLES {
+            return None;
         }
+        cut.push(mesh.map(|mesh| grown::geometry(geometry, &mesh)));
     }
     Some(cut)
 }

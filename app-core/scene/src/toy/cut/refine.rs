@@ -48,16 +48,27 @@ fn edges([a, b, c]: [u32; 3]) -> [Edge; 3] {
     [edge(a, b), edge(b, c), edge(c, a)]
 }
 
-/// Divides all triangles that may be cut; `None` if they become more than `most`.
-pub(super) fn refined(geometry: &Geometry, field: &Field, finest: &Finest, most: usize) -> Option<Mesh> {
+fn corners(geometry: &Geometry) -> Vec<Corner> {
     let uvs = geometry.uvs.as_deref().unwrap_or_default();
     let colors = geometry.colors.as_deref().unwrap_or_default();
     let corner = |vertex: usize| Corner {
         uv: uvs.get(vertex).copied().unwrap_or_default(),
         alpha: colors.get(vertex).map_or(1.0, |color| color.w),
     };
+    (0..geometry.positions.len()).map(corner).collect()
+}
+
+/// Whether something of a geometry is clear, if only a little.
+pub(super) fn is_clear(geometry: &Geometry, field: &Field) -> bool {
+    let corners = corners(geometry);
+    let mut triangles = geometry.triangles().iter();
+    triangles.any(|triangle| field.is_clear(triangle.map(|vertex| corners[vertex as usize])))
+}
+
+/// Divides all triangles that may be cut; `None` if they become more than `most`.
+pub(super) fn refined(geometry: &Geometry, field: &Field, finest: &Finest, most: usize) -> Option<Mesh> {
     let mut mesh = Mesh {
-        corners: (0..geometry.positions.len()).map(corner).collect(),
+        corners: corners(geometry),
         places: geometry.positions.clone(),
         made: Vec::new(),
         triangles: welded(geometry),
