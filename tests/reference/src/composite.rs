@@ -43,7 +43,7 @@ pub struct Shown {
 fn strengthened(open: DVec3, left: DVec3, strength: f64) -> DVec3 {
     let of_channel = |open: f64, left: f64| {
         if strength <= 1.0 {
-            open + strength * (left - open)
+            (1.0 - strength) * open + strength * left
         } else if open > 0.0 {
             let part = left / open;
             open * part.clamp(0.0, 1.0).powf(strength) * part.max(1.0)
