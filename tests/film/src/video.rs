@@ -79,10 +79,6 @@ fn extract(video: &Path, folder: &Path, n_most: u32) -> anyhow::Result<()> {
         output => output.context("ffmpeg")?,
     };
     let said = String::from_utf8_lossy(&output.stderr);
-    ensure!(
-        output.status.success(),
-        "ffmpeg cannot read it: {}",
-        said.trim()
-    );
+    ensure!(output.status.success(), "ffmpeg cannot read it: {}", said.trim());
     Ok(())
 }

@@ -179,7 +179,10 @@ fn bounce_at_limit(fit: &Fit, evidence: &Evidence) -> Option<Warning> {
     let channels = || [red, green, blue].into_iter().zip(toy);
     let n_black = channels().filter(|(bounce, toy)| *bounce < POSSIBLE_BOUNCE[0] && *toy > DARK_TOY);
     let is_black = n_black.count() >= 2;
-    let is_white = channels().filter(|(bounce, _)| *bounce > POSSIBLE_BOUNCE[1]).count() >= 2;
+    let is_white = channels()
+        .filter(|(bounce, _)| *bounce > POSSIBLE_BOUNCE[1])
+        .count()
+        >= 2;
     (is_black || is_white).then_some(Warning::BounceAtLimit { is_black })
 }
 

@@ -356,7 +356,9 @@ impl FilmFolder {
         for frame in film.iter().flat_map(|film| &film.frames) {
             if !is_kept(frame) {
                 let files = film.map(|film| film.files_of(frame)).unwrap_or_default();
-                files.iter().try_for_each(|file| remove_file(&self.path.join(file)))?;
+                files
+                    .iter()
+                    .try_for_each(|file| remove_file(&self.path.join(file)))?;
             }
         }
         Ok(())

@@ -60,11 +60,13 @@ pub(super) fn write_aligned(path: &Path, to: &Path, n_used: usize, say: &dyn Fn(
         warnings.extend(aligned.alignment.warnings.iter().map(ToString::to_string));
         if alignments.changed_scene(given, index).is_some() {
             warnings.insert(
-                "a moving film takes the toy's shape and the plates' light as the session has them".to_owned(),
+                "a moving film takes the toy's shape and the plates' light as the session has them"
+                    .to_owned(),
             );
         }
         // An aligned session leaves out what is assumed; a film needs it.
-        let assumed = { aligned.alignment.lights.as_ref() }.filter(|_| aligned.alignment.report.assumed.is_some());
+        let assumed =
+            { aligned.alignment.lights.as_ref() }.filter(|_| aligned.alignment.report.assumed.is_some());
         if let Some(lights) = assumed {
             let mut index = index_of(&Stored::open(to)?)?;
             index["lights"] = json!(lights.iter().map(LightRecord::from).collect::<Vec<_>>());

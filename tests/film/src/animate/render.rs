@@ -86,7 +86,8 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
         core.want_layers()?;
     }
     let mut warnings = Warnings::default();
-    let of_alignment = { studio.alignments.of(0).into_iter() }.flat_map(|aligned| &aligned.alignment.warnings);
+    let of_alignment =
+        { studio.alignments.of(0).into_iter() }.flat_map(|aligned| &aligned.alignment.warnings);
     warnings.say(capture.warnings().iter().map(ToString::to_string))?;
     warnings.say(of_alignment.map(ToString::to_string))?;
     let n_pictures = if core.is_software() {

@@ -233,7 +233,10 @@ fn planned(order: &Order, capture: &Capture) -> anyhow::Result<Film> {
             .map(|(number, pose)| FilmFrame {
                 number,
                 file: name.file(number),
-                photograph: photograph_at(&times_secs, order.timing.from_secs + f64::from(number - order.start) / order.timing.fps),
+                photograph: photograph_at(
+                    &times_secs,
+                    order.timing.from_secs + f64::from(number - order.start) / order.timing.fps,
+                ),
                 pose,
             })
             .collect(),

@@ -112,7 +112,10 @@ impl<'a> Ready<'a> {
         let index = self.index;
         let warnings = self.core.read_fit_warnings();
         let warnings = warnings.map_err(|reason| InbetweenError::Core { index, reason })?;
-        Ok(warnings.iter().map(|warning| format!("key {index}: {warning}")).collect())
+        Ok(warnings
+            .iter()
+            .map(|warning| format!("key {index}: {warning}"))
+            .collect())
     }
 
     /// The toy in a pose at the place where all frames show it.
