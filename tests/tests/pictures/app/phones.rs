@@ -15,6 +15,7 @@ use app_core::gpu::fault_of_pipeline_caches;
 use app_core::interface::Interface;
 use app_core::live::Live;
 use app_core::preset::Preset;
+use app_core::toy::Toy;
 use app_core::wgpu;
 use glam::DVec2;
 
@@ -400,7 +401,8 @@ fn pictures_that_take_too_long_lead_to_the_fast_preset_until_there_is_another_to
         }),
         "the same toy would be as slow again"
     );
-    moving.tell(ShellEvent::Toy(Ok(world::toy())));
+    let another = Arc::new(Toy::from_glb("another.glb", &world::toy_file()).unwrap());
+    moving.tell(ShellEvent::Toy(Ok(another)));
     moving.picture();
     assert_eq!(moving.live.preset(), Preset::Balanced);
 }
