@@ -5,6 +5,33 @@ use app_core::interface::{Insets, Screen, Touch, TouchPhase};
 /// Density at which a pixel is a point, in dots an inch.
 const POINT_DPI: f64 = 160.0;
 
+/// The key by which a person leaves: what is pressed and let go of in front of the app alone.
+///
+/// Android cancels a press when the window loses the focus. android-activity 0.6 does not hand the flag of a cancelled key on, so the loss
+/// itself counts.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BackKey {
+    is_down: bool,
+}
+
+impl BackKey {
+    /// The key goes down.
+    pub fn press(&mut self) {
+        self.is_down = true;
+    }
+
+    /// The window has lost the focus, or nobody looks at it.
+    pub fn cancel(&mut self) {
+        self.is_down = false;
+    }
+
+    /// The key goes up; whether it was pressed here.
+    #[must_use]
+    pub fn release(&mut self) -> bool {
+        std::mem::take(&mut self.is_down)
+    }
+}
+
 /// What a motion event tells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
@@ -52,14 +79,16 @@ pub fn touches(motion: Motion, fingers: &[Finger]) -> Vec<Touch> {
 
 /// The screen of a window of so many pixels.
 ///
-/// `insets_px` is what bars and cut-outs cover at the left, the top, the right and the bottom; none before Android tells. Then
+/// `insets_px` is what bars and cut-outs cover at the left, the top, the right and the bottom; none before Android reports it. Then
 /// `content_px` counts, what a bar leaves free: left, top, right and bottom from the window's top left corner; an empty one is as none.
-/// Of a window that reaches below the bars, as every one does since Android 15, it is all. Letters are `text_scale` times as large as usual, or as usual where that is no scale.
+/// Of a window that reaches below the bars, as every one does since Android 15, it is all. Letters are `text_scale` times as large as
+/// usual, or as usual if that is no scale.
 #[must_use]
 pub fn screen(
     size_px: [u32; 2],
     density_dpi: Option<u32>,
-    (insets_px, content_px): (Option<[i32; 4]>, [i32; 4]),
+    insets_px: Option<[i32; 4]>,
+    content_px: [i32; 4],
     text_scale: f32,
 ) -> Screen {
     let [left, top, right, bottom] = content_px.map(f64::from);

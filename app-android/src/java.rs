@@ -28,7 +28,7 @@ const REQUEST: i32 = 1;
 pub(crate) struct Activity {
     app: AndroidApp,
     was_asked: bool,
-    /// What bars and cut-outs cover, as Java's own thread has told last.
+    /// What bars and cut-outs cover, as Java's own thread has reported last.
     insets_px: Arc<Mutex<Option<[i32; 4]>>>,
     thermometer: Option<Thermometer>,
 }
@@ -44,12 +44,12 @@ impl Activity {
         }
     }
 
-    /// What bars and cut-outs cover, at the left, the top, the right and the bottom; none before Android tells.
+    /// What bars and cut-outs cover, at the left, the top, the right and the bottom; none before Android reports it.
     pub(crate) fn insets_px(&self) -> Option<[i32; 4]> {
         *self.insets_px.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Has it told anew.
+    /// Has it reported anew.
     fn look_at_insets(&self) {
         let (app, told) = (self.app.clone(), Arc::clone(&self.insets_px));
         self.app.run_on_java_main_thread(Box::new(move || {
@@ -186,6 +186,11 @@ fn show_settings(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<()> {
     Ok(())
 }
 
+fn finish(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<()> {
+    env.call_method(activity, jni_str!("finish"), jni_sig!("()V"), &[])?;
+    Ok(())
+}
+
 impl JavaHost for Activity {
     fn java(&mut self) -> Java {
         let env = with_java(&self.app, |env, _| Ok(env.get_raw()));
@@ -210,6 +215,10 @@ impl Phone for Activity {
 
     fn open_settings(&mut self) {
         self.on_java_thread(show_settings);
+    }
+
+    fn leave(&mut self) {
+        self.on_java_thread(finish);
     }
 
     fn keep_awake(&mut self, is_awake: bool) {

@@ -55,13 +55,14 @@ fn handle(event: &MainEvent<'_>, app: &AndroidApp, stage: &mut Stage) -> Result<
         MainEvent::TerminateWindow { .. } => stage.detach(),
         MainEvent::Resume { .. } => stage.set_foreground(true),
         MainEvent::Pause => stage.set_foreground(false),
+        MainEvent::LostFocus => stage.cancel_back(),
         MainEvent::LowMemory => stage.memory_low(),
         _ => {}
     }
     Ok(())
 }
 
-/// Takes fingers, and hands every other event back to Android. An app that leaves its queue unread is reported as not
+/// Takes fingers and the back key, and hands every other event back to Android. An app that leaves its queue unread is reported as not
 /// responding.
 fn take_input(app: &AndroidApp, stage: &mut Stage) {
     let Ok(mut events) = app.input_events_iter() else {
@@ -70,13 +71,13 @@ fn take_input(app: &AndroidApp, stage: &mut Stage) {
     let mut take = |event: &InputEvent<'_>| match event {
         InputEvent::MotionEvent(event) => take_motion(event, stage),
         InputEvent::KeyEvent(event) if event.key_code() == Keycode::Back => {
-            // Android leaves the activity where nobody takes its key.
-            let is_taken = event.action() != KeyAction::Up || stage.back();
-            if is_taken {
-                InputStatus::Handled
-            } else {
-                InputStatus::Unhandled
+            // Java gets neither half of a press: it leaves the activity only if it sees both, so the stage finishes it by itself.
+            match event.action() {
+                KeyAction::Down => stage.press_back(),
+                KeyAction::Up => stage.release_back(),
+                _ => {}
             }
+            InputStatus::Handled
         }
         _ => InputStatus::Unhandled,
     };

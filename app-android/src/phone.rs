@@ -13,6 +13,8 @@ pub trait Phone: JavaHost {
     fn ask_for_camera(&mut self);
     /// Shows Android's settings of this app.
     fn open_settings(&mut self);
+    /// Finishes the activity, as Android does where an app knows of no way back.
+    fn leave(&mut self);
     /// Keeps the screen on, or lets it go off.
     fn keep_awake(&mut self, is_awake: bool);
     /// How hot the phone is, as an `AThermalStatus`; none where Android does not tell.

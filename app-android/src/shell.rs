@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use app_core::app::{GraphicsState, PlatformCommand, ShellCommand, ShellEvent};
+use app_core::app::{GraphicsState, Obstacle, PlatformCommand, ShellCommand, ShellEvent};
 use app_core::interface::Screen;
 use app_core::live::Live;
 use app_core::recording::PictureCodec;
@@ -26,7 +26,7 @@ const CAMERA_HZ: u32 = 30;
 const DISCLOSURE: &str = "This application runs on Google Play Services for AR (ARCore), which is provided by Google and governed by the Google Privacy Policy (policies.google.com/privacy).";
 /// Where the size of the camera's pictures is kept, if larger ones do not come.
 const CAMERA_FILE: &str = "camera.txt";
-/// Time after which the display's turn is looked at anew: half a turn is told by nothing.
+/// Time after which the display's turn is looked at anew: half a turn is reported by nothing.
 const TURN: Duration = Duration::from_millis(250);
 /// Time after which heat is looked at anew.
 const LOOK: Duration = Duration::from_secs(1);
@@ -85,11 +85,13 @@ impl<P: Phone> Shell<P> {
             .own
             .as_deref()
             .and_then(|own| kept::text(own, CAMERA_FILE));
+        let worker = Worker::new(platform, folders);
+        worker.begin_log();
         let mut shell = Self {
             live,
             phone,
             feed: feed.with_kept(kept.as_deref().unwrap_or_default()),
-            worker: Worker::new(platform, folders),
+            worker,
             wants_device: false,
             wants_surface: false,
             losses: Losses::default(),
@@ -156,15 +158,18 @@ impl<P: Phone> Shell<P> {
         &mut self.pace
     }
 
-    /// The phone's own way back; whether it led anywhere within the app.
-    pub fn back(&mut self) -> bool {
-        let commands = self.live.back();
+    /// The phone's own way back, within the app or out of it.
+    pub fn back(&mut self) {
         self.pace.touched();
-        commands.map(|commands| self.obey(commands)).is_some()
+        match self.live.back() {
+            Some(commands) => self.obey(commands),
+            None => self.phone.leave(),
+        }
     }
 
     /// Tells what other threads have done, and the camera's latest frame.
     pub fn tick(&mut self) {
+        self.live.begin_picture();
         while let Some(outcome) = self.worker.outcome() {
             self.settle(outcome);
         }
@@ -178,6 +183,8 @@ impl<P: Phone> Shell<P> {
             self.turned = Some(Instant::now());
             self.follow_display();
         }
+        let waits = self.live.app().obstacle() == Some(Obstacle::Interrupted);
+        self.feed.set_wanted(waits);
         let event = self.feed.poll(&mut self.phone, self.start.elapsed());
         if matches!(event, Some(ShellEvent::Frame(_))) {
             self.pace.camera_came(self.start.elapsed());

@@ -16,7 +16,7 @@ use arcore::feed::Feed;
 use arcore::library;
 use ndk::native_window::NativeWindow;
 
-use crate::input::screen;
+use crate::input::{BackKey, screen};
 use crate::java::{Activity, font_scale};
 use crate::phone::Phone;
 use crate::shell::{Shell, bundled_toy};
@@ -60,9 +60,10 @@ pub(crate) struct Stage {
     is_foreground: bool,
     panics: Panics,
     is_restarted: bool,
-    /// The folder of what is the app's own, and whether compiled pipelines of an earlier start are taken from there.
+    /// The folder of what is the app's own, and whether the driver is trusted with a cache of compiled pipelines that is kept there.
     own: Option<PathBuf>,
     trusts_pipelines: bool,
+    back_key: BackKey,
 }
 
 impl Stage {
@@ -81,6 +82,7 @@ impl Stage {
             is_restarted: false,
             own: None,
             trusts_pipelines: false,
+            back_key: BackKey::default(),
         }
     }
 
@@ -109,9 +111,25 @@ impl Stage {
         draws.then_some(slept)
     }
 
-    /// The phone's own way back; whether it led anywhere within the app.
-    pub(crate) fn back(&mut self) -> bool {
-        self.shell.as_mut().is_some_and(Shell::back)
+    /// The phone's own way back is pressed.
+    pub(crate) fn press_back(&mut self) {
+        self.back_key.press();
+    }
+
+    /// It will not be let go of here.
+    pub(crate) fn cancel_back(&mut self) {
+        self.back_key.cancel();
+    }
+
+    /// It is let go of: the app goes back, or the activity is finished.
+    pub(crate) fn release_back(&mut self) {
+        if !self.back_key.release() {
+            return;
+        }
+        match &mut self.shell {
+            Some(shell) => shell.back(),
+            None => Activity::new(self.app.clone()).leave(),
+        }
     }
 
     /// Whether pictures are to be drawn.
@@ -236,7 +254,8 @@ impl Stage {
         let screen = screen(
             size_px(window),
             self.app.config().density(),
-            (shell.phone().insets_px(), content_px),
+            shell.phone().insets_px(),
+            content_px,
             self.text_scale,
         );
         shell.present(&screen, self.start.elapsed().as_secs_f64());
@@ -246,8 +265,10 @@ impl Stage {
     fn core_on(&self, window: &NativeWindow) -> Result<Core, StageError> {
         let surface = surface_on(&self.instance, window)?;
         let core = pollster::block_on(Core::on_surface(&self.instance, surface, size_px(window)))?;
-        if let (Some(own), Some(device), Some(key)) = (&self.own, core.device(), core.pipelines_key()) {
-            let data = pipelines::read(own, &key).filter(|_| self.trusts_pipelines);
+        let own = self.own.as_ref().filter(|_| self.trusts_pipelines);
+        if let (Some(own), Some(device), Some(key)) = (own, core.device(), core.pipelines_key())
+            && let pipelines::Start::Cached(data) = pipelines::begin(own, &key)
+        {
             let descriptor = wgpu::PipelineCacheDescriptor {
                 label: Some("kept"),
                 data: data.as_deref(),

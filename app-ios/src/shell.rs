@@ -16,7 +16,7 @@ use app_shell::starts;
 use app_shell::video::MOTION_JPEG;
 use app_shell::worker::{Outcome, Platform, Worker};
 use arkit::camera;
-use arkit::session::Session;
+use arkit::session::{Finds, Session};
 use ios_media::jpeg;
 use ios_media::video::H264;
 use objc2::MainThreadMarker;
@@ -156,7 +156,7 @@ impl Shell {
         Ok(())
     }
 
-    /// Pictures a second that the app asks for, or fewer where they take too long.
+    /// Pictures a second that the app asks for, or fewer if they take too long.
     pub(crate) fn frames_per_s(&mut self) -> u32 {
         let governed = self.stage.live().and_then(|live| live.frames_per_s());
         governed.map_or(self.frames_per_s, |governed| governed.min(self.frames_per_s))
@@ -256,7 +256,13 @@ impl Shell {
                 finds_planes,
                 finds_card,
                 is_new_world,
-            } => self.session.run((finds_planes, finds_card), is_new_world),
+            } => {
+                let finds = Finds {
+                    planes: finds_planes,
+                    card: finds_card,
+                };
+                self.session.run(finds, is_new_world);
+            }
             PlatformCommand::PauseTracking => self.session.pause(),
             PlatformCommand::LockExposure(is_held) => camera::hold_exposure(is_held),
             PlatformCommand::Underexpose(true) => self.held_exposure = camera::underexpose(),
@@ -310,7 +316,9 @@ fn worker() -> Worker {
         toys: Some(documents),
         own: Some(own_folder()),
     };
-    Worker::new(platform, folders)
+    let worker = Worker::new(platform, folders);
+    worker.begin_log();
+    worker
 }
 
 /// The folder of what is the app's own; a system makes it with the app's home.

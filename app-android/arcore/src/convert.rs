@@ -63,7 +63,7 @@ pub fn rectangle(world_from_centre: DMat4, outline_m: &[f32]) -> Option<(DMat4, 
 }
 
 /// Quarter turns, clockwise, that the sensor's picture is shown by: by the camera's pose in the sensor's axes and in the display's, which
-/// differ by that about the line of sight. `None` where they differ by anything else.
+/// differ by that about the line of sight. `None` if they differ by anything else.
 #[must_use]
 pub fn quarter_turns(of_sensor_raw: [f32; 7], of_display_raw: [f32; 7]) -> Option<u8> {
     let world_from_sensor = world_from_camera(of_sensor_raw)?;

@@ -11,7 +11,7 @@ use super::status::Failure;
 const EXPOSURE_TIME: u32 = 14 << 16;
 /// `ACAMERA_SENSOR_SENSITIVITY`: ISO speed, 32 bits.
 const SENSITIVITY: u32 = (14 << 16) + 2;
-/// `ACAMERA_CONTROL_AF_MODE`: a byte, 0 where the lens stays where it is.
+/// `ACAMERA_CONTROL_AF_MODE`: a byte, 0 if the lens stays where it is.
 const FOCUS_MODE: u32 = (1 << 16) + 7;
 /// `ACAMERA_TYPE_BYTE`.
 const BYTE: u8 = 0;
@@ -41,7 +41,7 @@ impl Session {
         exposure.amount().map(|_| exposure)
     }
 
-    /// Whether the camera moves its lens by itself; none where it does not tell.
+    /// Whether the camera moves its lens by itself; none if it does not report it.
     pub(super) fn focuses_by_itself(&self) -> Option<bool> {
         let metadata = self.metadata()?;
         let mode = self.entry(&metadata, FOCUS_MODE, BYTE)?;

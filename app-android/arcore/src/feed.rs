@@ -13,18 +13,54 @@ use crate::java::JavaHost;
 
 /// Time after which a camera that something else has is asked for again.
 const LOOK: Duration = Duration::from_secs(2);
+/// Starts for which a limit of the camera's pictures is kept: one start after them tries larger ones again.
+const N_STARTS: u32 = 8;
+
+/// A limit of the camera's pictures, as it is kept for later starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Limit {
+    /// Width and height.
+    size_px: [i32; 2],
+    /// Later starts that it is for.
+    n_starts: u32,
+}
+
+impl Limit {
+    /// That of a text; none where it says nothing.
+    fn read(text: &str) -> Option<Self> {
+        let (size, n_starts) = text.trim().split_once(' ')?;
+        let (width, height) = size.split_once('x')?;
+        let size_px = [width.parse().ok()?, height.parse().ok()?];
+        Some(Self {
+            size_px,
+            n_starts: n_starts.parse().ok()?,
+        })
+        .filter(|limit| limit.n_starts > 0 && limit.size_px.iter().all(|side| *side > 0))
+    }
+
+    fn text(self) -> String {
+        let [width, height] = self.size_px;
+        format!("{width}x{height} {}", self.n_starts)
+    }
+}
 
 /// A tracker, where ARCore's library is there.
 pub struct Feed {
     tracker: Option<Tracker>,
     /// As the app asked last.
     asked: Option<Run>,
-    /// What is told the app until frames can come.
+    /// What the app is waiting for, until frames can come.
     waiting: Option<Wait>,
     /// Something else has the camera, and when that was looked at; none before the first look.
     interrupted: Option<Option<Duration>>,
-    /// As kept for later starts, and as told to be kept.
-    kept_px: Option<[i32; 2]>,
+    /// Whether the app waits for a camera that something else has.
+    is_wanted: bool,
+    /// As an earlier start has left it, for the starts after this one.
+    limit: Option<Limit>,
+    /// As it was last said to be kept.
+    kept: Option<Limit>,
+    /// It was said that the card is refused.
+    said_no_card: bool,
 }
 
 impl Feed {
@@ -36,38 +72,45 @@ impl Feed {
             asked: None,
             waiting: None,
             interrupted: None,
-            kept_px: None,
+            is_wanted: true,
+            limit: None,
+            kept: None,
+            said_no_card: false,
         }
     }
 
-    /// Takes what [`Feed::take_kept`] told in an earlier start. A text that says nothing is as none.
+    /// Takes what [`Feed::take_kept`] returned in an earlier start. A text that says nothing is as none.
     #[must_use]
     pub fn with_kept(mut self, kept: &str) -> Self {
-        let sides: Vec<i32> = kept
-            .trim()
-            .split('x')
-            .filter_map(|side| side.parse().ok().filter(|side| *side > 0))
-            .collect();
-        if let ([width, height], Some(tracker)) = (sides.as_slice(), &mut self.tracker) {
-            self.kept_px = Some([*width, *height]);
-            tracker.limit([*width, *height]);
+        if let (Some(limit), Some(tracker)) = (Limit::read(kept), &mut self.tracker) {
+            tracker.limit(limit.size_px);
+            self.kept = Some(limit);
+            self.limit = Some(Limit {
+                n_starts: limit.n_starts - 1,
+                ..limit
+            });
         }
         self
     }
 
-    /// What is to be kept for later starts, where that has changed: the size of the pictures that come.
+    /// What is to be kept for later starts, if that has changed: the size of the pictures that come, and for how many starts.
     #[must_use]
     pub fn take_kept(&mut self) -> Option<String> {
         let limited = self.tracker.as_ref().and_then(Tracker::limited_to);
-        (std::mem::replace(&mut self.kept_px, limited) != limited)
-            .then(|| limited.map_or(String::new(), |[width, height]| format!("{width}x{height}")))
+        let limit = limited.map(|size_px| match self.limit {
+            Some(limit) if limit.size_px == size_px => limit,
+            _ => Limit {
+                size_px,
+                n_starts: N_STARTS,
+            },
+        });
+        (std::mem::replace(&mut self.kept, limit) != limit).then(|| limit.map_or(String::new(), Limit::text))
     }
 
     /// What the app is told when it starts, and when it comes to the front.
     pub fn come_back(&mut self) -> Option<ShellEvent> {
         if self.tracker.is_none() {
-            let words = "This package was made without ARCore, or with one of another version.";
-            return Some(ShellEvent::ArTrouble(ArSession::Unsupported, words.to_owned()));
+            return Some(without_library());
         }
         // Whatever had the camera may have let it go.
         self.interrupted.take().map(|_| able())
@@ -78,7 +121,10 @@ impl Feed {
         self.asked = Some(run);
         self.interrupted = None;
         let was_waiting = self.waiting.take();
-        match self.tracker.as_mut()?.run(phone, run) {
+        let Some(tracker) = &mut self.tracker else {
+            return Some(without_library());
+        };
+        match tracker.run(phone, run) {
             Step::Ready => was_waiting.map(|_| able()),
             Step::Waiting(wait) => {
                 self.waiting = Some(wait);
@@ -115,15 +161,29 @@ impl Feed {
         }
     }
 
+    /// Whether the app waits for a camera that something else has, which is left alone else.
+    pub fn set_wanted(&mut self, is_wanted: bool) {
+        self.is_wanted = is_wanted;
+    }
+
     /// The latest frame, if it is new, or why there will be none. `now` is of a clock that goes on.
     pub fn poll(&mut self, phone: &mut dyn JavaHost, now: Duration) -> Option<ShellEvent> {
         if let Some(looked) = self.interrupted {
-            return self.look_again(phone, now, looked);
+            return self
+                .is_wanted
+                .then(|| self.look_again(phone, now, looked))
+                .flatten();
         }
         if let (Some(Wait::Answer), Some(run)) = (self.waiting, self.asked) {
             return self.run(phone, again(run));
         }
-        match self.tracker.as_mut()?.update(now) {
+        let tracker = self.tracker.as_mut()?;
+        let lacks_card = tracker.lacks_card();
+        if lacks_card && !std::mem::replace(&mut self.said_no_card, lacks_card) {
+            return Some(ShellEvent::CardRefused);
+        }
+        self.said_no_card = lacks_card;
+        match tracker.update(now) {
             Ok(frame) => frame.map(|frame| ShellEvent::Frame(Box::new(frame))),
             Err(FrameError::Failed(failure)) => Some(self.fail(failure)),
             Err(error) => {
@@ -134,7 +194,7 @@ impl Feed {
         }
     }
 
-    /// Asks for the camera that something else had, and lets it go again: the app asks for it once it is told.
+    /// Asks for the camera that something else had, and lets it go again: the app asks for it once that is reported.
     fn look_again(
         &mut self,
         phone: &mut dyn JavaHost,
@@ -183,6 +243,12 @@ impl Feed {
         self.interrupted = is_interrupted.then_some(None);
         event
     }
+}
+
+/// What is told of a package without ARCore's library.
+fn without_library() -> ShellEvent {
+    let words = "This package was made without ARCore, or with one of another version.";
+    ShellEvent::ArTrouble(ArSession::Unsupported, words.to_owned())
 }
 
 fn able() -> ShellEvent {

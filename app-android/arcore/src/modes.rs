@@ -83,12 +83,12 @@ pub(super) struct Modes {
     modes: Vec<CameraMode>,
     /// Those that are still to be tried.
     left: std::vec::IntoIter<usize>,
-    /// That which is used; none where the camera stays as ARCore has it.
+    /// That which is used; none if the camera stays as ARCore has it.
     pub(super) used: Option<CameraMode>,
 }
 
 impl Modes {
-    /// Those of a camera away from the person, at 30 Hz and without a depth sensor; all of them where there is none.
+    /// Those of a camera away from the person, at 30 Hz and without a depth sensor; all of them if there is none.
     pub(super) fn of((api, session): Of<'_>, at_most_px: Option<[i32; 2]>) -> Result<Self, Failure> {
         let raw = session.as_ptr();
         // SAFETY: the session lives, and what it creates is ours to destroy.

@@ -27,7 +27,7 @@ const FIXED_FOCUS: ArFocusMode = 0;
 /// `AR_FOCUS_MODE_AUTO`: a toy stands nearer than a fixed focus reaches.
 const AUTO_FOCUS: ArFocusMode = 1;
 
-/// What a session can do without, as bits: all of it is asked for at first, and less where ARCore refuses the configuration.
+/// What a session can do without, as bits: all of it is asked for at first, and less if ARCore refuses the configuration.
 const CARD: u8 = 1;
 const FOCUS: u8 = 2;
 const ALL: u8 = CARD | FOCUS;
@@ -62,7 +62,7 @@ pub(super) struct Session {
     pub(super) intrinsics: Owned<ArCameraIntrinsics>,
     pub(super) pose: Owned<ArPose>,
     pub(super) frame: Owned<ArFrame>,
-    /// What the card is known by; none where nobody has one, or ARCore does not take it.
+    /// What the card is known by; none if nobody has one, or ARCore does not take it.
     card: Option<Owned<ArAugmentedImageDatabase>>,
     modes: Modes,
     session: Owned<ArSession>,
@@ -73,7 +73,7 @@ pub(super) struct Session {
     focuses: bool,
     /// `Surface.ROTATION_*`.
     rotation: Cell<i32>,
-    /// Quarter turns of the picture where the display is not rotated: how the sensor lies in the phone.
+    /// Quarter turns of the picture if the display is not rotated: how the sensor lies in the phone.
     sensor_turns: Cell<u8>,
 }
 
@@ -92,7 +92,7 @@ fn quarter(turns: i32) -> u8 {
 impl Session {
     /// Creates and configures a session, which is then paused.
     ///
-    /// Pictures are no larger than `at_most_px`, where the phone was found not to deliver such.
+    /// Pictures are no larger than `at_most_px`, if the phone was found not to deliver such.
     pub(super) fn create(
         api: Functions,
         java: Java,
@@ -150,7 +150,7 @@ impl Session {
         self.session.as_ptr()
     }
 
-    /// Configures what is wished, and less of it where ARCore refuses; what it has refused is not wished again.
+    /// Configures what is wished, and less of it if ARCore refuses; what it has refused is not wished again.
     fn configure(&mut self) -> Result<(), Failure> {
         if self.finds.card && self.card.is_none() && self.refused & CARD == 0 {
             match card::database(&self.api, &self.session) {
@@ -219,6 +219,11 @@ impl Session {
         }
         self.finds = finds;
         self.configure()
+    }
+
+    /// Whether the card is wished for and was refused.
+    pub(super) fn lacks_card(&self) -> bool {
+        self.finds.card && self.refused & CARD != 0
     }
 
     /// Whether the camera was asked to focus by itself and says that it does not, as some phones until they are paused and resumed

@@ -109,7 +109,7 @@ impl Failure {
         STATUSES.iter().find(|entry| entry.0 == self.0)
     }
 
-    /// What is told of it, and what helps.
+    /// What is said of it, and what helps.
     #[must_use]
     pub fn words(self) -> String {
         let told = match self.entry() {

@@ -82,6 +82,8 @@ pub struct Geometry {
 
 /// Pictures that the camera has not delivered for so long are given up.
 const PATIENCE: Duration = Duration::from_secs(3);
+/// And only if they were asked for so often since: a loop that stood still has waited for nothing.
+const N_LOOKS: u32 = 8;
 /// Pictures after which a camera that was asked to focus by itself has begun to.
 const N_FOCUSED: u32 = 10;
 
@@ -90,9 +92,11 @@ const N_FOCUSED: u32 = 10;
 struct Watch {
     /// When the camera was begun, or the latest picture came.
     since: Option<Duration>,
+    /// Updates without a picture since then.
+    n_looks: u32,
     /// Pictures since it was begun.
     n_pictures: u32,
-    /// It was begun anew as it was, since pictures had come and then stopped.
+    /// It was begun anew as it was, and has not run well since.
     is_second_try: bool,
     /// It was begun anew for its focus, once in a session.
     has_refocused: bool,
@@ -101,7 +105,7 @@ struct Watch {
 impl Watch {
     /// The camera is begun.
     fn begin(&mut self) {
-        (self.since, self.n_pictures) = (None, 0);
+        (self.since, self.n_looks, self.n_pictures) = (None, 0, 0);
     }
 }
 
@@ -150,7 +154,7 @@ impl Tracker {
         (self.at_most_px, self.limited_px) = (Some(at_most_px), Some(at_most_px));
     }
 
-    /// Width and height of the pictures that come where larger ones did not, for later starts.
+    /// Width and height of the pictures that come if larger ones did not, for later starts.
     #[must_use]
     pub fn limited_to(&self) -> Option<[i32; 2]> {
         self.limited_px
@@ -192,6 +196,12 @@ impl Tracker {
         }
     }
 
+    /// Whether the card is asked for and ARCore refuses it.
+    #[must_use]
+    pub fn lacks_card(&self) -> bool {
+        self.session.as_ref().is_some_and(Session::lacks_card)
+    }
+
     /// Lets the camera go. The session stays.
     pub fn pause(&mut self) {
         let running = self.session.as_ref().filter(|_| self.is_running);
@@ -222,10 +232,13 @@ impl Tracker {
         let frame = self.latest_frame()?;
         let since = *self.watch.since.get_or_insert(now);
         if frame.is_some() {
-            self.watch.since = Some(now);
+            (self.watch.since, self.watch.n_looks) = (Some(now), 0);
             self.watch.n_pictures = self.watch.n_pictures.saturating_add(1);
             self.picture_came()?;
-        } else if now.saturating_sub(since) >= PATIENCE {
+            return Ok(frame);
+        }
+        self.watch.n_looks = self.watch.n_looks.saturating_add(1);
+        if now.saturating_sub(since) >= PATIENCE && self.watch.n_looks >= N_LOOKS {
             self.begin_smaller()?;
         }
         Ok(frame)
@@ -249,12 +262,10 @@ impl Tracker {
         Ok(())
     }
 
-    /// No picture has come for too long: the camera is begun anew as it was where some had come before, else with the next mode.
+    /// No picture has come for too long: the camera is begun anew, once as it was, since a start can be slow, then with the next mode.
     fn begin_smaller(&mut self) -> Result<(), FrameError> {
-        let is_same = self.watch.n_pictures > 0 && !self.watch.is_second_try;
-        self.watch.is_second_try = is_same;
-        if is_same {
-            eprintln!("arcore: the camera's pictures have stopped: it is begun anew");
+        if !std::mem::replace(&mut self.watch.is_second_try, true) {
+            eprintln!("arcore: the camera's pictures do not come: it is begun anew");
             return self.begin_anew(|_| Ok(true)).map(drop);
         }
         if self.begin_anew(Session::next_mode)? {
@@ -272,7 +283,7 @@ impl Tracker {
         Err(FrameError::NoPictures)
     }
 
-    /// Pauses the session, changes it, and resumes it where there was something to change.
+    /// Pauses the session, changes it, and resumes it if there was something to change.
     fn begin_anew(
         &mut self,
         change: impl FnOnce(&mut Session) -> Result<bool, Failure>,
@@ -344,6 +355,7 @@ impl Tracker {
         if let Some(session) = self.session.as_ref().filter(|_| !self.is_running) {
             session.resume()?;
             self.watch.begin();
+            self.watch.is_second_try = false;
         }
         self.is_running = true;
         Ok(())

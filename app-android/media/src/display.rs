@@ -94,7 +94,7 @@ pub fn rotation(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<i32> {
     number(env, &display, jni_str!("getRotation"))
 }
 
-/// `getResources().getConfiguration().fontScale`. Android makes the activity anew where that changes.
+/// `getResources().getConfiguration().fontScale`. Android makes the activity anew if that changes.
 pub fn font_scale(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<f32> {
     let resources = env
         .call_method(

@@ -1,4 +1,4 @@
-//! Videos by Android's own encoder, copies of files where other apps find them, and what the display tells.
+//! Videos by Android's own encoder, copies of files where other apps find them, and what the display reports.
 //!
 //! `yuv`, the layout of samples that encoders take, and `stored`, where a file belongs, run in desktop tests; `video`, `media_store` and `display`
 //! are compiled for Android alone.

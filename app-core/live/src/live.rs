@@ -14,7 +14,7 @@ use crate::interface::{Interface, Painter, Painting, Screen, Touch, Widget};
 use crate::self_test;
 use app_pipeline::core::{Canvas, Core, CoreError, WarmUp};
 use app_pipeline::frame::{Clock, Warning};
-use app_pipeline::governor::{BALANCED_QUALITY_LADDER, Exhausted, Governor, Measured, Thermal};
+use app_pipeline::governor::{BALANCED_QUALITY_LADDER, Exhausted, Governor, LATE, Measured, Thermal};
 use app_pipeline::gpu::ShaderTexts;
 use app_pipeline::preset::Preset;
 use app_pipeline::profile::{About, Profile};
@@ -45,6 +45,8 @@ pub struct Live {
     governor: Option<Governor>,
     /// Why `fast` takes the place of `balanced`: all that could be turned down was, and did not suffice.
     lowered: Option<Exhausted>,
+    /// The toy that was shown then.
+    lowered_toy: Option<Arc<Toy>>,
     /// Seconds for which a phone that was too warm has been cool.
     cool_s: f64,
     profiler: Profiler,
@@ -74,6 +76,7 @@ impl Live {
             target_fps: None,
             governor: None,
             lowered: None,
+            lowered_toy: None,
             cool_s: 0.0,
             profiler: Profiler::default(),
             n_warm_ups: 0,
@@ -81,7 +84,7 @@ impl Live {
         }
     }
 
-    /// Aims at so many frames a second from now on, by turning settings of preset `balanced` down where they take too long, and in the end
+    /// Aims at so many frames a second from now on, by turning settings of preset `balanced` down if pictures take too long, and in the end
     /// by `fast` in its place; the others stay as they are.
     pub fn set_target_fps(&mut self, fps: u32) {
         self.target_fps = Some(fps);
@@ -119,6 +122,11 @@ impl Live {
         self.core.replace_shaders(texts)?;
         self.scene = None;
         Ok(())
+    }
+
+    /// A shell begins with what may lead to a picture, such as reading the camera's. The times of pictures begin here, if it says so.
+    pub fn begin_picture(&mut self) {
+        self.profiler.begin_early();
     }
 
     /// Takes what happened, and returns what is to be done.
@@ -209,7 +217,7 @@ impl Live {
         self.interface.widgets()
     }
 
-    /// The phone's own way back, such as a button or a gesture: what is to be done; none where it leads out of the app.
+    /// The phone's own way back, such as a button or a gesture: what is to be done; none if it leads out of the app.
     #[must_use]
     pub fn back(&mut self) -> Option<Vec<ShellCommand>> {
         if self.interface.close_menu() {
@@ -224,7 +232,7 @@ impl Live {
         self.app.disclose(words);
     }
 
-    /// Pictures a second that are worth drawing: as many as are aimed at, or fewer where the governor says so; none where no number was
+    /// Pictures a second that are worth drawing: as many as are aimed at, or fewer if the governor says so; none if no number was
     /// aimed at.
     #[must_use]
     pub fn frames_per_s(&self) -> Option<u32> {
@@ -232,7 +240,7 @@ impl Live {
         governed.or(self.target_fps)
     }
 
-    /// How often all that a preset needs was compiled: what the driver keeps of it has grown where this has.
+    /// How often all that a preset needs was compiled: what the driver keeps of it has grown if this has.
     #[must_use]
     pub fn n_warm_ups(&self) -> u32 {
         self.n_warm_ups
@@ -301,7 +309,14 @@ impl Live {
 
     /// Uses another preset where the app wants one.
     fn follow_preset(&mut self) -> Vec<ShellCommand> {
-        let is_lowered = self.lowered.is_some() && self.chosen == Preset::Balanced;
+        let is_same_toy = |toy: &Arc<Toy>| Arc::ptr_eq(toy, self.app.toy());
+        if self.lowered == Some(Exhausted::Slow) && !self.lowered_toy.as_ref().is_some_and(is_same_toy) {
+            // Another toy may be a cheaper one.
+            self.lowered = None;
+            self.govern_preset();
+        }
+        let is_exchanged = self.lowered.is_some() && !self.app.is_for_engineers();
+        let is_lowered = is_exchanged && self.chosen == Preset::Balanced;
         let preset = self
             .app
             .preset(if is_lowered { Preset::Fast } else { self.chosen });
@@ -348,6 +363,12 @@ impl Live {
         let interval_ms = 1e3 * (time_s - self.time_s);
         self.cool_down(time_s - self.time_s);
         self.time_s = time_s;
+        let shown_fps = self
+            .app
+            .frames_per_s()
+            .min(self.frames_per_s().unwrap_or(u32::MAX));
+        // The device may be quick, and still nobody sees all that the camera has.
+        let is_late = self.profiler.has_dropped() && interval_ms > LATE * 1e3 / f64::from(shown_fps.max(1));
         let is_moving = self.scene.is_some() && matches!(self.app.show(), Show::Toy { .. });
         let Some(governor) = self.governor.as_mut().filter(|_| is_moving) else {
             return Ok(());
@@ -355,11 +376,16 @@ impl Live {
         let turned = governor.take(&Measured {
             gpu_ms: self.profiler.gpu_ms(),
             // A shell that draws a picture for each of the camera's waits for that; it is not the device that takes so long.
-            interval_ms: self.profiler.busy_ms().unwrap_or(interval_ms),
+            interval_ms: self
+                .profiler
+                .busy_ms()
+                .filter(|_| !is_late)
+                .unwrap_or(interval_ms),
             thermal: self.app.thermal(),
         });
-        if let Some(exhausted) = governor.exhausted() {
+        if let Some(exhausted) = governor.exhausted().filter(|_| self.lowered.is_none()) {
             self.lowered = Some(exhausted);
+            self.lowered_toy = Some(Arc::clone(self.app.toy()));
             self.app.note_lowered(exhausted);
         }
         if turned.is_some() {
@@ -368,7 +394,7 @@ impl Live {
         Ok(())
     }
 
-    /// Goes back to the preset that was chosen, where heat alone has lowered it and has gone.
+    /// Goes back to the preset that was chosen, if heat alone has lowered it and has gone.
     fn cool_down(&mut self, elapsed_s: f64) {
         let is_cooling = self.lowered == Some(Exhausted::Warm) && self.app.thermal() == Thermal::Nominal;
         self.cool_s = if is_cooling { self.cool_s + elapsed_s } else { 0.0 };

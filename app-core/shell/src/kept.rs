@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::{fs, io};
 
-/// What a file says; none where there is none, or it is no text.
+/// What a file says; none if there is none, or it is no text.
 #[must_use]
 pub fn text(folder: &Path, name: &str) -> Option<String> {
     fs::read_to_string(folder.join(name)).ok()
@@ -20,7 +20,7 @@ pub fn store(folder: &Path, name: &str, bytes: &[u8]) -> io::Result<()> {
     fs::rename(whole, folder.join(name))
 }
 
-/// The same; where it fails it is said, and nothing is kept.
+/// The same; if it fails it is said, and nothing is kept.
 pub fn store_or_say(folder: &Path, name: &str, bytes: &[u8]) {
     if let Err(error) = store(folder, name, bytes) {
         eprintln!("{name} is not kept: {error}");

@@ -1,4 +1,4 @@
-//! What is made anew where nothing could be drawn: the surface alone, whose window came and went, or the device with all that was
+//! What is made anew if nothing could be drawn: the surface alone, whose window came and went, or the device with all that was
 //! compiled on it.
 
 use app_core::CoreError;
@@ -16,7 +16,7 @@ impl Losses {
         self.was_lost = false;
     }
 
-    /// Whether another surface is enough after an error: not where the one made for it was lost in its turn, which a lost device does,
+    /// Whether another surface is enough after an error: not if the one made for it was lost in its turn, which a lost device does,
     /// too.
     pub fn is_of_surface(&mut self, error: &CoreError) -> bool {
         let is_surface = matches!(error, CoreError::Gpu(GpuError::SurfaceLost));

@@ -9,6 +9,8 @@ use std::time::Duration;
 const SLEPT: f64 = 0.75;
 /// A camera from which nothing has come for so long does not set the pace.
 const CAMERA_LASTS: Duration = Duration::from_millis(200);
+/// Time between its pictures. After one, the loop sleeps for most of it, then looks for the next by short steps.
+const CAMERA_STEP: Duration = Duration::from_nanos(1_000_000_000 / 30);
 /// While it does, what moves by itself is drawn so often at least.
 const IDLE: Duration = Duration::from_millis(100);
 
@@ -52,21 +54,37 @@ impl Pace {
     /// For how long the loop may sleep before it looks at the camera again: until the next picture may be drawn.
     #[must_use]
     pub fn sleep(&self, now: Duration) -> Duration {
-        let step = Duration::from_secs_f64(SLEPT / f64::from(self.frames_per_s));
+        let step = self.step();
         let due = self.drawn.map_or(now, |drawn| drawn + step);
-        // Looked at and nothing there: a quarter of a picture's time later.
-        due.saturating_sub(now).max(step / 4)
+        match self.camera.filter(|_| !self.is_news && self.is_led(now)) {
+            Some(camera) => {
+                let due = due.max(camera + CAMERA_STEP.mul_f64(SLEPT));
+                due.saturating_sub(now).max(CAMERA_STEP / 8)
+            }
+            // Looked at and nothing there: a quarter of a picture's time later.
+            None => due.saturating_sub(now).max(step / 4),
+        }
+    }
+
+    fn step(&self) -> Duration {
+        Duration::from_secs_f64(SLEPT / f64::from(self.frames_per_s))
+    }
+
+    /// Whether the camera sets the pace.
+    fn is_led(&self, now: Duration) -> bool {
+        self.camera
+            .is_some_and(|camera| now.saturating_sub(camera) < CAMERA_LASTS)
     }
 
     /// Whether a picture is drawn now.
     #[must_use]
     pub fn is_due(&self, now: Duration) -> bool {
         let Some(drawn) = self.drawn else { return true };
-        let step = Duration::from_secs_f64(SLEPT / f64::from(self.frames_per_s));
-        let is_led = self
-            .camera
-            .is_some_and(|camera| now.saturating_sub(camera) < CAMERA_LASTS);
-        let least = if self.is_news || !is_led { step } else { IDLE };
+        let least = if self.is_news || !self.is_led(now) {
+            self.step()
+        } else {
+            IDLE
+        };
         now.saturating_sub(drawn) >= least
     }
 

@@ -1,5 +1,8 @@
 //! Compiled pipelines, kept from start to start: what a driver hands out is handed back to the same driver, whole.
 //!
+//! What is handed back may end the app. So a start takes the file away with it and leaves a note; what it has compiled takes the place of
+//! both. A start that finds such a note does without.
+//!
 //! A file has a line of its own for the key, of version, device and driver, one for a sum of the bytes, then the bytes.
 
 use std::fs;
@@ -13,9 +16,39 @@ const FILE: &str = "pipelines.bin";
 /// A file is not larger: nobody waits for more to be read.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// What is kept under a key; none where that is of another driver or version, or not as it was written.
+/// The name of the note: a start has begun with the driver's cache, and has not come to the end of compiling.
+const NOTE: &str = "pipelines.begun";
+
+/// How a start compiles.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// With a cache of the driver's, and what an earlier start has left in it.
+    Cached(Option<Vec<u8>>),
+    /// Without any, since the start before did not come to the end of it.
+    Uncached,
+}
+
+/// Begins a start: nothing is kept any more, until [`store`] keeps what it has compiled.
 #[must_use]
-pub fn read(folder: &Path, key: &str) -> Option<Vec<u8>> {
+pub fn begin(folder: &Path, key: &str) -> Start {
+    let (file, note) = (folder.join(FILE), folder.join(NOTE));
+    let data = read(folder, key);
+    let removed = fs::remove_file(file);
+    let is_left = matches!(&removed, Err(error) if error.kind() != io::ErrorKind::NotFound);
+    if note.exists() {
+        // The start after this one tries again.
+        let _ = fs::remove_file(note);
+        return Start::Uncached;
+    }
+    match kept::store(folder, NOTE, b"") {
+        Ok(()) if !is_left => Start::Cached(data),
+        // What cannot be noted could end each start.
+        _ => Start::Uncached,
+    }
+}
+
+/// What is kept under a key; none if that is of another driver or version, or not as it was written.
+fn read(folder: &Path, key: &str) -> Option<Vec<u8>> {
     let path = folder.join(FILE);
     if fs::metadata(&path).ok()?.len() > MAX_BYTES {
         return None;
@@ -33,7 +66,11 @@ pub fn read(folder: &Path, key: &str) -> Option<Vec<u8>> {
 /// When the file cannot be written.
 pub fn store(folder: &Path, key: &str, data: &[u8]) -> io::Result<()> {
     let file = [one_line(key).as_bytes(), b"\n", sum(data).as_bytes(), b"\n", data].concat();
-    kept::store(folder, FILE, &file)
+    kept::store(folder, FILE, &file)?;
+    match fs::remove_file(folder.join(NOTE)) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
 }
 
 fn one_line(key: &str) -> String {
@@ -68,6 +105,23 @@ mod tests {
         *torn.last_mut().expect("a byte") ^= 1;
         fs::write(&path, torn).expect("a file");
         assert_eq!(read(&folder, "one driver"), None);
+        fs::remove_dir_all(&folder).expect("a folder");
+    }
+
+    #[test]
+    fn a_start_that_dies_while_it_compiles_leaves_nothing_to_the_next() {
+        let folder = std::env::temp_dir().join(format!("app-shell-begun-{}", std::process::id()));
+        let kept = || Start::Cached(Some(vec![7]));
+        assert_eq!(begin(&folder, "one"), Start::Cached(None), "the first start");
+        store(&folder, "one", &[7]).expect("a file");
+        assert_eq!(begin(&folder, "one"), kept());
+        // It dies.
+        assert_eq!(begin(&folder, "one"), Start::Uncached);
+        assert_eq!(begin(&folder, "one"), Start::Cached(None), "and then anew");
+        store(&folder, "one", &[7]).expect("a file");
+        assert_eq!(begin(&folder, "one"), kept());
+        store(&folder, "one", &[7]).expect("a file");
+        assert_eq!(begin(&folder, "two"), Start::Cached(None), "another driver");
         fs::remove_dir_all(&folder).expect("a folder");
     }
 

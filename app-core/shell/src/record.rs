@@ -9,7 +9,10 @@ use app_core::frame::Clock;
 use app_core::live::Live;
 use app_core::recording::{Limits, PictureCodec, RecordingJob, RecordingOptions};
 
-use crate::save;
+use crate::{kept, save};
+
+/// The log that is written as the app runs.
+const LOG: &str = "log.txt";
 
 /// Writes a recording into the file at `path` until it ends; `app` is the app with its version, and `toy` the file of its toy.
 #[must_use]
@@ -49,15 +52,25 @@ pub(crate) fn shown_name(path: &Path) -> String {
 }
 
 /// Writes the log into the folder.
-pub(crate) fn write_log(live: &Live, folder: &Path) -> Saved {
-    save::bytes(&folder.join("log.txt"), live.app().log().text().as_bytes())
+pub(crate) fn write_log(live: &Live, folder: &Path) {
+    kept::store_or_say(folder, LOG, live.app().log().text().as_bytes());
+}
+
+/// Gives the log of an earlier start another name.
+pub(crate) fn put_log_aside(folder: &Path) {
+    let (log, aside) = (folder.join(LOG), folder.join("log_before.txt"));
+    if log.is_file()
+        && let Err(error) = fs::rename(&log, aside).or_else(|_| fs::remove_file(&log))
+    {
+        eprintln!("{LOG} is still that of an earlier start: {error}");
+    }
 }
 
 /// What people hand on, as files of the folder: the log, the times, and `recording` or else the latest of earlier starts, as far as
 /// there are any.
 #[must_use]
 pub fn share(live: &Live, folder: &Path, recording: Option<&Path>) -> (Saved, Vec<PathBuf>) {
-    let mut files = vec![folder.join("log.txt")];
+    let mut files = vec![folder.join(LOG)];
     let mut saved = save::bytes(&files[0], live.app().log().text().as_bytes());
     if let (Saved::Done, Some(times)) = (saved, live.times()) {
         let path = folder.join("profile.json");

@@ -147,6 +147,13 @@ impl Worker {
         }
     }
 
+    /// A log of an earlier start is no longer that of this one: it is put aside under another name.
+    pub fn begin_log(&self) {
+        if let Some(folder) = &self.folders.shared {
+            record::put_log_aside(folder);
+        }
+    }
+
     /// Runs the alignments that wait.
     pub fn align_waiting(&mut self) {
         let waiting = std::mem::take(&mut self.waiting);

@@ -24,7 +24,8 @@ const MAX_CORNERS: usize = 4096;
 /// `held` is the anchor to look for: the number it was asked for by, and the bytes of its identifier. `orientation` is that of the screen.
 pub(super) fn with_raw<T>(
     frame: &ARFrame,
-    (held, orientation): (Option<(u64, [u8; 16])>, isize),
+    held: Option<(u64, [u8; 16])>,
+    orientation: isize,
     textures: Option<&TextureCache>,
     take: impl FnOnce(&RawFrame<'_>, Option<PlanarImage>) -> T,
 ) -> Option<T> {

@@ -43,20 +43,22 @@ struct Shared {
     orientation: Cell<isize>,
     /// What the latest run looks for.
     finds: Cell<Finds>,
-    /// What the card is known by; none before anybody has one, or where ARKit has refused it.
+    /// What the card is known by; none before anybody has one, or if ARKit has refused it.
     card: RefCell<Card>,
     /// A frame was refused, and why was written.
     is_refusing: Cell<bool>,
 }
 
 /// What is looked for in the camera's picture.
-#[derive(Clone, Copy, Default)]
-struct Finds {
-    planes: bool,
-    card: bool,
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Finds {
+    /// Level planes.
+    pub planes: bool,
+    /// The printed card.
+    pub card: bool,
 }
 
-/// The card's picture, made where somebody has one.
+/// The card's picture, made if somebody has one.
 #[derive(Default)]
 enum Card {
     #[default]
@@ -77,12 +79,16 @@ impl Shared {
         } else {
             ARPlaneDetection::empty()
         };
+        let card = self.card_to_find(finds);
+        if finds.card && card.is_none() {
+            (self.tell)(ShellEvent::CardRefused);
+        }
         // SAFETY: a configuration of this session's own, with options that every session takes.
         unsafe {
             configuration.setPlaneDetection(planes);
             // Pictures whose tones are mapped place by place are not comparable with one another.
             configuration.setVideoHDRAllowed(false);
-            if let Some(card) = self.card_to_find(finds) {
+            if let Some(card) = card {
                 configuration.setDetectionImages(Some(&NSSet::from_slice(&[&*card])));
                 configuration.setMaximumNumberOfTrackedImages(1);
             }
@@ -129,8 +135,8 @@ impl Shared {
         let identifier = |held: &Held| (held.id, unsafe { held.anchor.identifier() }.as_bytes());
         let held = self.held.borrow().as_ref().map(identifier);
         let textures = self.textures.borrow();
-        let seen = (held, self.orientation.get());
-        let taken = read::with_raw(frame, seen, textures.as_ref(), |raw, lent| {
+        let orientation = self.orientation.get();
+        let taken = read::with_raw(frame, held, orientation, textures.as_ref(), |raw, lent| {
             camera_frame(raw, lent, count)
         });
         match taken {
@@ -263,11 +269,8 @@ impl Session {
     }
 
     /// Begins, or goes on with another configuration.
-    pub fn run(&self, (finds_planes, finds_card): (bool, bool), is_new_world: bool) {
-        self.shared.finds.set(Finds {
-            planes: finds_planes,
-            card: finds_card,
-        });
+    pub fn run(&self, finds: Finds, is_new_world: bool) {
+        self.shared.finds.set(finds);
         let mut options = ARSessionRunOptions::empty();
         if is_new_world {
             options = ARSessionRunOptions::ResetTracking | ARSessionRunOptions::RemoveExistingAnchors;

@@ -52,7 +52,7 @@ pub(super) fn package(toolchain: &Toolchain, profile: Profile, arcore: Option<&A
         command::run(&mut ANDROID.build(toolchain, profile, &[STRIP.to_owned()])?)?;
         (built(toolchain, profile), "by the NDK")
     } else {
-        let library = link_without_ndk(toolchain, profile, (&folder, &imports))?;
+        let library = link_without_ndk(toolchain, profile, &folder, &imports)?;
         (library, "against stand-ins, without the NDK: not for a phone")
     };
     let file = fs::read(&library).with_context(|| library.display().to_string())?;
@@ -109,7 +109,8 @@ fn check(library: &Library) -> Result<()> {
 fn link_without_ndk(
     toolchain: &Toolchain,
     profile: Profile,
-    (folder, imports): (&Path, &Imports),
+    folder: &Path,
+    imports: &Imports,
 ) -> Result<PathBuf> {
     tools::ensure(&TOOLS)?;
     let stubs = folder.join("stubs");

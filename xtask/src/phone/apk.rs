@@ -61,13 +61,14 @@ fn make_with(
     let manifest = manifest_for(
         &fs::read_to_string(shell.join("AndroidManifest.xml"))?,
         arcore.as_ref().map(|arcore| arcore.manifest.as_str()),
-        (has_code, tools.framework_api),
+        has_code,
+        tools.framework_api,
     )?;
     let sources = folder.join("sources");
-    let mut entries = resources(tools, shell, (folder, &sources), &manifest, arcore.as_ref())?;
+    let mut entries = resources(tools, shell, folder, &sources, &manifest, arcore.as_ref())?;
     entries.push(entry("lib/arm64-v8a/libapp_android.so", library));
     if let Some(arcore) = arcore {
-        let program = arcore.program((&tools.framework, tools.d8.as_deref()), &sources)?;
+        let program = arcore.program(&tools.framework, tools.d8.as_deref(), &sources)?;
         entries.push(entry("lib/arm64-v8a/libarcore_sdk_c.so", arcore.library));
         entries.extend(program.map(|program| entry("classes.dex", program)));
     }
@@ -88,15 +89,10 @@ fn entry(name: &str, bytes: Vec<u8>) -> Entry {
 impl Tools {
     fn find() -> Result<Self> {
         let of_sdk = ndk::sdk().and_then(|sdk| {
-            let tools = ndk::newest_folder(&sdk.join("build-tools"))?;
-            let platform = ndk::newest_folder(&sdk.join("platforms"))?;
-            Some(Self {
-                aapt2: tools.join("aapt2"),
-                apksigner: tools.join("apksigner"),
-                framework_api: level_of(&platform)?,
-                framework: platform.join("android.jar"),
-                d8: Some(tools.join("d8")),
-            })
+            let tools = Self::of_sdk(&sdk);
+            tools
+                .inspect_err(|error| println!("the SDK in {} is not used: {error}", sdk.display()))
+                .ok()
         });
         if let Some(tools) = of_sdk {
             return Ok(tools);
@@ -113,16 +109,35 @@ impl Tools {
             d8: None,
         })
     }
+
+    /// Those of the SDK's newest parts.
+    fn of_sdk(sdk: &Path) -> Result<Self> {
+        let tools = ndk::newest_folder(&sdk.join("build-tools")).context("it has no build-tools")?;
+        let platform = ndk::newest_folder(&sdk.join("platforms")).context("it has no platforms")?;
+        let level =
+            level_of(&platform).with_context(|| format!("{}: of which API level?", platform.display()))?;
+        Ok(Self {
+            aapt2: tools.join("aapt2"),
+            apksigner: tools.join("apksigner"),
+            framework_api: level,
+            framework: platform.join("android.jar"),
+            d8: Some(tools.join("d8")),
+        })
+    }
 }
 
-/// The level of a platform of the SDK's, which its folder is named after: `android-36`.
+/// The level of a platform of the SDK's, which its folder is named after: `android-36`, `android-36.1`, `android-36-ext18`.
 fn level_of(platform: &Path) -> Option<u32> {
     let name = platform.file_name()?.to_str()?;
-    let number = name.strip_prefix("android-")?.split('.').next()?;
-    number.parse().ok()
+    let number = name.strip_prefix("android-")?;
+    number
+        .split(|letter: char| !letter.is_ascii_digit())
+        .next()?
+        .parse()
+        .ok()
 }
 
-/// The level that a framework says it is of; the oldest that the app runs on where it says none.
+/// The level that a framework says it is of; the oldest that the app runs on if it says none.
 fn framework_level(framework: &str) -> u32 {
     let told = command::output("aapt2", &["dump", "badging", framework]).unwrap_or_default();
     let level = told
@@ -133,7 +148,7 @@ fn framework_level(framework: &str) -> u32 {
 
 /// Our manifest, joined with ARCore's, true about whether there are classes, and without what the framework of that level does not
 /// know: such a package is for looking at alone.
-fn manifest_for(ours: &str, arcore: Option<&str>, (has_code, framework_api): (bool, u32)) -> Result<String> {
+fn manifest_for(ours: &str, arcore: Option<&str>, has_code: bool, framework_api: u32) -> Result<String> {
     if ours.matches(HAS_CODE).count() != 1 {
         bail!("the manifest does not say {HAS_CODE} once");
     }
@@ -178,7 +193,8 @@ fn inside<'a>(xml: &'a str, tag: &str) -> Option<&'a str> {
 fn resources(
     tools: &Tools,
     shell: &Path,
-    (folder, sources): (&Path, &Path),
+    folder: &Path,
+    sources: &Path,
     manifest: &str,
     arcore: Option<&Unpacked>,
 ) -> Result<Vec<Entry>> {

@@ -1,7 +1,7 @@
 //! ARCore's archive: unpacked, its resources and their R classes, and all of its classes as an Android program.
 //!
 //! An archive brings resources and the names of their numbers, but not the R classes that hold the numbers: these are made with the
-//! package, of all resources together. Its activity that installs ARCore uses them, and ends the app where they are missing.
+//! package, of all resources together. Its activity that installs ARCore uses them, and ends the app if they are missing.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -73,10 +73,11 @@ impl Unpacked {
     }
 
     /// Its classes with those of its resources, whose sources `aapt2` has written into `sources`: looked through, and made an
-    /// Android program of where the SDK's compiler is.
+    /// Android program if the SDK's compiler is there.
     pub(super) fn program(
         &self,
-        (framework, d8): (&Path, Option<&Path>),
+        framework: &Path,
+        d8: Option<&Path>,
         sources: &Path,
     ) -> Result<Option<Vec<u8>>> {
         let jar = self.folder.join("classes.jar");
@@ -124,7 +125,7 @@ fn is_class(file: &Path) -> bool {
     file.extension().is_some_and(|end| end == "class")
 }
 
-/// The classes of an archive of Java's, by their files; none where it has none, as an archive of resources alone.
+/// The classes of an archive of Java's, by their files; none if it has none, as an archive of resources alone.
 fn classes_of(jar: &Path) -> Option<BTreeSet<String>> {
     let list = command::output("unzip", &["-Z1", &jar.display().to_string()])?;
     let classes = list.lines().filter_map(|name| name.strip_suffix(".class"));

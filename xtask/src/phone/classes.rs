@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 
 const MAGIC: u32 = 0xcafe_babe;
 
-/// Packages that Android itself brings, where no list of its classes is at hand.
+/// Packages that Android itself brings, if no list of its classes is at hand.
 const PLATFORM: [&str; 8] = [
     "android/",
     "dalvik/",
@@ -48,7 +48,7 @@ impl ClassFile {
     }
 }
 
-/// What an array is of; the class itself where it is none; none of what is no class.
+/// What an array is of; the class itself if it is none; none of what is no class.
 fn element(name: &str) -> Option<String> {
     let Some(of) = name.strip_prefix('[') else {
         return Some(name.to_owned());
@@ -133,7 +133,7 @@ impl<'a> Reader<'a> {
 
 /// Refuses classes that name what neither they nor the platform have.
 ///
-/// `of_platform` has the classes that the framework was seen to have, as a list of an archive's files; none where only their packages
+/// `of_platform` has the classes that the framework was seen to have, as a list of an archive's files; none if only their packages
 /// are known.
 pub(super) fn check_closure(classes: &[ClassFile], of_platform: Option<&BTreeSet<String>>) -> Result<()> {
     let own: BTreeSet<&str> = classes.iter().map(|class| class.name.as_str()).collect();
@@ -157,7 +157,7 @@ pub(super) fn check_closure(classes: &[ClassFile], of_platform: Option<&BTreeSet
         .iter()
         .map(|(name, by)| format!("  {name}, which {by} names"));
     bail!(
-        "the app would end where one of these classes is used, which neither the archive nor Android has:\n{}",
+        "the app would end if one of these classes is used, which neither the archive nor Android has:\n{}",
         lines.collect::<Vec<_>>().join("\n")
     )
 }

@@ -77,7 +77,7 @@ fn by_stand_ins(toolchain: &Toolchain, profile: Profile, shell: &Path) -> Result
     fs::create_dir_all(&folder)?;
     let imports = Imports::read(&shell.join("imports.txt"), false)?;
     command::run(&mut IOS.build(toolchain, profile, &[])?)?;
-    let program = link((toolchain, profile), shell, &folder, &imports)?;
+    let program = link(toolchain, profile, shell, &folder, &imports)?;
     let file = fs::read(&program)?;
     let executable = Executable::read(&file).with_context(|| program.display().to_string())?;
     check(&executable, &imports)?;
@@ -95,7 +95,8 @@ fn by_stand_ins(toolchain: &Toolchain, profile: Profile, shell: &Path) -> Result
 
 /// Links `main.c` and the library against stand-ins.
 fn link(
-    (toolchain, profile): (&Toolchain, Profile),
+    toolchain: &Toolchain,
+    profile: Profile,
     shell: &Path,
     folder: &Path,
     imports: &Imports,

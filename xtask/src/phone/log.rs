@@ -1,4 +1,4 @@
-//! What a phone has written, fetched by cable: the app's log, its times and its recordings, and what it told the system's own log.
+//! What a phone has written, fetched by cable: the app's log, its times and its recordings, and what it wrote into the system's own log.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ pub(super) fn fetch(root: &Path, phone: &Phone, app: &IphoneApp) -> Result<()> {
 }
 
 fn fetch_android(adb: &Path, folder: &Path) -> Result<()> {
-    fs::create_dir_all(folder)?;
+    empty(folder)?;
     command::run(Command::new(adb).arg("pull").arg(ANDROID_FILES).arg(folder))
         .context("adb comes with the SDK's platform-tools, and the phone has to allow debugging")?;
     let told = command::output(&adb.display().to_string(), &["logcat", "-d", "-s", ANDROID_TAG]);
@@ -48,7 +48,7 @@ fn fetch_iphone(xcrun: &Path, folder: &Path, app: &IphoneApp) -> Result<()> {
     let Some(device) = &app.device else {
         bail!("--device NAME: which iPhone? `xcrun devicectl list devices` names them");
     };
-    fs::create_dir_all(folder)?;
+    empty(folder)?;
     let mut copy = Command::new(xcrun);
     copy.args(["devicectl", "device", "copy", "from", "--device", device]);
     copy.args(["--domain-type", "appDataContainer", "--domain-identifier"]);
@@ -57,6 +57,14 @@ fn fetch_iphone(xcrun: &Path, folder: &Path, app: &IphoneApp) -> Result<()> {
         "devicectl comes with Xcode 15; --bundle names the identifier that the app was signed with",
     )?;
     show(folder)
+}
+
+/// Makes the folder, without what was fetched before: an old log would pass for the one of now.
+fn empty(folder: &Path) -> Result<()> {
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("{} has to be emptied", folder.display()))?;
+    }
+    Ok(fs::create_dir_all(folder)?)
 }
 
 /// Says where all is, and the lines that one looks for first.
@@ -127,9 +135,10 @@ mod tests {
             .expect_err("which?")
             .to_string();
         assert!(error.contains("--device"), "{error}");
-        fs::remove_dir_all(&to).expect("a folder");
 
         let nothing = stand_in(&folder, "true");
+        // What was fetched before is not shown for it.
+        fs::write(to.join("log.txt"), "old").expect("a log");
         let error = fetch_android(&nothing, &to).expect_err("no log").to_string();
         assert!(error.contains("no log.txt"), "{error}");
         fs::remove_dir_all(folder).expect("a folder");

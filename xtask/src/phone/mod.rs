@@ -48,7 +48,7 @@ pub(crate) const ANDROID: Phone = Phone {
 pub(crate) enum Action {
     Check,
     Build,
-    /// With ARCore's archive, where Android's own tools are; for engineers or for everybody.
+    /// With ARCore's archive, if Android's own tools are there; for engineers or for everybody.
     Package(Option<Arcore>, Profile),
     /// Of a phone at a cable.
     Log(IphoneApp),

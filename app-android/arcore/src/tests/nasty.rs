@@ -100,27 +100,62 @@ fn a_camera_without_pictures_is_set_to_smaller_ones_and_that_is_kept() {
         world(|world| world.time_ns += 1);
         feed.poll(&mut Desk, Duration::from_secs_f64(s))
     };
+    // A loop that stood still for long has asked too seldom to judge.
     assert!(poll(&mut feed, 10.0).is_none());
-    assert!(poll(&mut feed, 12.9).is_none());
-    assert_eq!(calls(), "update update", "patience");
-    assert!(poll(&mut feed, 13.0).is_none());
+    assert!(poll(&mut feed, 20.0).is_none());
+    assert!((0..5).all(|_| poll(&mut feed, 20.0).is_none()));
+    assert_eq!(calls(), ["update"; 7].join(" "), "patience");
+    assert!(poll(&mut feed, 20.0).is_none());
+    assert_eq!(calls(), "update pause resume", "a slow start gets another");
+    assert!((0..30).all(|tenth| poll(&mut feed, 20.1 + 0.1 * f64::from(tenth)).is_none()));
+    assert!(!calls().contains("mode"), "patience");
+    assert!(poll(&mut feed, 23.2).is_none());
     assert_eq!(calls(), "update pause mode=1 resume");
     assert_eq!(feed.take_kept(), None, "nothing has come yet");
-    assert!(matches!(poll(&mut feed, 13.1), Some(ShellEvent::Frame(_))));
-    assert_eq!(feed.take_kept().as_deref(), Some("1280x720"));
+    assert!(matches!(poll(&mut feed, 23.3), Some(ShellEvent::Frame(_))));
+    assert_eq!(feed.take_kept().as_deref(), Some("1280x720 8"));
     assert_eq!(feed.take_kept(), None, "told once");
     drop(feed);
     assert_clean();
     // The next start does not try what did not come.
-    let mut feed = Feed::new(Some(FUNCTIONS)).with_kept("1280x720\n");
+    let mut feed = Feed::new(Some(FUNCTIONS)).with_kept("1280x720 2\n");
+    assert_eq!(feed.take_kept().as_deref(), Some("1280x720 1"));
     assert!(feed.run(&mut Desk, LOOK).is_none());
     assert!(calls().contains("mode=1"));
     assert!(matches!(poll(&mut feed, 0.0), Some(ShellEvent::Frame(_))));
     assert_eq!(feed.take_kept(), None);
-    for nonsense in ["", "x", "-3x4", "1280", "1x2x3"] {
+    // After some starts larger ones are tried again: they may have been slow once.
+    world(|world| world.silent.clear());
+    let mut feed = Feed::new(Some(FUNCTIONS)).with_kept("1280x720 1");
+    assert_eq!(feed.take_kept().as_deref(), Some("1280x720 0"));
+    let mut feed = Feed::new(Some(FUNCTIONS)).with_kept("1280x720 0");
+    assert!(feed.run(&mut Desk, LOOK).is_none());
+    assert!(calls().contains("mode=0"));
+    drop(feed);
+    for nonsense in ["", "x", "-3x4 5", "1280 1", "1280x720", "1x2x3 4", "1280x720 -1"] {
         let mut feed = Feed::new(Some(FUNCTIONS)).with_kept(nonsense);
         assert_eq!(feed.take_kept(), None, "{nonsense}");
     }
+}
+
+#[test]
+fn a_start_that_is_slow_once_makes_no_picture_small() {
+    world(|world| {
+        world.modes = vec![[1920, 1080, 30], [640, 480, 30]];
+        world.silent = vec![0];
+    });
+    let mut tracker = running();
+    seconds(&mut tracker, 0.0, 3.5);
+    world(|world| world.silent.clear());
+    assert!(
+        seconds(&mut tracker, 3.5, 2.0)
+            .iter()
+            .all(|step| step == &Ok(true))
+    );
+    assert_eq!(tracker.limited_to(), None);
+    assert!(!calls().contains("mode=1"));
+    drop(tracker);
+    assert_clean();
 }
 
 #[test]
@@ -213,11 +248,15 @@ fn the_camera_of_another_app_is_asked_for_again_until_it_is_free() {
     feed.pause();
     world(|world| world.fails.insert("resume", -13));
     calls();
+    feed.set_wanted(false);
     assert!((1..=6).all(|s| poll(&mut feed, s).is_none()));
+    assert_eq!(calls(), "", "nobody waits for it");
+    feed.set_wanted(true);
+    assert!((11..=16).all(|s| poll(&mut feed, s).is_none()));
     let said = calls();
     assert_eq!(said.matches("resume").count(), 2, "every other second: {said}");
     world(|world| world.fails.clear());
-    assert!(poll(&mut feed, 8).is_some_and(|told| matches!(told, ShellEvent::ArSession(ArSession::Able))));
+    assert!(poll(&mut feed, 18).is_some_and(|told| matches!(told, ShellEvent::ArSession(ArSession::Able))));
     assert!(feed.run(&mut Desk, LOOK).is_none());
     assert!(matches!(poll(&mut feed, 9), Some(ShellEvent::Frame(_))));
     drop(feed);
@@ -225,12 +264,40 @@ fn the_camera_of_another_app_is_asked_for_again_until_it_is_free() {
 }
 
 #[test]
+fn a_card_that_is_refused_is_said_each_time_that_it_is_asked_for() {
+    world(|world| world.refuses = vec![("images", 1)]);
+    let mut feed = Feed::new(Some(FUNCTIONS));
+    let mut said = |run: Run| {
+        assert!(feed.run(&mut Desk, run).is_none());
+        let mut told = (0..3).map(|_| {
+            world(|world| world.time_ns += 1);
+            feed.poll(&mut Desk, Duration::ZERO)
+        });
+        told.by_ref()
+            .filter(|told| matches!(told, Some(ShellEvent::CardRefused)))
+            .count()
+    };
+    assert_eq!([LOOK, WITH_CARD, LOOK, WITH_CARD].map(&mut said), [0, 1, 0, 1]);
+    world(|world| world.refuses.clear());
+    assert_eq!(said(ANEW), 0);
+    assert_eq!(said(WITH_CARD), 0, "another session takes it");
+    drop(feed);
+    assert_clean();
+}
+
+#[test]
 fn a_package_without_arcore_says_so() {
-    let told = Feed::new(None).come_back();
-    assert!(
-        matches!(&told, Some(ShellEvent::ArTrouble(ArSession::Unsupported, words)) if words.contains("without ARCore")),
-        "{told:?}"
-    );
+    let mut feed = Feed::new(None);
+    for told in [
+        feed.come_back(),
+        feed.run(&mut Desk, LOOK),
+        feed.run(&mut Desk, ANEW),
+    ] {
+        assert!(
+            matches!(&told, Some(ShellEvent::ArTrouble(ArSession::Unsupported, words)) if words.contains("without ARCore")),
+            "{told:?}"
+        );
+    }
     // What had the camera may have let it go while the app was away.
     let mut feed = Feed::new(Some(FUNCTIONS));
     world(|world| world.fails.insert("resume", -13));
@@ -361,7 +428,7 @@ fn in_every_combination_frames_come_or_it_is_said_why_not_and_a_healed_phone_goe
         spoil(index);
         let mut feed = Feed::new(Some(FUNCTIONS));
         feed.come_back();
-        let (has_frame, state) = live(&mut feed, 0, 8);
+        let (has_frame, state) = live(&mut feed, 0, 11);
         assert!(
             has_frame || state.is_some(),
             "{index}: nothing comes, and nothing is said"
@@ -396,7 +463,7 @@ fn no_error_of_a_frame_is_silent() {
         world.silent = vec![0];
     });
     let mut feed = Feed::new(Some(FUNCTIONS));
-    let (has_frame, state) = live(&mut feed, 0, 4);
+    let (has_frame, state) = live(&mut feed, 0, 7);
     assert!(!has_frame && state == Some(ArSession::Failed), "{words}");
     drop(feed);
     assert_clean();

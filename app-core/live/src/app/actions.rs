@@ -44,7 +44,7 @@ impl App {
             UserAction::RetakePlate => self.go(Cause::RetakePlate),
             UserAction::StartOver => self.start_over(),
             UserAction::Leave => self.go(Cause::Left),
-            UserAction::TryAgain => self.try_again(commands),
+            UserAction::TryAgain => self.try_again(),
             UserAction::UseCard(is_used) => self.uses_card = is_used,
             UserAction::Choose(clip) => self.playback.choose(&self.toy, clip),
             UserAction::Play(is_playing) => self.playback.play(is_playing),
@@ -74,18 +74,14 @@ impl App {
     }
 
     /// What this device was found not to have is asked for again.
-    fn try_again(&mut self, commands: &mut Vec<ShellCommand>) {
+    fn try_again(&mut self) {
         if self.platform.ar_session == ArSession::Unsupported {
             self.ar_session(ArSession::Able, None);
             self.wants_new_world = self.step != Step::Welcome;
         }
-        if self.platform.graphics == GraphicsState::Unsupported {
-            self.platform.graphics = GraphicsState::Starting;
-            commands.push(PlatformCommand::ReopenDevice.into());
-        }
     }
 
-    /// What the phone's own way back means now; none where it leaves the app.
+    /// What the phone's own way back means now; none if it leaves the app.
     #[must_use]
     pub fn back(&self) -> Option<UserAction> {
         if self.step == Step::Welcome {
@@ -186,6 +182,12 @@ impl App {
         if ar_session != ArSession::Able {
             self.platform.tracking = app_scene::camera_frame::Tracking::Starting;
         }
+    }
+
+    /// The platform does not look for the card: the table is found as without one.
+    pub(super) fn refuse_card(&mut self) {
+        self.uses_card = false;
+        self.tell(Notice::CardRefused);
     }
 
     pub(super) fn memory_low(&mut self) {

@@ -53,8 +53,6 @@ pub enum GraphicsState {
     Ready,
     /// It was lost and is opened anew.
     Lost,
-    /// It has no graphics that suffice.
-    Unsupported,
 }
 
 /// What became of something that was to be saved.
@@ -158,6 +156,8 @@ pub enum ShellEvent {
     ArSession(ArSession),
     /// The same, with what the platform says of it in a sentence or two.
     ArTrouble(ArSession, String),
+    /// The platform does not look for the printed card, though it was asked to.
+    CardRefused,
     /// A camera frame.
     Frame(Box<CameraFrame>),
     /// How hot the device is.

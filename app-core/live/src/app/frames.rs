@@ -64,7 +64,7 @@ impl App {
         self.record(&frame);
     }
 
-    /// A tracker that looks for a place where nothing was chosen may look for ever, in another room: it begins anew.
+    /// A tracker that looks for a place may, before anything was chosen, look for ever, in another room: it begins anew.
     fn follow_relocalising(&mut self, elapsed_s: f64) {
         let is_in_vain = self.platform.tracking == Tracking::Relocalising && self.table.is_none();
         self.relocalising_s = if is_in_vain {

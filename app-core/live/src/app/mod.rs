@@ -79,7 +79,7 @@ pub struct App {
     uses_card: bool,
     /// What the platform says of its AR session.
     ar_words: Option<String>,
-    /// What the person has to be told where the app begins, by the terms of what it runs on.
+    /// What has to be said on the first screen, by the terms of what it runs on.
     disclosure: Option<&'static str>,
     /// For so long the tracker has looked for a place where nothing was chosen.
     relocalising_s: f64,
@@ -170,6 +170,7 @@ impl App {
             ShellEvent::Graphics(state) => self.graphics(state, &mut commands),
             ShellEvent::ArSession(ar_session) => self.ar_session(ar_session, None),
             ShellEvent::ArTrouble(ar_session, words) => self.ar_session(ar_session, Some(words)),
+            ShellEvent::CardRefused => self.refuse_card(),
             ShellEvent::Frame(frame) => self.frame(*frame, &mut commands),
             ShellEvent::Thermal(thermal) => self.platform.thermal = thermal,
             ShellEvent::MemoryLow => self.memory_low(),
@@ -186,7 +187,9 @@ impl App {
         let asked = Asked {
             lens: self.lens.is_awaited(),
             held_exposure: self.phone_check.is_some_and(|check| check.holds_exposure()),
-            card: self.uses_card || self.phone_check.is_some_and(|check| check.shows_card()),
+            // Later steps have the table, and need no more of it.
+            card: (self.uses_card && self.step <= Step::PlaceToy)
+                || self.phone_check.is_some_and(|check| check.shows_card()),
         };
         let wanted = Commanded::wanted(self.step, &self.platform, (self.captures, asked));
         self.captures = wanted.captures;
@@ -217,7 +220,7 @@ impl App {
         self.ar_words.as_deref()
     }
 
-    /// Whether a person has the printed card.
+    /// Whether a person has the printed card, and it is looked for up to [`Step::PlaceToy`].
     #[must_use]
     pub fn uses_card(&self) -> bool {
         self.uses_card
@@ -300,6 +303,12 @@ impl App {
     #[must_use]
     pub fn shows_profile(&self) -> bool {
         self.shows_profile
+    }
+
+    /// Pictures a second that the shell was asked for.
+    #[must_use]
+    pub fn frames_per_s(&self) -> u32 {
+        self.commanded.frames_per_s
     }
 
     /// How hot the device is.

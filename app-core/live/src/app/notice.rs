@@ -31,6 +31,8 @@ pub enum Notice {
     LensTaken(usize),
     /// It was not, and why.
     LensFailed(LensFailure),
+    /// This phone does not look for the printed card.
+    CardRefused,
     /// A file is no toy, and why.
     ToyRefused(String),
     /// The tracker has lost the place.

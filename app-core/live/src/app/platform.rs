@@ -27,8 +27,6 @@ pub(super) struct Platform {
 pub enum Obstacle {
     /// No AR on this device, as far as it says: it can be asked again.
     NoAr,
-    /// No graphics that suffice: they can be asked for again.
-    NoGraphics,
     /// What AR needs is looked for or being installed: it goes on by itself.
     Installing,
     /// The camera is not allowed; it can be asked for again.
@@ -50,10 +48,8 @@ pub enum Obstacle {
 impl Platform {
     /// The first of what is in the way of a step.
     pub(super) fn obstacle(&self, step: Step) -> Option<Obstacle> {
-        match (self.ar_session, self.graphics) {
-            (ArSession::Unsupported, _) => return Some(Obstacle::NoAr),
-            (_, GraphicsState::Unsupported) => return Some(Obstacle::NoGraphics),
-            _ => {}
+        if self.ar_session == ArSession::Unsupported {
+            return Some(Obstacle::NoAr);
         }
         match self.permission {
             Permission::Denied => return Some(Obstacle::CameraDenied),
@@ -83,7 +79,6 @@ impl Platform {
         self.is_foreground
             && self.permission == Permission::Granted
             && matches!(self.ar_session, ArSession::Able | ArSession::Installing)
-            && self.graphics != GraphicsState::Unsupported
             && self.thermal < Thermal::Critical
     }
 }
@@ -113,7 +108,7 @@ pub(super) struct Commanded {
     locks_exposure: bool,
     underexposes: bool,
     is_awake: bool,
-    frames_per_s: u32,
+    pub(super) frames_per_s: u32,
     pub(super) captures: Captures,
 }
 

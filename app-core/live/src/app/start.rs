@@ -86,9 +86,21 @@ impl App {
         }
     }
 
+    /// Whether the package is one for engineers, in which nothing falls back by itself.
+    #[must_use]
+    pub fn is_for_engineers(&self) -> bool {
+        let start = self.start.as_ref();
+        start.is_some_and(|start| start.history.is_first_phone)
+    }
+
     /// All that could be turned down was, for the log.
     pub fn note_lowered(&mut self, exhausted: Exhausted) {
-        self.note(&("preset fast", exhausted));
+        let what = if self.is_for_engineers() {
+            "preset fast would be next"
+        } else {
+            "preset fast"
+        };
+        self.note(&(what, exhausted));
     }
 
     /// How far a test picture is off, for the log: also where it passes, since no bound was set by a phone.

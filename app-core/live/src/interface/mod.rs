@@ -94,7 +94,7 @@ impl Interface {
         self.touches.wheel(steps);
     }
 
-    /// Closes the menu, where it is open.
+    /// Closes the menu, if it is open.
     pub(crate) fn close_menu(&mut self) -> bool {
         std::mem::take(&mut self.is_menu_open)
     }

@@ -83,8 +83,13 @@ fn step(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
             }
         }
         Step::FindTable => {
-            if !app.uses_card() && other(ui, text::USE_CARD) {
-                actions.push(UserAction::UseCard(true));
+            let words = if app.uses_card() {
+                text::NO_CARD
+            } else {
+                text::USE_CARD
+            };
+            if other(ui, words) {
+                actions.push(UserAction::UseCard(!app.uses_card()));
             }
             if other(ui, text::CHECK) {
                 actions.push(UserAction::CheckPhone(true));
@@ -120,13 +125,19 @@ fn in_the_way(ui: &mut Ui, app: &App, obstacle: Obstacle, actions: &mut Vec<User
         obstacle,
         Obstacle::NoAr | Obstacle::ArFailed | Obstacle::Installing | Obstacle::Interrupted
     );
-    words(ui, title, app.ar_words().filter(|_| is_of_ar).unwrap_or(hint));
+    let said = app.ar_words().filter(|_| is_of_ar);
+    let title = match (obstacle, said) {
+        // What is said may be that the app is too old, or lacks a part.
+        (Obstacle::NoAr, Some(_)) => text::NO_AR,
+        _ => title,
+    };
+    words(ui, title, said.unwrap_or(hint));
     let way_back = match obstacle {
         Obstacle::CameraDenied => lead(ui, text::ALLOW_CAMERA).then_some(UserAction::Begin),
         Obstacle::CameraBarred => lead(ui, text::OPEN_SETTINGS).then_some(UserAction::OpenSettings),
         Obstacle::ArFailed => lead(ui, text::START_OVER).then_some(UserAction::StartOver),
         Obstacle::Tracking(_) => other(ui, text::START_OVER).then_some(UserAction::StartOver),
-        Obstacle::NoAr | Obstacle::NoGraphics => lead(ui, text::TRY_AGAIN).then_some(UserAction::TryAgain),
+        Obstacle::NoAr => lead(ui, text::TRY_AGAIN).then_some(UserAction::TryAgain),
         // The first screen itself is below it.
         _ if app.step() == Step::Welcome => None,
         Obstacle::Installing | Obstacle::Interrupted | Obstacle::TooHot | Obstacle::Preparing => {

@@ -45,10 +45,6 @@ pub(super) fn of_obstacle(obstacle: Obstacle) -> (&'static str, &'static str) {
             "This phone has no AR",
             "Its system cannot follow the camera, which this app needs.",
         ),
-        Obstacle::NoGraphics => (
-            "Graphics do not suffice",
-            "This app needs Vulkan 1.1 or Metal, which this device does not have.",
-        ),
         Obstacle::CameraDenied => (
             "The camera is needed",
             "Without its picture there is nothing to animate. Nothing is sent anywhere.",
@@ -90,6 +86,7 @@ pub(super) fn of_notice(notice: &Notice) -> String {
         Notice::LensTaken(1) => "The lens shows one light.".to_owned(),
         Notice::LensTaken(n_lights) => format!("The lens shows {n_lights} lights."),
         Notice::LensFailed(failure) => of_lens_failure(*failure).to_owned(),
+        Notice::CardRefused => "This phone cannot look for the card. Go on without it.".to_owned(),
         Notice::ToyRefused(reason) => format!("This file is no toy for this app: {reason}"),
         Notice::WorldLost => "The phone has lost the place. Show the table again.".to_owned(),
         Notice::DeviceRestarted => "Graphics were set up again.".to_owned(),
@@ -237,6 +234,8 @@ pub(super) const BEGIN: &str = "Begin";
 pub(super) const TRY_AGAIN: &str = "Try again";
 pub(super) const LEAVE: &str = "To the first screen";
 pub(super) const USE_CARD: &str = "I have the card";
+pub(super) const NO_CARD: &str = "I have no card";
+pub(super) const NO_AR: &str = "AR cannot begin";
 pub(super) const OPEN_SETTINGS: &str = "Open settings";
 pub(super) const SKIP_PLATE: &str = "The toy cannot be moved";
 pub(super) const PLACED: &str = "It fits";

@@ -25,6 +25,8 @@ pub(super) struct Profiler {
     shown_id: Option<u64>,
     n_dropped: u64,
     latest: Option<Latest>,
+    /// When the shell began with what leads to the next picture.
+    early_ms: Option<f64>,
     /// When the picture under way was begun, and how long the one before took until it was handed to the display.
     begun_ms: Option<f64>,
     busy_ms: Option<f64>,
@@ -47,6 +49,8 @@ struct Latest {
     /// Where the device was asked.
     gpu_ms: Option<f64>,
     camera_to_present_ms: Option<f64>,
+    /// Pictures of the camera before it that nobody has seen.
+    n_dropped: u64,
 }
 
 impl Profiler {
@@ -61,12 +65,18 @@ impl Profiler {
         self.times_passes = false;
     }
 
-    /// A picture is begun.
-    pub(super) fn begin_picture(&mut self) {
-        self.begun_ms = self.clock.as_ref().map(Clock::now_ms);
+    /// The shell begins with what may lead to a picture.
+    pub(super) fn begin_early(&mut self) {
+        self.early_ms = self.clock.as_ref().map(Clock::now_ms);
     }
 
-    /// It was handed to the display: where the device is behind, that took as long as the device needs for one.
+    /// A picture is begun, if the shell has not said so before.
+    pub(super) fn begin_picture(&mut self) {
+        let now_ms = self.clock.as_ref().map(Clock::now_ms);
+        self.begun_ms = self.early_ms.take().or(now_ms);
+    }
+
+    /// It was handed to the display: if the device is behind, that took as long as the device needs for one.
     pub(super) fn presented(&mut self) {
         let now_ms = self.clock.as_ref().map(Clock::now_ms);
         self.busy_ms = now_ms
@@ -74,9 +84,14 @@ impl Profiler {
             .map(|(now_ms, begun_ms)| now_ms - begun_ms);
     }
 
-    /// How long the latest picture that was handed to the display took; none without a clock, or where nothing is.
+    /// How long the latest picture that was handed to the display took; none without a clock, or if nothing is.
     pub(super) fn busy_ms(&self) -> Option<f64> {
         self.busy_ms
+    }
+
+    /// Whether pictures of the camera came before the latest frame that nobody has seen.
+    pub(super) fn has_dropped(&self) -> bool {
+        self.latest.is_some_and(|latest| latest.n_dropped > 0)
     }
 
     /// How long the device took for the latest frame, while passes are timed.
@@ -131,12 +146,13 @@ impl Profiler {
         let camera_to_present_ms = self.delivered.and_then(age_at);
         let pass_times = core.read_pass_times()?;
         let (about, args) = about(core);
+        let dropped = self.delivered.map(|delivered| self.drop_before(delivered.id));
         let args = Args {
             number: Some(self.n_frames),
             kind: report.change.map(|change| change.name().to_owned()),
             interval_ms: self.before_ms.map(|before_ms| begin_ms - before_ms),
             camera_to_present_ms,
-            dropped: self.delivered.map(|delivered| self.drop_before(delivered.id)),
+            dropped,
             ..args
         };
         self.n_frames += 1;
@@ -146,6 +162,7 @@ impl Profiler {
             cpu_ms,
             gpu_ms,
             camera_to_present_ms,
+            n_dropped: dropped.unwrap_or(0),
         });
         let frame = Frame {
             begin_ms,

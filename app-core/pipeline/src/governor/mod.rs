@@ -51,7 +51,7 @@ const COOL_FRAMES: u32 = 3600;
 const END_FRAMES: [u32; 2] = [90, 900];
 
 /// Interval over that of the screen from which a frame is late.
-const LATE: f64 = 1.4;
+pub const LATE: f64 = 1.4;
 /// Part of the frames that may be late, without device times; and from which two steps are taken.
 const MANY_LATE: [f64; 2] = [0.2, 0.5];
 /// Part of the frames that may be late before a trial.

@@ -179,3 +179,17 @@ fn free_space_is_told_where_there_is_a_folder() {
     );
     assert!(worker_in(None).outcome().is_none());
 }
+
+#[test]
+fn the_log_of_an_earlier_start_does_not_pass_for_that_of_this_one() {
+    let folder = std::env::temp_dir().join(format!("app-shell-logs-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a folder");
+    let worker = worker_in(Some(&folder));
+    worker.begin_log();
+    fs::write(folder.join("log.txt"), "old").expect("a file");
+    worker.begin_log();
+    assert!(!folder.join("log.txt").exists());
+    let aside = fs::read_to_string(folder.join("log_before.txt"));
+    assert_eq!(aside.expect("the old log"), "old");
+    fs::remove_dir_all(&folder).expect("a folder");
+}

@@ -48,7 +48,6 @@ pub(crate) fn happening() -> impl Strategy<Value = Happening> {
         GraphicsState::Starting,
         GraphicsState::Ready,
         GraphicsState::Lost,
-        GraphicsState::Unsupported,
     ]);
     let ar_session = select(vec![
         ArSession::Able,

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use app_core::Core;
 use app_core::app::{
-    AlignJob, App, ArSession, GraphicsState, LaunchHistory, Permission, PlatformCommand, ShellCommand,
-    ShellEvent, Step, Thermal, UserAction, WorkCommand,
+    AlignJob, App, ArSession, GraphicsState, LaunchHistory, Notice, Permission, PlatformCommand,
+    ShellCommand, ShellEvent, Step, Thermal, UserAction, WorkCommand,
 };
 use app_core::camera_frame::Tracking;
 use app_core::core::as_shown;
@@ -15,6 +15,7 @@ use app_core::gpu::fault_of_pipeline_caches;
 use app_core::interface::Interface;
 use app_core::live::Live;
 use app_core::preset::Preset;
+use app_core::toy::Toy;
 use app_core::wgpu;
 use glam::DVec2;
 
@@ -56,7 +57,6 @@ fn every_sheet_has_a_way_out() {
         ShellEvent::ArSession(ArSession::Interrupted),
         ShellEvent::Permission(Permission::Denied),
         ShellEvent::Permission(Permission::Barred),
-        ShellEvent::Graphics(GraphicsState::Unsupported),
         ShellEvent::Graphics(GraphicsState::Lost),
         ShellEvent::Thermal(Thermal::Critical),
     ];
@@ -165,6 +165,31 @@ fn the_card_is_looked_for_where_a_person_has_one() {
         Some(true)
     );
     assert!(!buttons(&app).contains(&"I have the card".to_owned()));
+    assert!(buttons(&app).contains(&"I have no card".to_owned()));
+    assert_eq!(
+        finds_card(&app.event(ShellEvent::User(UserAction::UseCard(false)))),
+        Some(false)
+    );
+    // It was asked for, and the platform does without.
+    let _ = app.event(ShellEvent::User(UserAction::UseCard(true)));
+    assert_eq!(finds_card(&app.event(ShellEvent::CardRefused)), Some(false));
+    assert!(!app.uses_card() && app.notice() == Some(&Notice::CardRefused));
+    assert!(app.log().text().contains("CardRefused"));
+}
+
+#[test]
+fn the_card_costs_nothing_once_the_toy_is_placed() {
+    let mut app = world::at_ghost();
+    let ran = |commands: Vec<ShellCommand>| format!("{commands:?}");
+    let asked = ran(app.event(ShellEvent::User(UserAction::UseCard(true))));
+    assert!(
+        asked.contains("finds_card: true"),
+        "the lens is taken there: {asked}"
+    );
+    let asked = ran(app.event(ShellEvent::User(UserAction::Placed)));
+    assert!(asked.contains("finds_card: false"), "{asked}");
+    let asked = ran(app.event(ShellEvent::User(UserAction::Replace)));
+    assert!(asked.contains("finds_card: true"), "{asked}");
 }
 
 #[test]
@@ -258,7 +283,11 @@ fn one_maker_is_not_asked_to_keep_pipelines() {
 struct Moving {
     live: Live,
     now_ms: Arc<AtomicU64>,
+    /// Milliseconds that pass with each look at the clock, as while a picture is made.
+    look_ms: Arc<AtomicU64>,
     n_frames: u64,
+    /// Pictures of the camera for each that is drawn.
+    n_each: u64,
     jobs: Vec<AlignJob>,
 }
 
@@ -266,14 +295,18 @@ impl Moving {
     fn new() -> Self {
         let mut live = Live::new(Core::counting(), world::toy(), Preset::Balanced);
         let now_ms = Arc::new(AtomicU64::new(0));
-        let clock = Arc::clone(&now_ms);
-        // Each look takes as long as the device is said to need.
-        live.set_clock(Clock::new(move || clock.load(Ordering::SeqCst) as f64));
+        let look_ms = Arc::new(AtomicU64::new(0));
+        let (clock, look) = (Arc::clone(&now_ms), Arc::clone(&look_ms));
+        live.set_clock(Clock::new(move || {
+            clock.fetch_add(look.load(Ordering::SeqCst), Ordering::SeqCst) as f64
+        }));
         live.set_target_fps(30);
         let mut moving = Self {
             live,
             now_ms,
+            look_ms,
             n_frames: 0,
+            n_each: 1,
             jobs: Vec::new(),
         };
         for event in world::opening() {
@@ -298,9 +331,27 @@ impl Moving {
         }
     }
 
+    /// The toy moves.
+    fn playing() -> Self {
+        let mut moving = Self::new();
+        while moving.live.app().step() != Step::Play {
+            moving.picture();
+        }
+        assert_eq!(moving.live.preset(), Preset::Balanced);
+        moving
+    }
+
+    /// Pictures until the preset is `fast`; none of so many.
+    fn pictures_to_fast(&mut self, n: u32) -> Option<u32> {
+        (0..n).find(|_| {
+            self.picture();
+            self.live.preset() == Preset::Fast
+        })
+    }
+
     /// A picture of the camera, drawn.
     fn picture(&mut self) {
-        self.n_frames += 1;
+        self.n_frames += self.n_each;
         let time_ns = i64::try_from(self.n_frames).unwrap() * 33_000_000;
         self.tell(ShellEvent::Frame(Box::new(world::frame(
             self.n_frames,
@@ -312,7 +363,7 @@ impl Moving {
             let alignment = world::alignment(job.input(), Some(0.1));
             self.tell(ShellEvent::Aligned(Some(Box::new(job.known(alignment)))));
         }
-        self.now_ms.fetch_add(33, Ordering::SeqCst);
+        self.now_ms.fetch_add(33 * self.n_each, Ordering::SeqCst);
         let time_s = self.now_ms.load(Ordering::SeqCst) as f64 / 1e3;
         let commands = self.live.present(&world::screen(64, 48), time_s).unwrap();
         drop(commands);
@@ -321,24 +372,9 @@ impl Moving {
 
 #[test]
 fn heat_turns_everything_down_and_then_leads_to_the_fast_preset_and_back() {
-    let mut moving = Moving::new();
-    while moving.live.app().step() != Step::Play {
-        moving.picture();
-    }
-    assert_eq!(moving.live.preset(), Preset::Balanced);
+    let mut moving = Moving::playing();
     moving.tell(ShellEvent::Thermal(Thermal::Serious));
-    let mut n_pictures = 0;
-    let mut log = || {
-        n_pictures += 1;
-        moving.picture();
-        moving.live.preset() == Preset::Fast
-    };
-    let reached = (0..2000).any(|_| log());
-    assert!(
-        reached,
-        "still {} after {n_pictures} pictures",
-        moving.live.preset()
-    );
+    let n_pictures = moving.pictures_to_fast(2000).expect("the fast preset");
     assert!(n_pictures > 900, "steps come first: {n_pictures}");
     assert!(moving.live.app().log().text().contains("preset fast"));
     // Cool for two minutes, it has its preset back.
@@ -347,4 +383,61 @@ fn heat_turns_everything_down_and_then_leads_to_the_fast_preset_and_back() {
     moving.picture();
     moving.picture();
     assert_eq!(moving.live.preset(), Preset::Balanced);
+}
+
+#[test]
+fn pictures_that_take_too_long_lead_to_the_fast_preset_until_there_is_another_toy() {
+    let mut moving = Moving::playing();
+    assert_eq!(moving.pictures_to_fast(1000), None, "quick ones do not");
+    moving.look_ms.store(20, Ordering::SeqCst);
+    let n_pictures = moving.pictures_to_fast(2000).expect("the fast preset");
+    assert!(n_pictures > 90, "steps come first: {n_pictures}");
+    assert!(moving.live.app().log().text().contains("preset fast"));
+    moving.look_ms.store(0, Ordering::SeqCst);
+    assert!(
+        (0..200).all(|_| {
+            moving.picture();
+            moving.live.preset() == Preset::Fast
+        }),
+        "the same toy would be as slow again"
+    );
+    let another = Arc::new(Toy::from_glb("another.glb", &world::toy_file()).unwrap());
+    moving.tell(ShellEvent::Toy(Ok(another)));
+    moving.picture();
+    assert_eq!(moving.live.preset(), Preset::Balanced);
+}
+
+#[test]
+fn a_camera_whose_pictures_are_not_all_seen_counts_as_slow() {
+    let mut moving = Moving::playing();
+    moving.n_each = 2;
+    assert!(moving.pictures_to_fast(2000).is_some());
+}
+
+#[test]
+fn the_shells_own_part_of_a_picture_counts_for_it() {
+    let mut moving = Moving::playing();
+    let slow = |moving: &mut Moving| {
+        // Reading the camera's picture, then what is drawn.
+        moving.live.begin_picture();
+        moving.now_ms.fetch_add(60, Ordering::SeqCst);
+        moving.picture();
+        moving.live.preset() == Preset::Fast
+    };
+    assert!((0..2000).any(|_| slow(&mut moving)));
+}
+
+#[test]
+fn a_package_for_engineers_keeps_its_preset_and_says_once_what_would_be_next() {
+    let mut moving = Moving::new();
+    let mut history = LaunchHistory::default().for_engineers();
+    history.begin();
+    moving.tell(ShellEvent::Started(history));
+    while moving.live.app().step() != Step::Play {
+        moving.picture();
+    }
+    moving.look_ms.store(20, Ordering::SeqCst);
+    assert_eq!(moving.pictures_to_fast(600), None);
+    let log = moving.live.app().log().text();
+    assert_eq!(log.matches("preset fast would be next").count(), 1, "{log}");
 }

@@ -9,17 +9,17 @@ const ARCORE: &str =
 
 #[test]
 fn a_manifest_is_joined_with_that_of_arcore() {
-    let joined = manifest_for(OURS, Some(ARCORE), (true, 36)).expect("a manifest");
+    let joined = manifest_for(OURS, Some(ARCORE), true, 36).expect("a manifest");
     let expected = r#"<manifest><queries><package/></queries><application android:hasCode="true"><activity/><meta-data/></application></manifest>"#;
     assert_eq!(joined, expected);
 }
 
 #[test]
 fn without_classes_a_manifest_has_no_code() {
-    let alone = manifest_for(OURS, None, (false, 36)).expect("a manifest");
+    let alone = manifest_for(OURS, None, false, 36).expect("a manifest");
     assert_eq!(alone, OURS.replace("true", "false"));
     assert!(
-        manifest_for(&alone, None, (false, 36)).is_err(),
+        manifest_for(&alone, None, false, 36).is_err(),
         "says nothing to replace"
     );
 }
@@ -27,12 +27,12 @@ fn without_classes_a_manifest_has_no_code() {
 #[test]
 fn what_a_framework_does_not_know_is_left_out() {
     let ours = OURS.replace("hasCode", "enableOnBackInvokedCallback=\"false\" android:hasCode");
-    let old = manifest_for(&ours, Some(ARCORE), (true, 29)).expect("a manifest");
+    let old = manifest_for(&ours, Some(ARCORE), true, 29).expect("a manifest");
     assert!(
         !old.contains("queries") && !old.contains("Invoked") && old.contains("<meta-data/>"),
         "{old}"
     );
-    let new = manifest_for(&ours, Some(ARCORE), (true, 33)).expect("a manifest");
+    let new = manifest_for(&ours, Some(ARCORE), true, 33).expect("a manifest");
     assert!(
         new.contains("<queries><package/></queries>") && new.contains("Invoked"),
         "{new}"
@@ -46,9 +46,10 @@ fn a_platforms_folder_says_its_level() {
         [
             level("p/android-36"),
             level("p/android-36.1"),
+            level("p/android-36-ext18"),
             level("p/android-Baklava")
         ],
-        [Some(36), Some(36), None]
+        [Some(36), Some(36), Some(36), None]
     );
     let folder = temporary("levels");
     for name in ["android-9", "android-36", "android-35"] {
