@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 use android_activity::{AndroidApp, WindowManagerFlags};
+use android_media::heat::Thermometer;
 use android_media::{display, media_store};
 use app_core::app::Permission;
 use arcore::java::{Java, JavaHost};
@@ -13,7 +14,6 @@ use jni::objects::{JObject, JValue};
 use jni::refs::Global;
 use jni::{Env, JavaVM, jni_sig, jni_str};
 
-use crate::heat::Thermometer;
 use crate::phone::{Phone, permission};
 use app_shell::guard::guarded;
 

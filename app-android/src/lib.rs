@@ -23,8 +23,6 @@ pub mod phone;
 pub mod shell;
 
 #[cfg(target_os = "android")]
-mod heat;
-#[cfg(target_os = "android")]
 mod java;
 #[cfg(target_os = "android")]
 mod lifecycle;

@@ -1,13 +1,15 @@
-//! Videos by Android's own encoder, copies of files where other apps find them, and what the display reports.
+//! Videos by Android's own encoder, copies of files where other apps find them, what the display reports, and how hot the phone is.
 //!
-//! `yuv`, the layout of samples that encoders take, and `stored`, where a file belongs, run in desktop tests; `video`, `media_store` and `display`
-//! are compiled for Android alone.
+//! `yuv`, the layout of samples that encoders take, and `stored`, where a file belongs, run in desktop tests; `video`, `media_store`,
+//! `display` and `heat` are compiled for Android alone.
 
 pub mod stored;
 pub mod yuv;
 
 #[cfg(target_os = "android")]
 pub mod display;
+#[cfg(target_os = "android")]
+pub mod heat;
 #[cfg(target_os = "android")]
 pub mod media_store;
 #[cfg(target_os = "android")]

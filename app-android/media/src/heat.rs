@@ -17,14 +17,16 @@ type Acquire = unsafe extern "C" fn() -> *mut c_void;
 type Status = unsafe extern "C" fn(*mut c_void) -> c_int;
 
 /// The thermal manager, for as long as the process lives.
-pub(crate) struct Thermometer {
+#[derive(Debug)]
+pub struct Thermometer {
     manager: NonNull<c_void>,
     status: Status,
 }
 
 impl Thermometer {
     /// None before Android 11.
-    pub(crate) fn find() -> Option<Self> {
+    #[must_use]
+    pub fn find() -> Option<Self> {
         // SAFETY: the name ends with a zero; the system's own library is loaded already.
         let library = NonNull::new(unsafe { dlopen(c"libandroid.so".as_ptr(), NOW) })?;
         let look_up = |name: &std::ffi::CStr| {
@@ -46,7 +48,8 @@ impl Thermometer {
     }
 
     /// An `AThermalStatus`.
-    pub(crate) fn status(&self) -> i32 {
+    #[must_use]
+    pub fn status(&self) -> i32 {
         // SAFETY: the manager is never released.
         unsafe { (self.status)(self.manager.as_ptr()) }
     }
