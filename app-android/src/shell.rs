@@ -59,8 +59,6 @@ pub struct Shell<P> {
     /// When heat, and when the display's turn was looked at.
     looked: Option<Instant>,
     turned: Option<Instant>,
-    /// As the app asks for them.
-    frames_per_s: u32,
 }
 
 impl<P: Phone> Shell<P> {
@@ -100,7 +98,6 @@ impl<P: Phone> Shell<P> {
             start: Instant::now(),
             looked: None,
             turned: None,
-            frames_per_s: 60,
         };
         let event = shell.feed.come_back();
         shell.tell_some(event);
@@ -193,7 +190,6 @@ impl<P: Phone> Shell<P> {
         if let (Some(text), Some(own)) = (self.feed.take_kept(), self.phone.own_folder()) {
             kept::store_or_say(&own, CAMERA_FILE, text.as_bytes());
         }
-        self.pace.set_rate(self.frames_per_s);
     }
 
     /// Draws on the core's surface. A device or surface that is lost is to be brought anew.
@@ -273,7 +269,7 @@ impl<P: Phone> Shell<P> {
             PlatformCommand::KeepAwake(is_awake) => self.phone.keep_awake(is_awake),
             PlatformCommand::ReopenDevice => self.wants_device = true,
             PlatformCommand::Announce(step) => eprintln!("app-android: {step:?}"),
-            PlatformCommand::FrameRate(frames_per_s) => self.frames_per_s = frames_per_s,
+            PlatformCommand::FrameRate(frames_per_s) => self.pace.set_rate(frames_per_s),
             // ARCore keeps exposure to itself.
             PlatformCommand::LockExposure(_) | PlatformCommand::Underexpose(_) => {}
         }

@@ -179,10 +179,10 @@ impl Feed {
         }
         let tracker = self.tracker.as_mut()?;
         let lacks_card = tracker.lacks_card();
-        if lacks_card && !std::mem::replace(&mut self.said_no_card, lacks_card) {
+        let had_said = std::mem::replace(&mut self.said_no_card, lacks_card);
+        if lacks_card && !had_said {
             return Some(ShellEvent::CardRefused);
         }
-        self.said_no_card = lacks_card;
         match tracker.update(now) {
             Ok(frame) => frame.map(|frame| ShellEvent::Frame(Box::new(frame))),
             Err(FrameError::Failed(failure)) => Some(self.fail(failure)),

@@ -9,7 +9,7 @@ use app_core::frame::FrameInput;
 use app_core::lens::Distortion;
 use app_core::scene::{Image, Scene};
 use desk::alignment::{Alignments, Asked, Lights, Source};
-use desk::check::aligned_session;
+use desk::check::aligned_session::{self, Assumed};
 use desk::files::{BUNDLED_SESSION, SESSION_FILE};
 use desk::opened;
 use desk::stored::Stored;
@@ -163,7 +163,13 @@ fn an_aligned_session_has_the_lens_that_was_found() {
         .with_lens(opened.lens);
     let out = folder.with_extension("aligned");
     let _ = fs::remove_dir_all(&out);
-    aligned_session::write(&Stored::open(&folder).unwrap(), &out, &alignments).unwrap();
+    aligned_session::write(
+        &Stored::open(&folder).unwrap(),
+        &out,
+        &alignments,
+        Assumed::LeftOut,
+    )
+    .unwrap();
     let index: Value = serde_json::from_slice(&fs::read(out.join(SESSION_FILE)).unwrap()).unwrap();
     for (key, term) in [("k1", report.distortion.k1), ("k2", report.distortion.k2)] {
         assert_eq!(index["lens"][key].as_f64(), Some(term));

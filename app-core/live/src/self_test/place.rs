@@ -9,7 +9,7 @@ use app_scene::camera_frame::{CameraImage, CodeRange, LumaCoefficients, PlanarIm
 use app_scene::frame::FrameInput;
 use app_scene::geometry::color::srgb_from_linear;
 use app_scene::scene::{Camera, Image, Intrinsics, Light, Plate, Pose, Receiver, Scene, Surface};
-use app_scene::toy::{NodePose, Toy, ToyError, Trs};
+use app_scene::toy::{NodePose, Toy, ToyError, Trs, binary_gltf};
 
 /// Width and height of the picture.
 pub const SIZE_PX: [u32; 2] = [64, 48];
@@ -251,7 +251,7 @@ fn toy_file() -> Vec<u8> {
         "bufferViews": views,
         "buffers": [{ "byteLength": bin.len() }],
     });
-    container(json.to_string().into_bytes(), bin)
+    binary_gltf(json.to_string().as_bytes(), &bin)
 }
 
 fn accessor(view: usize, component: u32, kind: &str, count: usize) -> Value {
@@ -281,20 +281,4 @@ fn faces(solid: &Solid) -> (Vec<[f32; 3]>, Vec<u32>) {
         }
     }
     (corners, indices)
-}
-
-/// A header and two chunks. Source: glTF 2.0, section 4.4.
-fn container(mut json: Vec<u8>, bin: Vec<u8>) -> Vec<u8> {
-    json.resize(json.len().next_multiple_of(4), b' ');
-    // Some hundred bytes each.
-    let length = |n: usize| u32::try_from(n).unwrap_or(0).to_le_bytes();
-    let mut file = b"glTF".to_vec();
-    file.extend(2_u32.to_le_bytes());
-    file.extend(length(28 + json.len() + bin.len()));
-    for (kind, chunk) in [(b"JSON", json), (b"BIN\0", bin)] {
-        file.extend(length(chunk.len()));
-        file.extend(kind);
-        file.extend(chunk);
-    }
-    file
 }

@@ -40,6 +40,23 @@ const HEADER_BYTES: u32 = 12;
 const JSON_CHUNK: &str = "JSON chunk";
 const JSON_WITHOUT_DATA: &str = "JSON text without its data URIs";
 
+/// Binary glTF: a header and two chunks, each filled up to four bytes. A file of more than 4 GiB has no true lengths.
+///
+/// Source: glTF 2.0 specification, section 4.4.
+#[must_use]
+pub fn binary_gltf(json: &[u8], bin: &[u8]) -> Vec<u8> {
+    let filled = |chunk: &[u8]| chunk.len().next_multiple_of(4);
+    let word = |value: usize| u32::try_from(value).unwrap_or(u32::MAX).to_le_bytes();
+    let mut file = [*b"glTF", word(2), word(28 + filled(json) + filled(bin))].concat();
+    for (kind, chunk, filler) in [(b"JSON", json, b' '), (b"BIN\0", bin, 0)] {
+        file.extend(word(filled(chunk)));
+        file.extend(kind);
+        file.extend(chunk);
+        file.resize(file.len().next_multiple_of(4), filler);
+    }
+    file
+}
+
 /// Reads binary glTF, or glTF as JSON alone.
 pub(super) fn read_tree(bytes: &[u8]) -> Result<Tree<'_>, Flaw> {
     check_limit("bytes", bytes.len(), MAX_FILE_BYTES, "file")?;

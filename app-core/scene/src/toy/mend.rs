@@ -93,6 +93,10 @@ pub(super) fn mend(tree: &mut Value, warnings: &mut Vec<ToyWarning>) -> Result<E
     flaw.map_or(Ok(extras), Err)
 }
 
+fn list<'v>(of: &'v Value, name: &str) -> impl Iterator<Item = &'v Value> {
+    of.get(name).and_then(Value::as_array).into_iter().flatten()
+}
+
 /// Calls for each object of a list.
 fn each(tree: &mut Value, list: &str, mut call: impl FnMut(usize, &mut Map<String, Value>)) {
     let entries = tree.get_mut(list).and_then(Value::as_array_mut);
@@ -113,15 +117,9 @@ fn index(value: Option<&Value>) -> Option<usize> {
 
 /// Refuses primitives whose corners are compressed by Draco and not there in plain form, too.
 fn refuse_draco(tree: &Value) -> Result<(), Flaw> {
-    let list = |of: &'_ Value, name: &str| {
-        of.get(name)
-            .and_then(Value::as_array)
-            .cloned()
-            .unwrap_or_default()
-    };
     let accessors = tree.get("accessors").and_then(Value::as_array);
-    for (i, mesh) in list(tree, "meshes").iter().enumerate() {
-        for (j, primitive) in list(mesh, "primitives").iter().enumerate() {
+    for (i, mesh) in list(tree, "meshes").enumerate() {
+        for (j, primitive) in list(mesh, "primitives").enumerate() {
             let is_draco = primitive.pointer(&format!("/extensions/{DRACO}")).is_some();
             let position = index(primitive.pointer("/attributes/POSITION"));
             let accessor = position.and_then(|position| accessors?.get(position));

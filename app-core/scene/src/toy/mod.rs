@@ -59,6 +59,7 @@ use std::sync::{Arc, OnceLock};
 pub use bounds::Bounds;
 pub use casters::Caster;
 pub use clip::{Clip, ClipId};
+pub use container::binary_gltf;
 pub use error::{ToyError, ToyProblem};
 pub use graph::Trs;
 pub use material::{Material, MaterialTexture, Wrap};

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::base64::{self, Uri};
 use super::check::check_limit;
-use super::container::{Tree, read_tree};
+use super::container::{Tree, binary_gltf, read_tree};
 use super::error::{Flaw, ToyError, ToyProblem};
 use super::limits::MAX_FILE_BYTES;
 use super::mend::MESHOPT;
@@ -148,27 +148,11 @@ impl Packing<'_> {
         Ok(())
     }
 
-    /// Source: glTF 2.0 specification, section 4.4 (binary glTF layout).
     fn glb(self, mut json: Value) -> Result<Vec<u8>, Flaw> {
         json["buffers"][0] = json!({ "byteLength": self.bin.len() });
-        let mut text = json.to_string().into_bytes();
-        text.resize(text.len().next_multiple_of(4), b' ');
-        let word = |value: usize| {
-            let value = check_limit("bytes", value, MAX_FILE_BYTES, "file")?;
-            Ok(u32::try_from(value).unwrap_or(u32::MAX).to_le_bytes())
-        };
-        let length = 12 + 8 + text.len() + 8 + self.bin.len();
-        let head = [*b"glTF", 2_u32.to_le_bytes(), word(length)?];
-        let parts: [&[u8]; 7] = [
-            head.as_flattened(),
-            &word(text.len())?,
-            b"JSON",
-            &text,
-            &word(self.bin.len())?,
-            b"BIN\0",
-            &self.bin,
-        ];
-        Ok(parts.concat())
+        let file = binary_gltf(json.to_string().as_bytes(), &self.bin);
+        check_limit("bytes", file.len(), MAX_FILE_BYTES, "file")?;
+        Ok(file)
     }
 }
 

@@ -7,7 +7,7 @@ use anyhow::Context;
 use app_core::session::Session;
 use clap::Parser;
 use desk::alignment::{Alignments, Asked, Lights, RatioArgs};
-use desk::check::aligned_session;
+use desk::check::aligned_session::{self, Assumed};
 use desk::opened;
 use desk::opened::Opened;
 use desk::program::exit_code;
@@ -42,7 +42,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     };
     let alignments = Alignments::find(&capture, 0..capture.n_frames(), asked)?.with_lens(lens);
     let session = Stored::open(&args.session)?;
-    let n_corrected = aligned_session::write(&session, &args.out, &alignments)?;
+    let n_corrected = aligned_session::write(&session, &args.out, &alignments, Assumed::LeftOut)?;
     println!(
         "{n_corrected} of {} frames have a corrected camera, focal length, lens, pose, scale or lights: {}",
         capture.n_frames(),

@@ -16,20 +16,29 @@ use crate::convert;
 use crate::files::SESSION_FILE;
 use crate::stored::Stored;
 
+/// What becomes of lights that are assumed, since none was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Assumed {
+    /// The session's list stays: they are no finding.
+    LeftOut,
+    /// They are written: pictures are to be made by them.
+    Written,
+}
+
 /// Writes a session anew, as a folder or as a recording, its index with what was found. Returns the number of corrected
 /// frames.
 ///
 /// # Errors
 /// When the new one is there already or would lie in the session, or a file is a link or cannot be read or written.
-pub fn write(from: &Stored, to: &Path, alignments: &Alignments) -> anyhow::Result<usize> {
+pub fn write(from: &Stored, to: &Path, alignments: &Alignments, assumed: Assumed) -> anyhow::Result<usize> {
     let bytes = from.read(SESSION_FILE, MAX_INDEX_BYTES).context(SESSION_FILE)?;
     let mut index: Value = serde_json::from_slice(&bytes)?;
-    let n_corrected = correct(&mut index, alignments);
+    let n_corrected = correct(&mut index, alignments, assumed);
     convert::write(from, Some(format!("{index:#}\n").into_bytes()), to)?;
     Ok(n_corrected)
 }
 
-fn correct(index: &mut Value, alignments: &Alignments) -> usize {
+fn correct(index: &mut Value, alignments: &Alignments, assumed: Assumed) -> usize {
     let mut n_corrected = 0;
     let has_other_lens = set_lens(index, alignments.lens());
     let focal_ratio = alignments.focal_ratio();
@@ -59,8 +68,9 @@ fn correct(index: &mut Value, alignments: &Alignments) -> usize {
             index["frames"][frame]["world_from_camera"] =
                 json!(alignment.camera.world_from_camera.to_cols_array());
         }
-        // Where none was found in place of the list, it stays; what is assumed is no finding.
-        let is_found = |lights: &&Arc<[Light]>| !lights.is_empty() && alignment.report.assumed.is_none();
+        // Where none was found in place of the list, it stays.
+        let is_taken = assumed == Assumed::Written || alignment.report.assumed.is_none();
+        let is_found = |lights: &&Arc<[Light]>| !lights.is_empty() && is_taken;
         if let Some(lights) = alignment.lights.as_ref().filter(is_found) {
             let listed = index["lights"].as_array().cloned().unwrap_or_default();
             let mut entries = if aligned.put_aside.is_empty() {

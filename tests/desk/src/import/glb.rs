@@ -1,5 +1,6 @@
 //! A binary glTF file of one mesh.
 
+use app_core::toy::binary_gltf;
 use serde_json::{Value, json};
 
 /// Corners of a mesh and what they have; every list is empty or as long as the positions.
@@ -94,16 +95,5 @@ pub(super) fn glb(mesh: &Mesh, texture: Option<&Texture>) -> Vec<u8> {
     tree["bufferViews"] = parts.views.into();
     tree["accessors"] = parts.accessors.into();
     tree["buffers"] = json!([{ "byteLength": parts.bin.len() }]);
-    container(tree.to_string().into_bytes(), parts.bin)
-}
-
-/// Two chunks, each filled up to four bytes.
-fn container(mut json: Vec<u8>, mut bin: Vec<u8>) -> Vec<u8> {
-    json.resize(json.len().next_multiple_of(4), b' ');
-    bin.resize(bin.len().next_multiple_of(4), 0);
-    let word = |value: usize| u32::try_from(value).unwrap_or(u32::MAX).to_le_bytes();
-    let header = [*b"glTF", word(2), word(28 + json.len() + bin.len())].concat();
-    let json_head = [word(json.len()), *b"JSON"].concat();
-    let bin_head = [word(bin.len()), *b"BIN\0"].concat();
-    [header, json_head, json, bin_head, bin].concat()
+    binary_gltf(tree.to_string().as_bytes(), &parts.bin)
 }

@@ -10,7 +10,7 @@ use super::error::{ImportError, ImportReason};
 use super::imported::{Imported, ImportedFrame};
 use super::lens::Lens;
 use super::paths::{Known, Taken};
-use super::values::{is_scaled_rotation, number, ordered, time_s, without_picture};
+use super::values::{is_scaled_rotation, number, numbers, ordered, time_s, without_picture};
 
 /// How far the last row of a matrix may be from 0 0 0 1.
 const SAME_ROW: f64 = 1e-6;
@@ -205,15 +205,8 @@ fn matrix(file: &str, field: &str, rows: &[Vec<f64>]) -> Result<DMat4, ImportErr
         return Err(wrong(rows.len(), "3 or 4 rows of 4"));
     }
     let mut all = [DVec4::ZERO, DVec4::ZERO, DVec4::ZERO, DVec4::W];
-    for (row, numbers) in all.iter_mut().zip(rows) {
-        let four: [f64; 4] = numbers
-            .as_slice()
-            .try_into()
-            .map_err(|_| wrong(numbers.len(), "4"))?;
-        for value in four {
-            number(file, field, value)?;
-        }
-        *row = DVec4::from_array(four);
+    for (row, values) in all.iter_mut().zip(rows) {
+        *row = DVec4::from_array(numbers(file, field, (values, "4"))?);
     }
     let matrix = DMat4::from_cols(all[0], all[1], all[2], all[3]).transpose();
     let is_affine = all[3].abs_diff_eq(DVec4::W, SAME_ROW);

@@ -6,15 +6,12 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::{Context, ensure};
-use app_core::session::record::LightRecord;
 use app_core::session::{Capture, Session};
 use desk::alignment::{Alignments, Asked};
-use desk::check::aligned_session;
+use desk::check::aligned_session::{self, Assumed};
 use desk::files::SESSION_FILE;
 use desk::output::write_whole;
-use desk::program::open_session;
 use desk::stored::Stored;
-use serde_json::json;
 
 use super::folder::{Film, SESSION_FOLDER, index_of};
 use super::timeline::ROUNDING_SECS;
@@ -42,36 +39,27 @@ pub(super) fn times_secs(session: &Stored) -> anyhow::Result<Vec<f64>> {
 ///
 /// # Errors
 /// When a frame cannot be read or aligned, or the copy cannot be written.
-pub(super) fn write_aligned(path: &Path, to: &Path, n_used: usize, say: &dyn Fn(&str)) -> anyhow::Result<()> {
-    let session = Stored::open(path)?;
-    let capture = Capture::open(open_session(path)?)?;
+pub(super) fn write_aligned(
+    session: &Stored,
+    capture: &Capture,
+    n_used: usize,
+    to: &Path,
+    say: &dyn Fn(&str),
+) -> anyhow::Result<()> {
     let given = capture.scene();
     let mut alignments = Alignments::new(given, Asked::default());
     for index in 0..n_used {
         say(&format!("aligning photograph {} of {n_used}", index + 1));
         alignments.align(given, index, &capture.frame(index)?)?;
     }
-    aligned_session::write(&session, to, &alignments)?;
-    let mut warnings = BTreeSet::new();
-    for index in 0..n_used {
-        let Some(aligned) = alignments.of(index) else {
-            continue;
-        };
-        warnings.extend(aligned.alignment.warnings.iter().map(ToString::to_string));
-        if alignments.changed_scene(given, index).is_some() {
-            warnings.insert(
-                "a moving film takes the toy's shape and the plates' light as the session has them"
-                    .to_owned(),
-            );
-        }
-        // An aligned session leaves out what is assumed; a film needs it.
-        let assumed =
-            { aligned.alignment.lights.as_ref() }.filter(|_| aligned.alignment.report.assumed.is_some());
-        if let Some(lights) = assumed {
-            let mut index = index_of(&Stored::open(to)?)?;
-            index["lights"] = json!(lights.iter().map(LightRecord::from).collect::<Vec<_>>());
-            write_whole(&to.join(SESSION_FILE), format!("{index:#}\n").as_bytes())?;
-        }
+    aligned_session::write(session, to, &alignments, Assumed::Written)?;
+    let aligned = (0..n_used).filter_map(|index| alignments.of(index));
+    let warnings = aligned.flat_map(|aligned| &aligned.alignment.warnings);
+    let mut warnings: BTreeSet<String> = warnings.map(ToString::to_string).collect();
+    if (0..n_used).any(|index| alignments.changed_scene(given, index).is_some()) {
+        warnings.insert(
+            "a moving film takes the toy's shape and the plates' light as the session has them".to_owned(),
+        );
     }
     let lines: String = warnings.iter().map(|warning| format!("{warning}\n")).collect();
     write_whole(&to.join(WARNINGS_FILE), lines.as_bytes())?;
@@ -95,17 +83,16 @@ pub(super) fn warnings(folder: &Path) -> anyhow::Result<BTreeSet<String>> {
 ///
 /// # Errors
 /// When the index cannot be read.
-pub(super) fn said_of_photographs(path: &Path, film: &Film) -> anyhow::Result<String> {
-    let session = Stored::open(path)?;
+pub(super) fn said_of_photographs(session: &Stored, film: &Film) -> anyhow::Result<String> {
     if film.is_moving {
-        let end_secs = times_secs(&session)?.last().copied().unwrap_or_default();
+        let end_secs = times_secs(session)?.last().copied().unwrap_or_default();
         let n_frames = film.frames.len() as f64;
         let film_secs = film.timing.from_secs + (n_frames - 1.0) / film.timing.fps;
         let is_longer = film_secs > end_secs + ROUNDING_SECS;
         let said = format!("the photographs end at {end_secs:.2} s: the last one stays to the film's end\n");
         return Ok(if is_longer { said } else { String::new() });
     }
-    let index = index_of(&session)?;
+    let index = index_of(session)?;
     let frames = index["frames"].as_array().into_iter().flatten();
     let photographs: BTreeSet<&str> = frames.filter_map(|frame| frame["image"].as_str()).collect();
     Ok(match photographs.len() {

@@ -72,16 +72,15 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     let film = FilmFolder::film_in(folder)?.context("there is no film.json")?;
     let missing = missing(folder, &film, range);
     let capture = Capture::open(Stored::open(folder.join(SESSION_FOLDER))?)?;
-    let Some(first) = missing.first() else {
+    if missing.is_empty() {
         return Ok(());
-    };
+    }
     let mut studio = Studio::new(&film, &capture)?;
-    let input = studio.photographed(first.photograph)?;
     let mut core = pollster::block_on(Core::headless(&wgpu::Instance::default(), adapter))?;
     let scene = studio.alignments.scene(capture.scene());
     let scene = { studio.alignments.changed_scene(&scene, 0) }.unwrap_or(scene);
     let toy = scene.toy.clone();
-    core.set_scene(with_film(scene, &film, input.world_from_shown)?, film.preset()?)?;
+    core.set_scene(with_film(scene, &film, studio.world_from_shown)?, film.preset()?)?;
     if film.has_layers {
         core.want_layers()?;
     }
@@ -95,19 +94,10 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     } else {
         usize::MAX
     };
-    let photographs = film.photographs();
-    let mut shown = Position { index: None, input };
     for frame in missing.into_iter().take(n_pictures) {
         let pose = pose_of(&toy, &frame.pose)?;
-        let at = { photographs.iter() }.position(|photograph| *photograph == frame.photograph);
-        for index in shown.to_learn(at.unwrap_or_default()) {
-            shown.index = Some(index);
-            shown.input = studio.photographed(photographs[index])?;
-            if Some(index) != at {
-                core.frame(&shown.input.clone().with_shown_pose(pose.clone()))?;
-            }
-        }
-        let report = core.frame(&shown.input.clone().with_shown_pose(pose));
+        let input = studio.input(&mut core, frame.photograph, &pose)?;
+        let report = core.frame(&input.with_shown_pose(pose));
         let report = report.with_context(|| frame.file.clone())?;
         write_picture(folder, &studio, frame, &core)?;
         warnings.say(report.warnings.iter().map(ToString::to_string))?;
@@ -122,50 +112,57 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     Ok(())
 }
 
-/// Where in the film's photographs the core is.
-struct Position {
-    /// Among those that the film shows; none before the first.
-    index: Option<usize>,
-    input: FrameInput,
-}
-
-impl Position {
-    /// Photographs that the core is to be shown for that at `index` to be the latest: it, after those before it.
-    fn to_learn(&self, index: usize) -> Range<usize> {
-        match self.index {
-            Some(latest) if latest == index => index..index,
-            Some(latest) if latest < index => (latest + 1).max(index.saturating_sub(N_LEARNED))..index + 1,
-            _ => index.saturating_sub(N_LEARNED)..index + 1,
-        }
-    }
-}
-
 /// What the pictures are made from.
 struct Studio<'a> {
     film: &'a Film,
     capture: &'a Capture,
+    /// The photographs that the film shows, in the order of its time.
+    photographs: Vec<usize>,
     alignments: Alignments,
     /// Where the toy is shown throughout; none where it stands.
     world_from_shown: Option<DMat4>,
+    /// The photograph that the core was shown last, by its place among those of the film.
+    latest: Option<(usize, FrameInput)>,
 }
 
 impl<'a> Studio<'a> {
     fn new(film: &'a Film, capture: &'a Capture) -> anyhow::Result<Self> {
-        let aligned = || Alignments::new(capture.scene(), Asked::default());
+        let first = capture.frame(0)?;
+        let mut alignments = Alignments::none();
+        if !film.is_moving {
+            // Each process aligns the photograph for itself, and so in the same way: no file holds all that is found.
+            if !film.is_as_given {
+                alignments = Alignments::new(capture.scene(), Asked::default());
+            }
+            alignments.align(capture.scene(), 0, &first)?;
+        }
         Ok(Self {
             film,
             capture,
-            // Each process aligns the photograph for itself, and so in the same way: no file holds all that is found.
-            alignments: if film.is_as_given || film.is_moving {
-                Alignments::none()
-            } else {
-                aligned()
-            },
-            world_from_shown: capture.frame(0)?.world_from_shown,
+            photographs: film.photographs(),
+            alignments,
+            world_from_shown: first.world_from_shown,
+            latest: None,
         })
     }
 
-    /// A photograph as the core is given it.
+    /// A photograph as the core is given it, which has been shown those before it, in some pose.
+    fn input(&mut self, core: &mut Core, photograph: usize, pose: &Pose) -> anyhow::Result<FrameInput> {
+        let at = self.photographs.partition_point(|shown| *shown < photograph);
+        let next = match &self.latest {
+            Some((latest, input)) if *latest == at => return Ok(input.clone()),
+            Some((latest, _)) if *latest < at => latest + 1,
+            _ => 0,
+        };
+        for index in next.max(at.saturating_sub(N_LEARNED))..at {
+            let before = self.photographed(self.photographs[index])?;
+            core.frame(&before.with_shown_pose(pose.clone()))?;
+        }
+        let input = self.photographed(photograph)?;
+        self.latest = Some((at, input.clone()));
+        Ok(input)
+    }
+
     fn photographed(&mut self, index: usize) -> anyhow::Result<FrameInput> {
         let frame = self.capture.frame(index)?;
         if self.film.is_moving {

@@ -89,7 +89,8 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
     let named = || order.session.display().to_string();
     let capture = Capture::open(open_session(&order.session)?).with_context(named)?;
     check_output(order, &capture)?;
-    let film = planned(order, &capture)?;
+    let session = Stored::open(&order.session)?;
+    let film = planned(order, &capture, &session)?;
     let last = film.frames.last().context("a film without frames")?;
     let all = order.start..last.number + 1;
     let range = match &order.frames {
@@ -108,7 +109,9 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
             let _ = writeln!(io::stderr(), "{line}");
         }
     };
-    folder.begin(&film, order.is_forced, |to| write_session(order, &film, to, &say))?;
+    folder.begin(&film, order.is_forced, |to| {
+        write_session(&session, &capture, &film, to, &say)
+    })?;
     let made_before = by_others(&folder, &film)?;
     outputs::write_xsheet(folder.path(), &film, &clip_facts(&capture.scene().toy))?;
     let n_missing = missing(folder.path(), &film, &range).len();
@@ -139,7 +142,7 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
         film.frames.len(),
         order.out.display()
     );
-    said += &moving::said_of_photographs(&order.session, &film)?;
+    said += &moving::said_of_photographs(&session, &film)?;
     if !is_part && !order.is_without_preview {
         say("writing previews");
         said += &outputs::write_previews(folder.path(), &film)?;
@@ -202,16 +205,15 @@ fn check_output(order: &Order, capture: &Capture) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn planned(order: &Order, capture: &Capture) -> anyhow::Result<Film> {
+fn planned(order: &Order, capture: &Capture, session: &Stored) -> anyhow::Result<Film> {
     let scene = capture.scene();
     let clips = clip_facts(&scene.toy);
     let items = items(&order.clips, &clips).context("--clips")?;
     let poses = frames(&items, &clips, &order.timing)?;
     let name = order.name.clone();
     let name = name.unwrap_or_else(|| NamePattern::of_session(&scene.name));
-    let session = Stored::open(&order.session)?;
     let times_secs = if order.is_moving {
-        moving::times_secs(&session)?
+        moving::times_secs(session)?
     } else {
         vec![0.0]
     };
@@ -220,7 +222,7 @@ fn planned(order: &Order, capture: &Capture) -> anyhow::Result<Film> {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         made_by: made_by(order)?,
         name: scene.name.clone(),
-        sources: sources(&session, order.is_moving)?,
+        sources: sources(session, order.is_moving)?,
         is_as_given: order.is_as_given,
         is_moving: order.is_moving,
         preset: order.preset.name().to_owned(),
@@ -245,12 +247,18 @@ fn planned(order: &Order, capture: &Capture) -> anyhow::Result<Film> {
 
 /// A copy of the session: what is made later is made of that. Of a film of one photograph it has the first frame alone; each process
 /// aligns that for itself. The photographs of a moving film are aligned here, as far as it shows them.
-fn write_session(order: &Order, film: &Film, to: &Path, say: &dyn Fn(&str)) -> anyhow::Result<()> {
+fn write_session(
+    session: &Stored,
+    capture: &Capture,
+    film: &Film,
+    to: &Path,
+    say: &dyn Fn(&str),
+) -> anyhow::Result<()> {
     if film.is_moving && !film.is_as_given {
-        let last = film.frames.iter().map(|frame| frame.photograph).max();
-        return moving::write_aligned(&order.session, to, last.map_or(0, |last| last + 1), say);
+        let n_used = film.photographs().last().map_or(0, |last| last + 1);
+        return moving::write_aligned(session, capture, n_used, to, say);
     }
-    convert::write(&Stored::open(&order.session)?, None, to)?;
+    convert::write(session, None, to)?;
     if film.is_moving {
         return Ok(());
     }

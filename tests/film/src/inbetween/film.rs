@@ -85,7 +85,6 @@ struct Ready<'a> {
     key: &'a Key,
     core: Core,
     world_from_shown: DMat4,
-    is_said: bool,
 }
 
 impl<'a> Ready<'a> {
@@ -99,16 +98,11 @@ impl<'a> Ready<'a> {
             key,
             core,
             world_from_shown: keys.world_from_shown,
-            is_said: false,
         })
     }
 
-    /// What the core has learned of the key that may be wrong; once.
-    fn warnings(&mut self) -> Result<Vec<String>, InbetweenError> {
-        if self.is_said {
-            return Ok(Vec::new());
-        }
-        self.is_said = true;
+    /// What the core has learned of the key that may be wrong.
+    fn warnings(&self) -> Result<Vec<String>, InbetweenError> {
         let index = self.index;
         let warnings = self.core.read_fit_warnings();
         let warnings = warnings.map_err(|reason| InbetweenError::Core { index, reason })?;
@@ -274,7 +268,8 @@ impl Maker<'_> {
 
     /// What a key makes of a pose.
     fn picture(&mut self, key: usize, pose: &Pose) -> Result<LightPicture, InbetweenError> {
-        if !self.ready.iter().any(|ready| ready.index == key) {
+        let is_new = !self.ready.iter().any(|ready| ready.index == key);
+        if is_new {
             // Keys before the one before are not needed any more.
             self.ready.retain(|ready| ready.index + 1 == key);
             let ready = Ready::new(self.keys, key, self.core, self.options.preset)?;
@@ -283,7 +278,9 @@ impl Maker<'_> {
         let ready = self.ready.iter_mut().find(|ready| ready.index == key);
         let ready = ready.ok_or(InbetweenError::NoKey)?;
         let picture = ready.picture(pose)?;
-        self.warnings.extend(ready.warnings()?);
+        if is_new {
+            self.warnings.extend(ready.warnings()?);
+        }
         Ok(picture)
     }
 

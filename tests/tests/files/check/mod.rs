@@ -8,7 +8,8 @@ use std::path::Path;
 use app_core::scene::{Camera, Light};
 use app_core::session::{Capture, Session};
 use desk::alignment::{Alignments, Asked, Lights, Ratio, Source};
-use desk::check::{aligned_session, check};
+use desk::check::aligned_session::{self, Assumed};
+use desk::check::check;
 use desk::files::{BUNDLED_SESSION, Folder, SESSION_FILE};
 use desk::stored::Stored;
 use glam::{DMat4, DVec3};
@@ -238,7 +239,13 @@ fn an_aligned_session_has_the_focal_length_that_was_found() {
         ..Asked::default()
     };
     let alignments = Alignments::find(&capture, 0..1, asked).unwrap();
-    aligned_session::write(&Stored::open(&session.0).unwrap(), &out, &alignments).unwrap();
+    aligned_session::write(
+        &Stored::open(&session.0).unwrap(),
+        &out,
+        &alignments,
+        Assumed::LeftOut,
+    )
+    .unwrap();
     let cameras = [&recorded.0, &session.0, &out].map(|folder| {
         let capture = Capture::open(Folder::open(folder).unwrap()).unwrap();
         let frames = [0, 1].map(|index| capture.frame(index).unwrap().camera);
@@ -267,7 +274,13 @@ fn an_aligned_session_has_the_lights_that_were_found() {
         ..Asked::default()
     };
     let alignments = Alignments::find(&capture, 0..1, asked).unwrap();
-    aligned_session::write(&Stored::open(&session.0).unwrap(), &out, &alignments).unwrap();
+    aligned_session::write(
+        &Stored::open(&session.0).unwrap(),
+        &out,
+        &alignments,
+        Assumed::LeftOut,
+    )
+    .unwrap();
     assert_eq!(wrong(&out), Vec::<String>::new());
     let bulb = bundled_session();
     let found = Capture::open(Folder::open(&out).unwrap()).unwrap();
@@ -297,13 +310,35 @@ fn an_aligned_session_is_right() {
     let capture = Capture::open(Folder::open(&session.0).unwrap()).unwrap();
     let alignments = Alignments::find(&capture, 0..capture.n_frames(), Asked::default()).unwrap();
     assert_eq!(
-        aligned_session::write(&Stored::open(&session.0).unwrap(), &out, &alignments).unwrap(),
+        aligned_session::write(
+            &Stored::open(&session.0).unwrap(),
+            &out,
+            &alignments,
+            Assumed::LeftOut
+        )
+        .unwrap(),
         capture.n_frames()
     );
     assert_eq!(wrong(&out), Vec::<String>::new());
     // Nothing is written over, nor into the session that is read.
     let inside = session.0.join("inside");
-    assert!(aligned_session::write(&Stored::open(&session.0).unwrap(), &inside, &alignments).is_err());
+    assert!(
+        aligned_session::write(
+            &Stored::open(&session.0).unwrap(),
+            &inside,
+            &alignments,
+            Assumed::LeftOut
+        )
+        .is_err()
+    );
     assert!(!inside.exists());
-    assert!(aligned_session::write(&Stored::open(&session.0).unwrap(), &out, &alignments).is_err());
+    assert!(
+        aligned_session::write(
+            &Stored::open(&session.0).unwrap(),
+            &out,
+            &alignments,
+            Assumed::LeftOut
+        )
+        .is_err()
+    );
 }
