@@ -32,6 +32,7 @@ mod adapted;
 mod camera;
 mod directions;
 mod error;
+mod found_planes;
 mod hand;
 mod kept_lights;
 mod laid;
@@ -85,7 +86,8 @@ pub use observer::Observer;
 pub use outlines::Outlines;
 pub use report::{
     AlignmentReport, AssumedLight, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment,
-    LightDeviation, ModelAlignment, PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome, Stand,
+    LightDeviation, ModelAlignment, PlaneAlignment, PoseAlignment, PoseDeviation, RatioAlignment,
+    RatioOutcome, Stand,
 };
 pub use toy_search::{FoundToy, ToySearch, ViewDirection, find_toy};
 pub use warning::AlignmentWarning;
@@ -177,6 +179,7 @@ pub struct Aligner {
     lights: Option<KeptLights>,
     /// In the latest view.
     things: Option<Things>,
+    planes: found_planes::FoundPlanes,
     /// Whether the scene's plates are in another light than they were taken in.
     is_relit: bool,
     are_shadows_withheld: bool,
@@ -203,6 +206,7 @@ impl Aligner {
             held: None,
             lights: None,
             things: None,
+            planes: found_planes::FoundPlanes::default(),
             is_relit: false,
             are_shadows_withheld: false,
             model: None,
@@ -452,6 +456,7 @@ impl Aligner {
             unexplained: lights.and_then(KeptLights::unexplained),
             probe: self.probe.clone().filter(|_| discovered.is_some()),
             is_relit: self.is_relit,
+            planes: self.planes.report.clone(),
         };
         let applied = lights.and_then(|lights| lights.applied.clone());
         let off = report.pose.filter(|pose| pose.shown_px() > MOST_OUTLINE_PX);

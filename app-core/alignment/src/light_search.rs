@@ -17,6 +17,14 @@ use app_scene::toy::ToyError;
 /// Exact poses came out at up to 1.2, where a shadow beside the toy hides a part of the outline; 2 is that of no toy at all.
 const DISCOVERY_OUTLINE_PX: f64 = 1.5;
 
+/// What was seen beside the toy.
+enum Looked {
+    /// Things, where there are any.
+    Things(Option<Things>),
+    /// Planes of things: the view with these among the receivers.
+    Planes(Box<Seen>),
+}
+
 impl Aligner {
     /// The lights in a view, as far as it can tell.
     pub(super) fn find_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
@@ -156,14 +164,18 @@ impl Aligner {
         let things = if !are_told {
             None
         } else {
-            seen.photograph.things(&self.scene, &seen.input, &known)?
+            match self.look_for_things(&known, seen)? {
+                Looked::Things(things) => things,
+                Looked::Planes(again) => return self.look_at_lights(kept, given, &again),
+            }
         };
         let clear = things.as_ref().map(|things| seen.clear_of(things));
         let looked_at = clear.as_ref().unwrap_or(seen);
         let before = Arc::clone(&self.scene);
+        let are_kept = kept.is_some();
         let lights = match kept {
             Some(kept) => self.watch_lights(kept, looked_at)?,
-            None => self.find_lights(given, looked_at)?,
+            None => self.find_lights(Arc::clone(&given), looked_at)?,
         };
         let things = if !are_told || lights.in_use() == &*known {
             things
@@ -171,8 +183,12 @@ impl Aligner {
             // Plates may be in another light now.
             let is_same = Arc::ptr_eq(&before, &self.scene);
             let relit = (!is_same).then(|| Seen::again(&self.scene, seen.view.clone(), &seen.input));
-            let photograph = &relit.as_ref().unwrap_or(seen).photograph;
-            photograph.things(&self.scene, &seen.input, lights.in_use())?
+            match self.look_for_things(lights.in_use(), relit.as_ref().unwrap_or(seen))? {
+                Looked::Things(things) => things,
+                Looked::Planes(again) => {
+                    return self.look_at_lights(are_kept.then_some(lights), given, &again);
+                }
+            }
         };
         // The same marks stay the same ones, of which nothing is learned anew.
         let is_same = |known: &Things| things.as_ref().is_some_and(|things| things.is_like(known));
@@ -180,6 +196,23 @@ impl Aligner {
             self.things = things;
         }
         Ok(lights)
+    }
+
+    /// Things that stand beside the toy in given lights; or, once planes of some are found, the view with these among the receivers.
+    fn look_for_things(&mut self, lights: &[Light], seen: &Seen) -> Result<Looked, ToyError> {
+        let wants_planes = self.planes.are_wanted();
+        let sighted = seen
+            .photograph
+            .things(&self.scene, &seen.input, lights, wants_planes)?;
+        if !wants_planes || sighted.things.is_none() || !self.planes.take(sighted.planes) {
+            return Ok(Looked::Things(sighted.things));
+        }
+        self.planes.add_to(&mut self.scene);
+        Ok(Looked::Planes(Box::new(Seen::again(
+            &self.scene,
+            seen.view.clone(),
+            &seen.input,
+        ))))
     }
 
     /// Lights that explain a view in place of those that were there when the plates were taken, and the scene with plates in their

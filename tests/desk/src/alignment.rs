@@ -107,8 +107,8 @@ pub struct Alignments {
     found: Vec<Aligned>,
     /// Plates whose camera was corrected, by their index.
     moved_plates: Vec<(usize, Camera)>,
-    /// The receivers, where they were laid under the toy.
-    laid_receivers: Option<Vec<Receiver>>,
+    /// The receivers, where they are others than the session's.
+    receivers: Option<Vec<Receiver>>,
     /// Of the lens, where it was looked for.
     lens: Option<LensAlignment>,
 }
@@ -208,7 +208,7 @@ impl Alignments {
             first: 0,
             found: Vec::new(),
             moved_plates: Vec::new(),
-            laid_receivers: None,
+            receivers: None,
             lens: None,
         }
     }
@@ -293,9 +293,7 @@ impl Alignments {
             })?;
         let cpu_ms = start.elapsed().as_secs_f64() * 1e3;
         self.moved_plates = moved_plates(scene, aligner.scene());
-        let is_laid =
-            |now: &Scene| scene.uncertainty.are_receivers_guessed && !now.uncertainty.are_receivers_guessed;
-        self.laid_receivers = is_laid(aligner.scene()).then(|| aligner.scene().receivers.clone());
+        self.receivers = other_receivers(scene, aligner.scene());
         if self.found.is_empty() {
             self.first = index;
         }
@@ -326,6 +324,7 @@ impl Alignments {
             things: observed.things,
             sharpness: observed.sharpness,
         });
+        self.receivers = other_receivers(scene, &self.observer.scene(scene));
         Ok(())
     }
 
@@ -336,7 +335,7 @@ impl Alignments {
         for (index, camera) in &self.moved_plates {
             scene.plates[*index].camera = *camera;
         }
-        if let Some(receivers) = &self.laid_receivers {
+        if let Some(receivers) = &self.receivers {
             scene.receivers.clone_from(receivers);
         }
         scene
@@ -364,10 +363,10 @@ impl Alignments {
         found.map_or(self.lights.listed(given).len(), |lights| lights.len())
     }
 
-    /// The receivers, where they were a guess and were laid under the toy.
+    /// The receivers, where they are others than the session's: laid under the toy, or with planes that were found.
     #[must_use]
-    pub fn laid_receivers(&self) -> Option<&[Receiver]> {
-        self.laid_receivers.as_deref()
+    pub fn receivers(&self) -> Option<&[Receiver]> {
+        self.receivers.as_deref()
     }
 
     /// Plates whose camera was corrected, by their index.
@@ -450,6 +449,10 @@ impl Aligned {
             None => self.alignment.lights.clone(),
         }
     }
+}
+
+fn other_receivers(given: &Scene, now: &Scene) -> Option<Vec<Receiver>> {
+    (now.receivers != given.receivers).then(|| now.receivers.clone())
 }
 
 fn moved_plates(given: &Scene, aligned: &Scene) -> Vec<(usize, Camera)> {

@@ -10,6 +10,7 @@ mod from_photographs;
 mod lens_found;
 mod model;
 mod moved_lights;
+mod planes;
 mod plate_taker;
 mod pose_filter;
 mod probe;
