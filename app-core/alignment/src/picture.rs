@@ -81,7 +81,7 @@ impl Picture {
     }
 
     /// Spread by a Gaussian, whose deviation is in pixels; what is near to the border, or to what is unknown, is unknown.
-    fn spread(&self, deviation_px: f64) -> Self {
+    pub(super) fn spread(&self, deviation_px: f64) -> Self {
         let weights = gaussian(deviation_px);
         let along = |from: &Self, axis: IVec2| {
             let pixel = |at: IVec2| {
@@ -97,6 +97,16 @@ impl Picture {
             Self::of(from.size_px, places(from.size_px).map(pixel).collect())
         };
         along(&along(self, IVec2::X), IVec2::Y)
+    }
+
+    /// Each pixel that is known, changed.
+    pub(super) fn map(mut self, of: impl Fn(Color) -> Color) -> Self {
+        for pixel in &mut self.pixels {
+            if !pixel[0].is_nan() {
+                *pixel = of(*pixel);
+            }
+        }
+        self
     }
 
     /// Half as large, each pixel the mean of four; an odd last row or column is left out.

@@ -65,7 +65,7 @@ pub struct CameraAlignment {
     pub errors: [f64; 2],
 }
 
-/// The toy's pose, by its outline.
+/// The toy's pose, by its outline, and by its texture if its model has one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseAlignment {
     /// Whether the toy is shown elsewhere than it was given: where it was found, which brings the outline nearer by more than noise
@@ -90,6 +90,9 @@ pub struct PoseAlignment {
     pub model_px: f64,
     /// Whether that is what the pictures of cameras let it be off by: else the model, before it was adapted, is not quite this toy.
     pub is_of_model: bool,
+    /// Correlation of the texture of the toy's model with the picture's, between -1 and 1, where the toy was found; none if the toy has no
+    /// texture, or another one than its model, and the pose is by the outline alone.
+    pub texture_correlation: Option<f64>,
     /// Standard deviation of the spread that lens and focus give the outline, in pixels; 0 where it is sharp.
     pub spread_px: f64,
     /// How the toy, where it is shown, is on the receiver that it was given on; none where it is given above all of them.

@@ -5,7 +5,7 @@
 //! each round being one Gauss-Newton step of six numbers (`motion`). The last rounds predict the codes of the pixels beside the outline
 //! (`edge`) from what lies on either side of it (`sides`): the plate, and the model's own colours in the light of the photograph (`paint`).
 //! They solve for the offset of the whole outline as well, and with the feet of the toy on their plane (`standing`) for its size
-//! (`settle`). Which of these poses the picture speaks for is one decision (`decide`).
+//! (`settle`). If the toy has a texture, that is met in the same rounds (`texture`). Which of these poses the picture speaks for is one decision (`decide`).
 
 pub(super) mod adapt;
 mod contour;
@@ -25,6 +25,7 @@ mod settle;
 mod sides;
 mod sightings;
 mod standing;
+mod texture;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
@@ -122,6 +123,8 @@ pub(super) struct Found {
     pub(super) deviation: PoseDeviation,
     /// What the model's outline is off by along some centimetres of it, in pixels.
     pub(super) model_px: f64,
+    /// Correlation of the model's texture with the picture's; none if the toy has no texture, or another one.
+    pub(super) texture_correlation: Option<f64>,
     /// Standard deviation of the spread that the camera gives an edge, in pixels.
     pub(super) spread_px: f64,
     /// That which makes the plate as soft as the photograph; 0 if it is so as it was taken.
@@ -134,6 +137,17 @@ impl Found {
     /// Whether the outline is that of the model, as far as so soft a picture shows it.
     pub(super) fn is_of_model(&self) -> bool {
         self.model_px < most_model_px(self.spread_px)
+    }
+
+    /// Whether the outline is where the picture has it, by so many pixels; a texture that is met lets it be off by twice as many, by a mug
+    /// behind the toy, or a box whose edges are rounder than its model's.
+    pub(super) fn is_met(&self, most_px: f64) -> bool {
+        let times = if self.texture_correlation.is_some() {
+            2.0
+        } else {
+            1.0
+        };
+        self.outlines_px[1] <= times * most_px
     }
 
     /// Whether the picture is that much likelier with it; and not because less of the outline is seen.
