@@ -3,6 +3,8 @@
 //! A [`Writer`] appends to whatever the caller opened, and a [`Recording`] reads through a [`Source`]: this module opens no
 //! file itself, and times come from the caller.
 //!
+//! [session format]: crate
+//!
 #![doc = include_str!("../../../doc/recording.md")]
 
 mod chunk;
