@@ -201,7 +201,7 @@ impl Photograph {
         };
         let corrected = input.camera.world_from_camera * found.motion * camera_from_object;
         let is_better = found.is_better()
-            && found.outlines_px[1] <= MOST_OUTLINE_PX
+            && found.is_met(MOST_OUTLINE_PX)
             && check::similarity(corrected.to_cols_array()).is_ok();
         let world_from_object = if is_better { corrected } else { *start };
         let middle = camera_from_object.inverse().transform_point3(shape.centre);
@@ -221,6 +221,7 @@ impl Photograph {
                 size_ratio: corrected.x_axis.length() / input.world_from_object.x_axis.length(),
                 model_px: picture_px * found.model_px,
                 is_of_model: found.is_of_model(),
+                texture_correlation: found.texture_correlation,
                 spread_px: picture_px * found.spread_px,
                 stand: found
                     .stands

@@ -81,9 +81,8 @@ impl Picture {
         Some(sum)
     }
 
-    /// Blurred by a Gaussian, with its standard deviation in pixels; pixels near the border or near
-    /// unknown pixels become unknown.
-    fn spread(&self, deviation_px: f64) -> Self {
+    /// Spread by a Gaussian, whose deviation is in pixels; what is near to the border, or to what is unknown, is unknown.
+    pub(super) fn spread(&self, deviation_px: f64) -> Self {
         let weights = gaussian(deviation_px);
         let along = |from: &Self, axis: IVec2| {
             let pixel = |at: IVec2| {
@@ -101,7 +100,17 @@ impl Picture {
         along(&along(self, IVec2::X), IVec2::Y)
     }
 
-    /// At half size, each pixel the mean of four; an odd last row or column is dropped.
+    /// Each pixel that is known, changed.
+    pub(super) fn map(mut self, of: impl Fn(Color) -> Color) -> Self {
+        for pixel in &mut self.pixels {
+            if !pixel[0].is_nan() {
+                *pixel = of(*pixel);
+            }
+        }
+        self
+    }
+
+    /// Half as large, each pixel the mean of four; an odd last row or column is left out.
     fn halved(&self) -> Self {
         let size_px = self.size_px / 2;
         let mean = |at: IVec2| {

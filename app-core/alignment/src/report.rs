@@ -71,7 +71,7 @@ pub struct CameraAlignment {
     pub errors: [f64; 2],
 }
 
-/// The toy's pose, estimated from its outline.
+/// The toy's pose, by its outline, and by its texture if its model has one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseAlignment {
     /// Whether the toy is shown in another place than given: at the estimate, which improves the
@@ -101,7 +101,10 @@ pub struct PoseAlignment {
     /// Whether that is within the usual error of camera pictures: if not, the model, before it was
     /// adapted, differs from this toy.
     pub is_of_model: bool,
-    /// Standard deviation of the outline's blur by lens and focus, in pixels; 0 if it is sharp.
+    /// Correlation of the texture of the toy's model with the picture's, between -1 and 1, where the toy was found; none if the toy has no
+    /// texture, or another one than its model, and the pose is by the outline alone.
+    pub texture_correlation: Option<f64>,
+    /// Standard deviation of the spread that lens and focus give the outline, in pixels; 0 where it is sharp.
     pub spread_px: f64,
     /// The shown toy's position on the receiver that it was given on; `None` if it is given above
     /// all of them.

@@ -8,6 +8,7 @@ use super::paint::{Light, Lit, Paint};
 use super::placement::{Placement, SIZE};
 use super::settle::{Balance, Known, LEAST_EVIDENCE, Misfit, smoothed_px};
 use super::standing::{Ground, Standing};
+use super::texture::{LAST_SPREAD, Likeness, Texture};
 use super::{FINE, Fit, Found, Search, Subject, enough};
 use crate::picture::Level;
 use crate::report::{PoseDeviation, most_model_px};
@@ -47,6 +48,8 @@ const LESS_SEEN: f64 = 0.1;
 struct Seen<'a> {
     lit: Option<Lit<'a>>,
     optics: Optics,
+    /// None if the toy has none, or another one than its model.
+    texture: Option<&'a Texture>,
 }
 
 /// The source of a toy's size.
@@ -78,7 +81,8 @@ impl Search<'_> {
         let start = self.settled(seen, &start, None)?.placement;
         let light = self.light(paint, &start);
         let seen = self.seen(&start, light.as_ref().map(|light| Lit { paint, light }));
-        let free = self.settled(seen, &start, None)?;
+        let texture = seen.lit.and_then(|lit| self.texture(lit, &start));
+        let (seen, free) = self.textured(seen, texture.as_ref(), &start)?;
         let standing = ground.and_then(|Ground { plane, .. }| Standing::on(shape, plane));
         let certain = standing
             .as_ref()
@@ -91,7 +95,13 @@ impl Search<'_> {
         let settled = settled.unwrap_or_else(|| free.clone());
         let as_given = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
         let as_given = self.edges(&as_given, seen).unwrap_or_default();
-        let of_given = Misfit::of(&as_given);
+        let of_given = Misfit {
+            texture: self.likeness(
+                seen,
+                &Placement::of(RigidMotion::none(shape.centre, shape.radius_m)),
+            ),
+            ..Misfit::of(&as_given)
+        };
         let standing_evidence = certain.map_or(0.0, |standing| {
             standing.evidence(|point| settled.placement.apply(point))
         });
@@ -113,6 +123,7 @@ impl Search<'_> {
             evidence: settled.misfit.likelier_than(&of_given) + standing_evidence,
             deviation: settled.deviation,
             model_px: smoothed_px(&settled.measured),
+            texture_correlation: settled.misfit.texture.map(|texture| texture.correlation),
             spread_px: seen.optics.spread_px,
             plate_spread_px: self.softened.as_ref().map_or(0.0, |(_, spread_px)| *spread_px),
             stands: standing.map(|standing| {
@@ -174,7 +185,43 @@ impl Search<'_> {
 
     fn seen<'a>(&mut self, placement: &Placement, lit: Option<Lit<'a>>) -> Seen<'a> {
         let optics = self.optics(placement, lit);
-        Seen { lit, optics }
+        Seen {
+            lit,
+            optics,
+            texture: None,
+        }
+    }
+
+    /// The model's paint about where the toy is; none if it has no texture there.
+    fn texture(&mut self, lit: Lit<'_>, placement: &Placement) -> Option<Texture> {
+        let posed = self.posed(placement, Some(lit));
+        Texture::new(posed.shaded.as_ref()?, self.pyramid.level(0), &posed.coverage)
+    }
+
+    /// Freely, by the outline and by the toy's texture if that is its model's; from where the outline is, or else, since an outline may
+    /// slide away from a texture, from where the toy was given.
+    fn textured<'a>(
+        &mut self,
+        seen: Seen<'a>,
+        texture: Option<&'a Texture>,
+        start: &Placement,
+    ) -> Option<(Seen<'a>, Settled)> {
+        if texture.is_some() {
+            let textured = Seen { texture, ..seen };
+            let given = Placement::of(RigidMotion::none(self.shape.centre, self.shape.radius_m));
+            for from in [start, &given] {
+                let found = self.settled(textured, from, None);
+                if let Some(found) = found.filter(|found| found.misfit.is_texture_of_model()) {
+                    return Some((textured, found));
+                }
+            }
+        }
+        Some((seen, self.settled(seen, start, None)?))
+    }
+
+    fn likeness(&self, seen: Seen<'_>, placement: &Placement) -> Option<Likeness> {
+        let k = &self.pyramid.level(0).intrinsics;
+        seen.texture.and_then(|texture| texture.likeness(placement, k))
     }
 
     /// The camera's edge response; if it is soft, with a blurred or the original plate, whichever
@@ -224,19 +271,30 @@ impl Search<'_> {
             standing: standing.map(|(standing, _)| standing),
             is_size_open: standing.is_some_and(|(_, size)| size == SizeOf::Found),
         };
+        let rows = |round: usize, placement: &Placement| {
+            let texture = seen
+                .texture
+                .map(|texture| texture.rows(round, placement, known.k));
+            texture.unwrap_or_default()
+        };
+        let first_sharp = if seen.texture.is_some() { LAST_SPREAD } else { 0 };
         let mut placement = *start;
         let mut measured = self.edges(&placement, seen)?;
-        for _ in 0..N_ROUNDS {
-            let step = Balance::new(&measured, &placement, known).step()?;
+        for round in 0..first_sharp + N_ROUNDS {
+            let step = Balance::new((&measured, rows(round, &placement)), &placement, known).step()?;
             placement = placement.then(&step, &self.uncertainty);
             measured = self.edges(&placement, seen)?;
-            if step.fixed_rows::<SIZE>(0).norm() < LAST_STEP * self.shape.radius_m {
+            let is_short = step.fixed_rows::<SIZE>(0).norm() < LAST_STEP * self.shape.radius_m;
+            if is_short && round >= first_sharp {
                 break;
             }
         }
-        let misfit = Misfit::of(&measured);
+        let misfit = Misfit {
+            texture: self.likeness(seen, &placement),
+            ..Misfit::of(&measured)
+        };
         let depth_m = -placement.motion.centre().z;
-        let balance = Balance::new(&measured, &placement, known);
+        let balance = Balance::new((&measured, rows(usize::MAX, &placement)), &placement, known);
         Some(Settled {
             deviation: balance.deviation(misfit.loss_px2.sqrt(), depth_m),
             misfit,

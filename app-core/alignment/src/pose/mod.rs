@@ -7,6 +7,7 @@
 //! beside the outline (`edge`) from the colours on either side of it (`sides`): the plate, and the
 //! model's own colours in the light of the photograph (`paint`). They also estimate the offset of
 //! the whole outline, and with the feet of the toy on their plane (`standing`) its size (`settle`).
+//! If the model has a texture, the same rounds fit that within the outline (`texture`).
 //! One step selects the most likely of these poses (`decide`).
 
 pub(super) mod adapt;
@@ -27,6 +28,7 @@ mod settle;
 mod sides;
 mod sightings;
 mod standing;
+mod texture;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
@@ -126,6 +128,9 @@ pub(super) struct Found {
     pub(super) deviation: PoseDeviation,
     /// Distance of the model's outline along some centimetres, in pixels.
     pub(super) model_px: f64,
+    /// Correlation of the model's texture with the picture's; `None` without a texture, or if the
+    /// picture shows another one.
+    pub(super) texture_correlation: Option<f64>,
     /// Standard deviation of the camera's blur of an edge, in pixels.
     pub(super) spread_px: f64,
     /// The blur that makes the plate as soft as the photograph; 0 if they are equally soft.
@@ -138,6 +143,18 @@ impl Found {
     /// Whether the outline is the model's, within the accuracy of so soft a picture.
     pub(super) fn is_of_model(&self) -> bool {
         self.model_px < most_model_px(self.spread_px)
+    }
+
+    /// Whether the outline is within `most_px` of the picture's, or within twice as much if the
+    /// texture is met: a mug behind the toy, or edges rounder than the model's, disturb the outline
+    /// alone.
+    pub(super) fn is_met(&self, most_px: f64) -> bool {
+        let times = if self.texture_correlation.is_some() {
+            2.0
+        } else {
+            1.0
+        };
+        self.outlines_px[1] <= times * most_px
     }
 
     /// Whether the picture is sufficiently more likely with it, and not because less of the outline

@@ -398,6 +398,19 @@ impl Shaded<'_> {
     pub(super) fn at(&self, at: IVec2) -> Option<Color> {
         self.seen.at(at).map(|surface| self.light.shade(&surface))
     }
+
+    /// The point of the toy that a pixel's centre shows, where the toy was given, in camera space.
+    pub(super) fn given(&self, at: IVec2) -> Option<DVec3> {
+        let seen = &self.seen;
+        let hit = seen.nearest[index_in(seen.size_px, at - seen.origin_px)?];
+        (hit.inverse_depth > 0.0).then(|| {
+            let corners = seen.paint.faces[hit.face as usize].corners.into_iter();
+            let corners = corners.zip(hit.weights);
+            corners
+                .map(|(corner, weight)| weight * seen.paint.positions[corner as usize])
+                .sum()
+        })
+    }
 }
 
 fn texture_size(texture: &Texture) -> DVec2 {

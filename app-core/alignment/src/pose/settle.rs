@@ -3,11 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use glam::IVec2;
+use glam::{DVec2, IVec2};
 
 use super::motion::Measured;
 use super::placement::{Information, OFFSET, Placement, SIZE, Unknowns};
 use super::standing::{DEVIATION_M, Standing};
+use super::texture::{self, Likeness};
 use crate::report::PoseDeviation;
 use crate::robust;
 use app_scene::scene::Intrinsics;
@@ -90,25 +91,30 @@ impl Known<'_> {
     }
 }
 
-/// Pieces of the outline for a placement, with their weights.
+/// Pieces of the outline and points of the texture for a placement, with their weights.
 pub(super) struct Balance<'a> {
     known: Known<'a>,
     rows: Vec<Weighted>,
     /// Information and gradient of the priors.
     priors: (Information, Unknowns),
-    /// Information of outline and priors.
+    /// Information of outline, texture and priors.
     information: Information,
 }
 
 struct Weighted {
     block: IVec2,
     row: Unknowns,
-    residual_px: f64,
+    /// In pixels for the outline, as a logarithm for the texture.
+    residual: f64,
     weight: f64,
 }
 
 impl<'a> Balance<'a> {
-    pub(super) fn new(measured: &[Measured], placement: &Placement, known: Known<'a>) -> Self {
+    pub(super) fn new(
+        (measured, texture): (&[Measured], Vec<texture::Row>),
+        placement: &Placement,
+        known: Known<'a>,
+    ) -> Self {
         let residual_px = |one: &Measured| one.offset_px - placement.offset_px;
         let robust_px = robust_px(measured.iter().map(residual_px));
         let robust = |one: &Measured| robust::weight((residual_px(one) / robust_px).powi(2));
@@ -124,33 +130,39 @@ impl<'a> Balance<'a> {
         } else {
             1.0
         };
-        let rows = measured.iter().map(|one| Weighted {
-            block: one.element.at_px.as_ivec2().div_euclid(IVec2::splat(BLOCK_PX)),
+        let outline = measured.iter().map(|one| Weighted {
+            block: block(one.element.at_px),
             row: placement.outward(&one.element, known.k),
-            residual_px: residual_px(one),
+            residual: residual_px(one),
             weight: one.precision * robust(one) * one.element.length_px / (unit_variance * ALIKE),
         });
-        let rows: Vec<Weighted> = rows.collect();
-        let outline = rows.iter().fold(Information::zeros(), |sum, one| {
+        let texture = texture.into_iter().map(|one| Weighted {
+            block: block(one.at_px),
+            row: one.row,
+            residual: one.residual,
+            weight: one.weight,
+        });
+        let rows: Vec<Weighted> = outline.chain(texture).collect();
+        let seen = rows.iter().fold(Information::zeros(), |sum, one| {
             sum + one.weight * one.row * one.row.transpose()
         });
         let priors = known.priors(placement);
         Self {
             known,
             rows,
-            information: outline + priors.0,
+            information: seen + priors.0,
             priors,
         }
     }
 
     /// The weighted least squares step; `None` if it is unconstrained.
     pub(super) fn step(&self) -> Option<Unknowns> {
-        let outline = self.rows.iter();
-        let outline = outline.fold(Unknowns::zeros(), |sum, one| {
-            sum + one.weight * one.residual_px * one.row
+        let seen = self.rows.iter();
+        let seen = seen.fold(Unknowns::zeros(), |sum, one| {
+            sum + one.weight * one.residual * one.row
         });
         let factor = self.information.cholesky()?;
-        let mut step = factor.solve(&(outline + self.priors.1));
+        let mut step = factor.solve(&(seen + self.priors.1));
         if !self.known.is_size_open {
             step[SIZE] = 0.0;
         }
@@ -165,7 +177,7 @@ impl<'a> Balance<'a> {
         let mut blocks: BTreeMap<[i32; 2], Unknowns> = BTreeMap::new();
         for one in &self.rows {
             let pull = blocks.entry(one.block.to_array()).or_insert_with(Unknowns::zeros);
-            *pull += one.weight * one.residual_px * one.row;
+            *pull += one.weight * one.residual * one.row;
         }
         let pulls = blocks
             .values()
@@ -186,6 +198,10 @@ impl<'a> Balance<'a> {
     }
 }
 
+fn block(at_px: DVec2) -> IVec2 {
+    at_px.as_ivec2().div_euclid(IVec2::splat(BLOCK_PX))
+}
+
 /// Scale of the weights: far above the median, a residual is an outlier.
 fn robust_px(residuals_px: impl Iterator<Item = f64>) -> f64 {
     let mut away_px: Vec<f64> = residuals_px.map(f64::abs).collect();
@@ -194,13 +210,15 @@ fn robust_px(residuals_px: impl Iterator<Item = f64>) -> f64 {
     (ROBUST * median_px).clamp(LEAST_ROBUST_PX, MOST_ROBUST_PX)
 }
 
-/// The misfit of an outline and a picture.
+/// The misfit of an outline and a picture, and of the toy's texture within the outline.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Misfit {
     /// Mean robust loss of its pieces, without the common offset, in square pixels.
     pub(super) loss_px2: f64,
     /// Measured length, in pixels.
     pub(super) length_px: f64,
+    /// `None` if the texture is not compared.
+    pub(super) texture: Option<Likeness>,
 }
 
 impl Misfit {
@@ -222,10 +240,16 @@ impl Misfit {
         Self {
             loss_px2: if length_px > 0.0 { sum / length_px } else { scale },
             length_px,
+            texture: None,
         }
     }
 
-    /// Logarithm of the likelihood ratio of this outline and another one.
+    /// Whether the picture shows the texture of the toy's model.
+    pub(super) fn is_texture_of_model(&self) -> bool {
+        self.texture.is_some_and(|texture| texture.is_of_model())
+    }
+
+    /// Logarithm of how much likelier the picture is with this outline and texture than with others.
     pub(super) fn likelier_than(&self, other: &Self) -> f64 {
         // An outline that cannot be measured has no other information.
         let length_px = if other.length_px > 0.0 {
@@ -236,7 +260,11 @@ impl Misfit {
         let n = length_px / Self::EVIDENCE_PX;
         // A loss of zero belongs to a picture without noise.
         let least_px2 = f64::EPSILON;
-        0.5 * n * (other.loss_px2.max(least_px2) / self.loss_px2.max(least_px2)).ln()
+        let texture = match (&self.texture, &other.texture) {
+            (Some(own), Some(other)) => own.likelier_than(other),
+            _ => 0.0,
+        };
+        0.5 * n * (other.loss_px2.max(least_px2) / self.loss_px2.max(least_px2)).ln() + texture
     }
 }
 

@@ -4,6 +4,8 @@
 //! this module opens no file itself, and times come from the caller.
 //!
 //!
+//! [session format]: crate
+//!
 #![doc = include_str!("../../../doc/recording.md")]
 
 mod chunk;

@@ -126,12 +126,15 @@ const SAME_SIZE: f64 = 1e-6;
 
 /// The accuracy of an estimated pose, and the size and softness of the picture.
 fn how_well(pose: &PoseAlignment) -> String {
+    let texture = pose.texture_correlation.map_or_else(String::new, |correlation| {
+        format!("; the model's texture and the picture's correlate by {correlation:.2}")
+    });
     let size = match pose.size_ratio {
         ratio if (ratio - 1.0).abs() < SAME_SIZE => String::new(),
         ratio => format!(", {ratio:.4} times the size given"),
     };
     format!(
-        "toy.world_from_object: the outline's position is known to {:.2} mm along the view, {:.2} mm beside it and {:.2} degrees, one deviation each{size}; the model's outline is off by {:.2} px, and edges are spread by {:.1} px",
+        "toy.world_from_object: the outline's position is known to {:.2} mm along the view, {:.2} mm beside it and {:.2} degrees, one deviation each{size}; the model's outline is off by {:.2} px, and edges are spread by {:.1} px{texture}",
         1e3 * pose.deviation.depth_m,
         1e3 * pose.deviation.lateral_m,
         pose.deviation.rotation_rad.to_degrees(),
