@@ -1,4 +1,4 @@
-//! How a ball is turned shows in its dots alone: its outline is the same from all sides.
+//! The rotation of a ball, which only its dots show: its outline is the same from all sides.
 
 use app_core::alignment::{Aligner, Alignment};
 use glam::{DMat4, DVec3};
@@ -7,7 +7,7 @@ use measure::photographer::{Part, Shape, Shot, Shown, Stance, World};
 
 const RADIUS_M: f64 = 0.04;
 const TURN_DEG: f64 = 4.0;
-/// A ball's dots are found to a tenth of a pixel.
+/// Largest error of the rotation: a ball's dots are found to a tenth of a pixel.
 const FOUND_DEG: f64 = 0.25;
 const BALL: DVec3 = DVec3::new(0.60, 0.35, 0.25);
 const DOTS: DVec3 = DVec3::new(0.15, 0.30, 0.45);
@@ -21,8 +21,8 @@ fn ball(at_m: DVec3, radius_m: f64, color: DVec3) -> Part {
     }
 }
 
-/// A ball on a table with dots on the side of the camera, or without, given turned about the vertical: how far it is turned as alignment
-/// finds it, in degrees.
+/// A ball on a table, with or without dots on the camera's side, given turned about the vertical.
+/// Returns its rotation after alignment, in degrees.
 fn turned_ball(has_dots: bool) -> (f64, Alignment) {
     let mut world = World::boxes().resized([640, 360]);
     let middle_m = DVec3::new(0.0, RADIUS_M, 0.0);

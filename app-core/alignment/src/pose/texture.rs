@@ -1,9 +1,11 @@
-//! The toy's own paint in the picture: where its texture and its creases lie, which an outline does not show.
+//! The toy's own paint in the picture: the positions of its texture and its creases, which an
+//! outline does not show.
 //!
-//! Points of the surface carry the logarithm of the shaded model, as soft as the picture, and its gradient. Each step moves the points
-//! until the logarithms of the picture under them are the model's, but for one gain in each cell of the picture and in each channel:
-//! light that the model does not have changes slowly, a texture does not. Source: forward additive alignment with the template's own
-//! gradient, Baker and Matthews 2004, section 3.
+//! Points of the surface carry the logarithm of the shaded model, as soft as the picture, and its
+//! gradient. Each step moves the points until the logarithms of the picture under them equal the
+//! model's, except for one gain in each cell of the picture and in each channel: light that the
+//! model lacks varies slowly, a texture does not. Source: forward additive alignment with the
+//! template's own gradient, Baker and Matthews 2004, section 3.
 
 use std::collections::BTreeMap;
 
@@ -16,59 +18,65 @@ use crate::raster::{Coverage, project};
 use crate::robust;
 use app_scene::scene::Intrinsics;
 
-/// Spreads of picture and model, in pixels, from the first round to the last: a wide one is met from some pixels away.
+/// Blurs of picture and model, in pixels, from the first round to the last: with a wide one, a
+/// texture is found from a distance of some pixels.
 const SPREADS_PX: [f64; 3] = [3.0, 1.5, 0.7];
-/// Rounds of each spread but the last.
+/// Rounds of each blur but the last.
 const N_ROUNDS: usize = 2;
-/// Round from which the spread is the last.
+/// Round from which the last blur is used.
 pub(super) const LAST_SPREAD: usize = N_ROUNDS * (SPREADS_PX.len() - 1);
-/// The picture is known this far around the model, in pixels: steps are no longer.
+/// Margin of the picture around the model, in pixels: steps are no longer.
 const MARGIN_PX: i32 = 24;
-/// Linear light below which logarithms are of noise.
+/// Linear light below which logarithms consist of noise.
 const FLOOR: f32 = 0.01;
 /// Linear light beyond which a channel is clipped.
 const BRIGHTEST: f32 = 0.95;
-/// Side of the cells that have one gain each, in pixels for each pixel of spread and at least; and the least number of points in one.
+/// Side of the cells that have one gain each, in pixels per pixel of blur, and its minimum; and the
+/// minimum number of points in a cell.
 const CELL_PX: i32 = 12;
 const LEAST_IN_CELL: usize = 6;
-/// More points than that add nothing; fewer than the second number determine nothing.
+/// Maximum number of points, above which they add nothing, and minimum number, below which they
+/// constrain nothing.
 const MOST_POINTS: usize = 3000;
 const LEAST_POINTS: usize = 60;
-/// The model's logarithm changes by less than that within the spread where it has no texture.
+/// Change of the model's logarithm within the blur below which it counts as untextured.
 const LEAST_CHANGE: f64 = 0.03;
-/// Scale of the robust weights, in deviations; and the least deviation of a logarithm: models are painted from other photographs.
+/// Scale of the robust weights, in standard deviations; and the smallest deviation of a logarithm,
+/// since models are painted from other photographs.
 const ROBUST: f64 = 3.0;
 const LEAST_DEVIATION: f64 = 0.01;
 /// Scale of the robust loss, as a logarithm.
 const LOSS_SCALE: f64 = 0.1;
-/// Area of the picture whose values err alike, in square pixels: it counts as one piece of evidence.
+/// Area of the picture whose errors are correlated, in square pixels: it counts as one piece of
+/// evidence.
 const ALIKE_PX2: f64 = 200.0;
-/// Correlation of model and picture within the cells, from which the model's paint is the toy's.
+/// Correlation of model and picture within the cells from which the model's paint counts as the
+/// toy's.
 const LEAST_CORRELATION: f64 = 0.5;
 /// Rounds of gains and weights.
 const N_GAINS: usize = 3;
-/// A normal deviation over the median of what is away.
+/// Ratio of a normal distribution's standard deviation to its median absolute deviation.
 const DEVIATION_OF_MEDIAN: f64 = 1.4826;
 
-/// The model's paint over the picture, from the widest to the narrowest spread.
+/// The model's paint for the picture, from the widest to the narrowest blur.
 pub(super) struct Texture {
     layers: Vec<Layer>,
 }
 
-/// At one spread.
+/// The texture at one blur.
 struct Layer {
     points: Vec<Point>,
     n_cells: usize,
-    /// Area of the picture that each point stands for, in square pixels.
+    /// Area of the picture that each point represents, in square pixels.
     area_px2: f64,
     /// Logarithms of the picture, from that corner on.
     picture: Picture,
     origin_px: IVec2,
 }
 
-/// A place on the toy.
+/// A point of the toy's surface.
 struct Point {
-    /// In camera space, as the toy was given.
+    /// Position in camera space, in the given pose.
     given: DVec3,
     cell: usize,
     /// Logarithms of the shaded model.
@@ -77,42 +85,42 @@ struct Point {
     gradients: [DVec2; 3],
 }
 
-/// One number of the picture that should be that of the model.
+/// One equation: a value of the picture should equal the model's.
 pub(super) struct Row {
     pub(super) at_px: DVec2,
-    /// How much each unknown changes.
+    /// Derivatives by the unknowns.
     pub(super) row: Unknowns,
-    /// How much is left to change.
+    /// Residual.
     pub(super) residual: f64,
     pub(super) weight: f64,
 }
 
-/// How well a model's paint fits a picture.
+/// Agreement of a model's paint with a picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Likeness {
     /// Mean robust loss of the logarithms.
     loss: f64,
     area_px2: f64,
-    /// Of model and picture within the cells.
+    /// Correlation of model and picture within the cells.
     pub(super) correlation: f64,
 }
 
 impl Likeness {
-    /// Logarithm of how much likelier the picture is with this placement than with another one.
+    /// Logarithm of the likelihood ratio of this placement to another one.
     pub(super) fn likelier_than(&self, other: &Self) -> f64 {
         let least = LEAST_DEVIATION * LEAST_DEVIATION;
         let n = self.area_px2.min(other.area_px2) / ALIKE_PX2;
         0.5 * n * (other.loss.max(least) / self.loss.max(least)).ln()
     }
 
-    /// Whether the model's paint is what the picture shows.
+    /// Whether the picture shows the model's paint.
     pub(super) fn is_of_model(&self) -> bool {
         self.correlation > LEAST_CORRELATION
     }
 }
 
 impl Texture {
-    /// Of a toy about where it is; none if it has no texture there.
+    /// The texture of a toy near its pose; `None` if it has none there.
     pub(super) fn new(shaded: &Shaded<'_>, level: &Level, coverage: &Coverage) -> Option<Self> {
         let model = coverage.pixels().map(|at| shaded.at(at).unwrap_or(UNKNOWN));
         let model = Picture::of(coverage.size_px, model.collect());
@@ -136,13 +144,13 @@ impl Texture {
         (!layers.is_empty()).then_some(Self { layers })
     }
 
-    /// How far the picture is from the model at a placement, as sharp as a round has it.
+    /// The equations for a placement, with the blur of a round.
     pub(super) fn rows(&self, round: usize, placement: &Placement, k: &Intrinsics) -> Vec<Row> {
         let layer = &self.layers[(round / N_ROUNDS).min(self.layers.len() - 1)];
         Compared::new(layer, placement, k).rows(placement, k)
     }
 
-    /// How well the narrowest spread fits; none if too little of it is seen.
+    /// Agreement at the narrowest blur; `None` if too little of the texture is visible.
     pub(super) fn likeness(&self, placement: &Placement, k: &Intrinsics) -> Option<Likeness> {
         Compared::new(self.layers.last()?, placement, k).likeness()
     }
@@ -153,7 +161,7 @@ fn logarithms(color: Color) -> Color {
 }
 
 impl Layer {
-    /// Points with texture, and no picture yet; none if they are too few.
+    /// Points with texture, without a picture yet; `None` if there are too few.
     fn new(spread_px: f64, (model, shaded): (Picture, &Shaded<'_>), corner_px: IVec2) -> Option<Self> {
         #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
         let cell_px = (f64::from(CELL_PX) * spread_px.max(1.0)) as i32;
@@ -188,7 +196,7 @@ impl Layer {
     }
 }
 
-/// The point of the toy that a pixel of the model shows; none where it has no texture.
+/// The point of the toy at a pixel of the model; `None` if it has no texture there.
 fn point(
     model: &Picture,
     place: IVec2,
@@ -218,12 +226,13 @@ fn point(
     })
 }
 
-/// Points against the picture where a placement has them.
+/// Points compared with the picture at a placement.
 struct Compared<'a> {
     layer: &'a Layer,
-    /// Of the picture over the model, as a logarithm, less the gain of the cell; none where the picture is not known.
+    /// Logarithm of the ratio of picture to model, less the gain of the cell; `None` where the
+    /// picture is unknown.
     excess: Vec<Option<[f64; 3]>>,
-    /// Where the points are in the picture.
+    /// Positions of the points in the picture.
     at_px: Vec<DVec2>,
     weights: Vec<[f64; 3]>,
     variance: f64,
@@ -252,7 +261,7 @@ impl<'a> Compared<'a> {
         compared
     }
 
-    /// Takes the mean of each cell out of the excess.
+    /// Subtracts the mean of each cell from the excess.
     fn take_gains(&mut self) {
         let means = self.means(|index, channel| self.excess[index].map_or(0.0, |excess| excess[channel]));
         for (excess, point) in self.excess.iter_mut().zip(&self.layer.points) {
@@ -264,7 +273,7 @@ impl<'a> Compared<'a> {
         }
     }
 
-    /// Mean over each cell and channel, by the weights, of what each point has.
+    /// Weighted mean of a value over each cell and channel.
     fn means<T>(&self, of: impl Fn(usize, usize) -> T) -> Vec<[T; 3]>
     where
         T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T> + Default,
@@ -290,7 +299,7 @@ impl<'a> Compared<'a> {
         sums.into_iter().map(|cell| cell.map(mean)).collect()
     }
 
-    /// Weights by how far each value is from most.
+    /// Computes the weights from the distance of each value to most others.
     fn weigh(&mut self) {
         let mut away: Vec<f64> = self
             .excess
@@ -368,7 +377,8 @@ impl<'a> Compared<'a> {
     }
 }
 
-/// How much the logarithm of the model changes at a fixed place of the picture for each unknown, if the toy's point moves over a gradient.
+/// Derivatives by the unknowns of the model's logarithm at a fixed position of the picture, if the
+/// toy's point moves over a gradient.
 fn change(placement: &Placement, given: DVec3, gradient: DVec2, k: &Intrinsics) -> Unknowns {
     let now = placement.apply(given);
     let depth_m = -now.z;
