@@ -178,7 +178,7 @@ pub fn compare(recording: &Recording) -> anyhow::Result<Vec<u32>> {
         let named: Entry = serde_json::from_str(found.get())?;
         let path = named.image.as_str();
         let number = path.trim_matches(|c: char| !c.is_ascii_digit()).parse()?;
-        // As text: a parser may err in the last digit of a number.
+        // Compared as text, since a parser may err in the last digit of a number.
         let written = entry(number).to_string();
         ensure!(found.get() == written.as_str(), "frame {number}");
         ensure!(

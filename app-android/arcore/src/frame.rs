@@ -76,7 +76,9 @@ impl Session {
         time_ns
     }
 
-    /// The frame of the last update; none where its picture is not there, as at the start and under load.
+    /// The frame of the last update; `None` if its picture is missing, as at the start and under
+    /// load.
+    ///
     ///
     pub(super) fn read(&self, stamp: Stamp) -> Result<Option<CameraFrame>, FrameError> {
         let Some(image) = self.image()? else {

@@ -473,7 +473,7 @@ impl TemporaryFolder {
         Self(folder)
     }
 
-    /// What lies in it, in order.
+    /// Names in the folder, in order.
     fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.0).unwrap();
         let mut names: Vec<String> = entries

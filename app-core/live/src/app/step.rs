@@ -1,4 +1,5 @@
-//! What a person is about to do, and what leads from one step to another.
+//! The steps of a person, and the causes of a change between them.
+//!
 //!
 #![doc = include_str!("../../../doc/app.md")]
 

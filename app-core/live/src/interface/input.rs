@@ -62,7 +62,7 @@ pub enum TouchPhase {
 pub struct Touch {
     /// Identifier of the finger while it is down.
     pub id: u64,
-    /// What it does.
+    /// Phase of the touch.
     pub phase: TouchPhase,
     /// Physical pixels of the screen, from its top left corner.
     pub at_px: [f64; 2],

@@ -39,7 +39,7 @@ const FONT: (&str, i32) = ("sans-serif", 14);
 pub struct Off {
     /// Distance of the toy's centre.
     pub pose_mm: f64,
-    /// Of its rotation.
+    /// Error of its rotation.
     pub pose_deg: f64,
     /// Angle of the worst light, seen from the toy's centre; `None` without lights.
     pub light_deg: Option<f64>,

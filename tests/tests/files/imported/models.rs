@@ -308,7 +308,7 @@ fn a_mesh_is_the_same_however_it_is_written() {
     assert!(error.contains("a cloud of points is no toy"), "{error}");
 }
 
-/// As MeshLab writes it.
+/// The form in which MeshLab writes it.
 #[test]
 fn a_texture_whose_coordinates_stand_in_the_faces_is_not_lost_silently() {
     let text = "ply\nformat ascii 1.0\ncomment TextureFile skin.png\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 1 0 0 1\n";

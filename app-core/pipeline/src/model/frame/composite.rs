@@ -106,7 +106,7 @@ struct Layered {
     drawn_four_times: ByForm<Draw>,
 }
 
-/// Where shadows fall.
+/// Pipelines for places where shadows fall.
 struct Shadowed {
     /// Outside the toy in either pose.
     beside: ByForm<Draw>,
