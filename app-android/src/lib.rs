@@ -20,8 +20,7 @@
 //! No state is kept in statics: Android may destroy the activity and run [`android_main`] again in
 //! the same process.
 //!
-//! [`android_main`]:
-//! https://docs.rs/android-activity/0.6/android_activity/#main-thread-entrypoint-android_main
+//! [`android_main`]: https://docs.rs/android-activity/0.6/android_activity/#main-thread-entrypoint-android_main
 
 pub mod input;
 pub mod phone;

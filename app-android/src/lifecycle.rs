@@ -15,7 +15,6 @@ use app_shell::guard::guarded;
 /// Runs until the activity is destroyed.
 ///
 /// # Errors
-///
 /// The first error of the graphics core, which ends the loop: a fresh activity starts with a fresh
 /// core.
 pub(crate) fn run(app: &AndroidApp) -> Result<(), StageError> {

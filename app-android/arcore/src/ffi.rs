@@ -99,11 +99,9 @@ macro_rules! functions {
             /// Looks up every function.
             ///
             /// # Errors
-            ///
             /// The first function for which `symbol` has no address.
             ///
             /// # Safety
-            ///
             /// Each address that is not null is that of the C function of that name, for as long as
             /// the table is used.
             pub unsafe fn look_up(

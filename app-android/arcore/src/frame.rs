@@ -78,8 +78,6 @@ impl Session {
 
     /// The frame of the last update; `None` if its picture is missing, as at the start and under
     /// load.
-    ///
-    ///
     pub(super) fn read(&self, stamp: Stamp) -> Result<Option<CameraFrame>, FrameError> {
         let Some(image) = self.image()? else {
             return Ok(None);

@@ -27,7 +27,6 @@ pub enum LoadError {
 /// Loads the library for as long as the process lives, and looks up its functions.
 ///
 /// # Errors
-///
 /// If the library or one of its functions is missing.
 pub fn load() -> Result<Functions, LoadError> {
     // SAFETY: the name ends with a zero. The code that runs while the library is loaded is Google's

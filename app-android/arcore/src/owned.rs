@@ -12,7 +12,6 @@ impl<T> Owned<T> {
     /// The object that `create` wrote to its output; `None` if it is null.
     ///
     /// # Safety
-    ///
     /// `create` leaves its output unchanged, or writes an object there that nothing else releases
     /// and that `give_back` accepts.
     pub(super) unsafe fn new(

@@ -191,7 +191,6 @@ impl Tracker {
     /// Holds a place of the world instead of the previous one.
     ///
     /// # Errors
-    ///
     /// If ARCore refuses: then none is held.
     pub fn hold(&mut self, id: u64, world_from_anchor: &DMat4) -> Result<(), Failure> {
         match &mut self.session {
@@ -229,7 +228,6 @@ impl Tracker {
     /// restarted, then set to smaller ones.
     ///
     /// # Errors
-    ///
     /// The error of ARCore or of the frame. After a fatal failure the next `run` begins a new
     /// session.
     pub fn update(&mut self, now: Duration) -> Result<Option<CameraFrame>, FrameError> {

@@ -249,8 +249,9 @@ impl Aligner {
     /// counted once; the loss of the shadows must fall by a twenty-fifth and to less than a tenth of the loss without
     /// lights, and a light must move visibly. If the picture shows the toy nowhere near, the input's pose stays.
     ///
-    /// # Errors When a value of the scene or of the input is invalid, a picture is not of the scene's size, or the toy
-    /// cannot be posed.
+    /// # Errors
+    /// When a value of the scene or of the input is invalid, a picture is not of the scene's size,
+    /// or the toy cannot be posed.
     pub fn align(&mut self, input: &FrameInput) -> Result<Alignment, AlignError> {
         error::check(&self.scene, input)?;
         let given = input.lights_in(&self.scene);
@@ -344,7 +345,8 @@ impl Aligner {
     /// Estimates the distortion of the lens of a frame and its plates, as if they were a pinhole's: two radial terms.
     /// Remove it from all photographs before aligning them (`Capture::open_with_lens` of a session).
     ///
-    /// # Errors As [`Self::align`].
+    /// # Errors
+    /// As [`Self::align`].
     pub fn lens(&self, input: &FrameInput) -> Result<LensAlignment, AlignError> {
         error::check(&self.scene, input)?;
         let given = input.lights_in(&self.scene);

@@ -14,7 +14,8 @@ pub struct Observer {
 impl Observer {
     /// A frame with its observations. The same frame as the one before costs nothing.
     ///
-    /// # Errors As [`Aligner::align`](crate::Aligner::align).
+    /// # Errors
+    /// As [`Aligner::align`](crate::Aligner::align).
     pub fn observed(&mut self, scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
         error::check(scene, input)?;
         let latest = self.latest.as_ref().filter(|latest| {

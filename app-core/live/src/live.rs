@@ -119,7 +119,6 @@ impl Live {
     /// [reopened](Live::reopen) begins with the built-in ones.
     ///
     /// # Errors
-    ///
     /// If the device refuses a pass: shaders and picture then stay unchanged.
     pub fn replace_shaders(&mut self, texts: ShaderTexts) -> Result<(), CoreError> {
         self.core.replace_shaders(texts)?;
@@ -156,7 +155,6 @@ impl Live {
     /// the resulting commands.
     ///
     /// # Errors
-    ///
     /// If the surface or the device is lost: a shell then reports [`GraphicsState::Lost`] and
     /// supplies another core.
     pub fn present(&mut self, screen: &Screen, time_s: f64) -> Result<Vec<ShellCommand>, CoreError> {
@@ -172,7 +170,6 @@ impl Live {
     /// The same on a target of the caller's, whose format stores sRGB codes unchanged.
     ///
     /// # Errors
-    ///
     /// If the device is lost.
     pub fn draw_on(
         &mut self,
@@ -196,7 +193,6 @@ impl Live {
     /// The same on an off-screen target, whose picture is returned.
     ///
     /// # Errors
-    ///
     /// If the device is lost.
     pub fn screenshot(
         &mut self,
@@ -215,7 +211,6 @@ impl Live {
     /// The finished picture without the interface.
     ///
     /// # Errors
-    ///
     /// As [`Core::read_picture`].
     pub fn read_picture(&self) -> Result<Image, CoreError> {
         self.core.read_picture()

@@ -260,7 +260,6 @@ impl Settings {
     /// Checks the limits of shaders and their uniforms.
     ///
     /// # Errors
-    ///
     /// If a setting is out of its range.
     pub fn check(&self) -> Result<(), SettingsError> {
         match self {

@@ -54,8 +54,9 @@ impl Folder {
 
     /// Paths of its files and of those in its folders, with `/` between their parts.
     ///
-    /// # Errors When one is a link, which could lead out of it, has a name that is no text, or a
-    /// folder cannot be read.
+    /// # Errors
+    /// When one is a link, which could lead out of it, has a name that is no text, or a folder
+    /// cannot be read.
     pub fn paths(&self) -> Result<Vec<String>, FolderError> {
         let mut paths = Vec::new();
         let mut folders = vec![String::new()];

@@ -43,7 +43,6 @@ impl<W: Write + Seek> Avi<W> {
     /// Begins a video of `hz` pictures a second.
     ///
     /// # Errors
-    ///
     /// Those of the file.
     pub(crate) fn begin(file: W, size_px: [u32; 2], hz: u32) -> io::Result<Self> {
         let mut avi = Self {
@@ -76,7 +75,6 @@ impl<W: Write + Seek> Avi<W> {
     /// Adds a picture, which is shown for one period of the rate.
     ///
     /// # Errors
-    ///
     /// Those of the file; [`io::ErrorKind::FileTooLarge`] if there is no space for it.
     pub(crate) fn add(&mut self, jpeg: &[u8]) -> io::Result<()> {
         if !self.has_room(jpeg) {
@@ -96,7 +94,6 @@ impl<W: Write + Seek> Avi<W> {
     /// Writes the index and the sizes that were unknown before, and returns the file.
     ///
     /// # Errors
-    ///
     /// Those of the file.
     pub(crate) fn finish(mut self) -> io::Result<W> {
         let n_pictures = u32::try_from(self.pictures.len()).map_err(io::Error::other)?;

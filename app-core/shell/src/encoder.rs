@@ -14,14 +14,12 @@ pub trait VideoEncoder {
     /// previous one; returns false if the file has no space for it.
     ///
     /// # Errors
-    ///
     /// Those of the encoder and the file.
     fn add(&mut self, picture: &Image, since_s: f64) -> io::Result<bool>;
 
     /// Completes the file; the last picture is shown until `until_s`.
     ///
     /// # Errors
-    ///
     /// Those of the encoder and the file.
     fn finish(self: Box<Self>, until_s: f64) -> io::Result<()>;
 }

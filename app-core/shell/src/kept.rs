@@ -12,7 +12,6 @@ pub fn text(folder: &Path, name: &str) -> Option<String> {
 /// Stores bytes, in a folder that is created if it is missing.
 ///
 /// # Errors
-///
 /// If the file cannot be written.
 pub fn store(folder: &Path, name: &str, bytes: &[u8]) -> io::Result<()> {
     fs::create_dir_all(folder)?;

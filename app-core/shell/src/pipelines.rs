@@ -65,7 +65,6 @@ fn read(folder: &Path, key: &str) -> Option<Vec<u8>> {
 /// Stores bytes under a key, and replaces everything stored before.
 ///
 /// # Errors
-///
 /// If the file cannot be written.
 pub fn store(folder: &Path, key: &str, data: &[u8]) -> io::Result<()> {
     let file = [one_line(key).as_bytes(), b"\n", sum(data).as_bytes(), b"\n", data].concat();

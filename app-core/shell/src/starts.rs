@@ -29,7 +29,6 @@ pub fn begin(folder: &Path, is_for_engineers: bool) -> LaunchHistory {
 /// Stores the history, completely or not at all, in a folder that is created if it is missing.
 ///
 /// # Errors
-///
 /// If the file cannot be written.
 pub fn store(folder: &Path, text: &str) -> io::Result<()> {
     kept::store(folder, FILE, text.as_bytes())

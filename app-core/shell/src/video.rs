@@ -55,7 +55,6 @@ impl Video {
     /// the thread passes the result to `done`, with the file if there is one.
     ///
     /// # Errors
-    ///
     /// If there is no thread for it.
     pub fn begin(
         stem: PathBuf,

@@ -32,7 +32,6 @@ unsafe extern "C" {
 /// Sends the message `selector` without arguments to `object`, for a `simd_float4x4`.
 ///
 /// # Safety
-///
 /// `object` responds to `selector`, which has no arguments and returns a `simd_float4x4`.
 pub unsafe fn columns4(object: *const c_void, selector: *const c_void) -> Columns4 {
     // SAFETY: the shim passes both on in x0 and x1, and fills all 64 bytes that x8 points to.
@@ -49,7 +48,6 @@ pub unsafe fn columns4(object: *const c_void, selector: *const c_void) -> Column
 /// Sends the message `selector` without arguments to `object`, for a `simd_float3x3`.
 ///
 /// # Safety
-///
 /// `object` responds to `selector`, which has no arguments and returns a `simd_float3x3`.
 pub unsafe fn columns3(object: *const c_void, selector: *const c_void) -> Columns3 {
     // SAFETY: the shim passes both on in x0 and x1, and fills all 48 bytes that x8 points to.
@@ -66,7 +64,6 @@ pub unsafe fn columns3(object: *const c_void, selector: *const c_void) -> Column
 /// Sends the message `selector` with a `simd_float4x4` to `object`, for a pointer.
 ///
 /// # Safety
-///
 /// `object` responds to `selector`, whose argument is a `simd_float4x4` and which returns an
 /// object, retained or not.
 pub unsafe fn with4(object: *const c_void, selector: *const c_void, columns: &Columns4) -> *mut c_void {

@@ -77,7 +77,6 @@ fn made(
 /// Writes each row's bytes; returns false if there are none, or if rows are shorter than that.
 ///
 /// # Safety
-///
 /// From the first byte on there is this number of rows, of `row_bytes` each, which nothing else
 /// uses.
 unsafe fn write_rows(

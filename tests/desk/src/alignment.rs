@@ -276,7 +276,8 @@ impl Alignments {
     /// Aligns a frame of a session's scene: the first one, the next one, or one that is aligned
     /// already, which costs nothing.
     ///
-    /// # Errors When it cannot be aligned.
+    /// # Errors
+    /// When it cannot be aligned.
     pub fn align(&mut self, scene: &Scene, index: usize, frame: &SessionFrame) -> Result<(), ReplayError> {
         if self.aligner.is_none() {
             return self.observe(scene, index, frame);

@@ -1,6 +1,5 @@
 //! The steps of a person, and the causes of a change between them.
 //!
-//!
 #![doc = include_str!("../../../doc/app.md")]
 
 /// The steps of a person.

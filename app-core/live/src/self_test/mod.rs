@@ -68,7 +68,6 @@ pub enum SelfTestError {
 /// Draws the picture with a preset and compares it. The core has no scene afterwards.
 ///
 /// # Errors
-///
 /// If the device does not draw, or draws another picture.
 pub fn run(core: &mut Core, preset: Preset) -> Result<Difference, SelfTestError> {
     check(&render(core, preset)?, preset)
@@ -77,7 +76,6 @@ pub fn run(core: &mut Core, preset: Preset) -> Result<Difference, SelfTestError>
 /// Draws the picture with a preset. The core has no scene afterwards.
 ///
 /// # Errors
-///
 /// If the device does not draw.
 pub fn render(core: &mut Core, preset: Preset) -> Result<Image, SelfTestError> {
     let drawn = draw(core, preset);
@@ -95,7 +93,6 @@ fn draw(core: &mut Core, preset: Preset) -> Result<Image, SelfTestError> {
 /// The photograph from which the picture is made, with the toy in its real pose.
 ///
 /// # Errors
-///
 /// If the scene's toy cannot be read.
 pub fn photograph() -> Result<Image, SelfTestError> {
     let (_, input) = place::place()?;
@@ -105,7 +102,6 @@ pub fn photograph() -> Result<Image, SelfTestError> {
 /// Compares a picture with the expected one of a preset.
 ///
 /// # Errors
-///
 /// If it has another size, or differs by more than other sampling of edges explains.
 pub fn check(picture: &Image, preset: Preset) -> Result<Difference, SelfTestError> {
     if !picture.is_of_size(SIZE_PX) {

@@ -43,7 +43,6 @@ impl Core {
     /// Waits for the device and returns warnings about the fits, up to the latest frame.
     ///
     /// # Errors
-    ///
     /// If the device is lost.
     pub fn read_fit_warnings(&self) -> Result<Vec<Warning>, CoreError> {
         let Some(fit) = self.read_fit()? else {

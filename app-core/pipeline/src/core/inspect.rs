@@ -28,7 +28,6 @@ pub trait Inspect {
     /// The results of the model's fits; `None` before the first retargeted frame.
     ///
     /// # Errors
-    ///
     /// If the device is lost.
     fn read_fit(&self) -> Result<Option<Fit>, CoreError>;
 
@@ -36,7 +35,6 @@ pub trait Inspect {
     /// not make the map.
     ///
     /// # Errors
-    ///
     /// If the device is lost.
     fn read_map(&self, map: Map) -> Result<Option<FloatMap>, CoreError>;
 
@@ -44,14 +42,12 @@ pub trait Inspect {
     /// retargeted frame of the model.
     ///
     /// # Errors
-    ///
     /// If the device is lost.
     fn read_residuals(&self) -> Result<Vec<(Grid, FloatMap)>, CoreError>;
 
     /// The tints of the toy's paint; `None` before the first retargeted frame of the model.
     ///
     /// # Errors
-    ///
     /// If the device is lost.
     fn read_tints(&self) -> Result<Option<TintMap>, CoreError>;
 
@@ -60,7 +56,6 @@ pub trait Inspect {
     /// the scene changes, or until others are injected.
     ///
     /// # Errors
-    ///
     /// If no frame was retargeted yet, or if a map does not have the size of the latest frame's
     /// region.
     fn inject_visibility(&mut self, maps: &InjectedVisibility) -> Result<(), CoreError>;
@@ -75,7 +70,6 @@ pub trait Inspect {
     /// alone.
     ///
     /// # Errors
-    ///
     /// If there is no scene.
     fn withhold_shadow(&mut self) -> Result<(), CoreError>;
 
@@ -83,7 +77,6 @@ pub trait Inspect {
     /// until another scene is set.
     ///
     /// # Errors
-    ///
     /// If there is no scene.
     fn draw_every_pose(&mut self) -> Result<(), CoreError>;
 }

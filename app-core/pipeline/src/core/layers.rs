@@ -11,7 +11,6 @@ impl Core {
     /// are the camera's codes, decoded. With the baseline's presets all pixels are codes.
     ///
     /// # Errors
-    ///
     /// If there is no scene, or the device is lost.
     pub fn read_light(&self) -> Result<FloatMap, CoreError> {
         let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
@@ -22,7 +21,6 @@ impl Core {
     /// so that they have layers, until another scene is set.
     ///
     /// # Errors
-    ///
     /// If there is no scene.
     pub fn want_layers(&mut self) -> Result<(), CoreError> {
         self.stage.as_mut().ok_or(CoreError::NoScene)?.want_layers();
@@ -34,7 +32,6 @@ impl Core {
     /// that picture, and toy and shadow are empty.
     ///
     /// # Errors
-    ///
     /// If there is no scene, or the device is lost.
     pub fn read_layers(&self) -> Result<Layers, CoreError> {
         let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;

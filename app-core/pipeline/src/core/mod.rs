@@ -50,7 +50,6 @@ impl Core {
     /// Returns a core that draws into textures alone, for replay and tests.
     ///
     /// # Errors
-    ///
     /// If there is no such adapter, or it falls short of a phone's limits.
     pub async fn headless(instance: &wgpu::Instance, adapter: &AdapterChoice) -> Result<Self, CoreError> {
         Ok(Self::new(Gpu::open(instance, adapter, None).await?, None))
@@ -60,7 +59,6 @@ impl Core {
     /// continue to use device and queue.
     ///
     /// # Errors
-    ///
     /// If the device was opened with less than a phone's limits.
     pub fn on_device(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, CoreError> {
         Ok(Self::new(Gpu::adopt(device, queue)?, None))
@@ -69,7 +67,6 @@ impl Core {
     /// Returns a core that presents on `surface`, of `size_px` physical pixels.
     ///
     /// # Errors
-    ///
     /// If no adapter can draw on the surface, or it falls short of a phone's limits.
     pub async fn on_surface(
         instance: &wgpu::Instance,
@@ -140,7 +137,6 @@ impl Core {
     /// Continues on a new surface.
     ///
     /// # Errors
-    ///
     /// If the device cannot draw on it.
     pub fn resume(&mut self, surface: wgpu::Surface<'static>, size_px: [u32; 2]) -> Result<(), CoreError> {
         self.window = Some(Window::new(&self.gpu, surface, size_px)?);
@@ -158,7 +154,6 @@ impl Core {
     /// and nothing is estimated from it.
     ///
     /// # Errors
-    ///
     /// If its size is out of range, or the device refuses the work.
     pub fn show_camera(&mut self, image: &CameraImage) -> Result<(), CoreError> {
         self.check_sides(image.size_px())?;
@@ -183,7 +178,6 @@ impl Core {
     /// Presents the latest picture, or black before the first.
     ///
     /// # Errors
-    ///
     /// If the surface is lost for good; an outdated surface is configured anew.
     pub fn present(&mut self, display: Display) -> Result<(), CoreError> {
         self.present_with(display, |_| {})
@@ -192,7 +186,6 @@ impl Core {
     /// Like [`Core::present`]; `paint` may paint over the picture before it is presented.
     ///
     /// # Errors
-    ///
     /// As [`Core::present`].
     pub fn present_with(
         &mut self,
@@ -226,7 +219,6 @@ impl Core {
     /// Waits for the device and returns the picture of a [`Core::hidden_screen`].
     ///
     /// # Errors
-    ///
     /// If the device is lost, or refuses to copy the texture.
     pub fn read_screen(&self, screen: &wgpu::Texture) -> Result<Image, CoreError> {
         Ok(Image {
@@ -241,7 +233,6 @@ impl Core {
     /// [`Bgra8Unorm`](wgpu::TextureFormat::Bgra8Unorm).
     ///
     /// # Errors
-    ///
     /// If there is no scene, or the device refuses the work.
     pub fn draw_on(&mut self, target: &wgpu::Texture, display: Display) -> Result<(), CoreError> {
         let picture =
@@ -258,7 +249,6 @@ impl Core {
     /// estimates of the previous scene are dropped.
     ///
     /// # Errors
-    ///
     /// If a value of either is impossible, if a plate does not have the scene's size, or if that
     /// size is out of range or exceeds the device's memory.
     pub fn set_scene(
@@ -299,7 +289,6 @@ impl Core {
     /// has no such settings.
     ///
     /// # Errors
-    ///
     /// If there is no scene.
     pub fn set_quality_reductions(&mut self, steps: &[QualityStep]) -> Result<(), CoreError> {
         self.stage
@@ -312,7 +301,6 @@ impl Core {
     /// Makes the picture of one frame.
     ///
     /// # Errors
-    ///
     /// If there is no scene, if a value of the input is impossible, if the camera's picture does
     /// not have the scene's size, or if the device refuses the work.
     pub fn frame(&mut self, input: &FrameInput) -> Result<FrameReport, CoreError> {
@@ -356,7 +344,6 @@ impl Core {
     /// texture stays the same until the next scene.
     ///
     /// # Errors
-    ///
     /// If there is no scene, or the device refuses the work.
     pub fn picture(&self) -> Result<&wgpu::Texture, CoreError> {
         let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
@@ -367,7 +354,6 @@ impl Core {
     /// Waits for the device and returns the latest picture, alpha 255.
     ///
     /// # Errors
-    ///
     /// If there is no scene, or the device is lost.
     pub fn read_picture(&self) -> Result<Image, CoreError> {
         let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
@@ -385,7 +371,6 @@ impl Core {
     /// stops them.
     ///
     /// # Errors
-    ///
     /// If the device refuses the work.
     pub fn time_passes(&mut self, is_wanted: bool) -> Result<(), CoreError> {
         self.timer = if is_wanted {
@@ -406,7 +391,6 @@ impl Core {
     /// requested, or if the device cannot measure it.
     ///
     /// # Errors
-    ///
     /// If the device is lost.
     pub fn read_pass_times(&self) -> Result<Vec<PassTime>, CoreError> {
         let times = self

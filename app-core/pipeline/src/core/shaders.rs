@@ -14,7 +14,6 @@ impl Core {
     /// meanwhile.
     ///
     /// # Errors
-    ///
     /// If the device refuses a pass, in the words of its compiler and with the pass's name: shaders
     /// and scene then stay unchanged.
     pub fn replace_shaders(&mut self, texts: ShaderTexts) -> Result<(), CoreError> {

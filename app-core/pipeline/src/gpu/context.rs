@@ -120,7 +120,6 @@ impl Gpu {
     /// Opens a device that can draw on `surface`, or on textures alone.
     ///
     /// # Errors
-    ///
     /// If there is no adapter, if it falls short of the limits of a phone, or if its driver is
     /// known to fail on a surface.
     pub(crate) async fn open(
@@ -159,7 +158,6 @@ impl Gpu {
     /// Adopts a device that the caller opened.
     ///
     /// # Errors
-    ///
     /// If it falls short of the limits of a phone.
     pub(crate) fn adopt(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
         if !phone_limits().check_limits(&device.limits()) {

@@ -48,7 +48,6 @@ impl LentTextures {
     /// A picture that stays in the platform's memory.
     ///
     /// # Errors
-    ///
     /// If no picture has that size, or if a texture does not match its plane.
     pub fn into_image(self, size_px: [u32; 2], encoding: YcbcrEncoding) -> Result<PlanarImage, LentError> {
         let checked = self.check(size_px);

@@ -18,7 +18,8 @@ use super::mend::MESHOPT;
 /// between its parts; its error is a text for people. Buffers must exist. Missing pictures are
 /// skipped, with a warning once the toy is read.
 ///
-/// # Errors [`ToyError::Malformed`] if the bytes are no glTF, or a buffer cannot be read.
+/// # Errors
+/// [`ToyError::Malformed`] if the bytes are no glTF, or a buffer cannot be read.
 pub fn packed<'a>(
     file: &str,
     bytes: &'a [u8],

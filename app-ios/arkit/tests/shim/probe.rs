@@ -20,7 +20,6 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 /// The control: the same message as Rust would send it by itself.
 ///
 /// # Safety
-///
 /// As for the shim.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn ask_for_four_without(
@@ -36,7 +35,6 @@ unsafe extern "C" fn ask_for_four_without(
 }
 
 /// # Safety
-///
 /// As for the shim.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn ask_for_four(object: *const c_void, selector: *const c_void, to: *mut shim::Columns4) {
@@ -44,7 +42,6 @@ unsafe extern "C" fn ask_for_four(object: *const c_void, selector: *const c_void
 }
 
 /// # Safety
-///
 /// As for the shim.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn ask_for_three(object: *const c_void, selector: *const c_void, to: *mut shim::Columns3) {
@@ -52,7 +49,6 @@ unsafe extern "C" fn ask_for_three(object: *const c_void, selector: *const c_voi
 }
 
 /// # Safety
-///
 /// As for the shim.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn hand_over_four(

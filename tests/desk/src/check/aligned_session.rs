@@ -28,8 +28,9 @@ pub enum Assumed {
 /// Writes a session anew, as a folder or as a recording, with the estimates in its index. Returns
 /// the number of corrected frames.
 ///
-/// # Errors When the new one exists already or would lie in the session, or a file is a link or
-/// cannot be read or written.
+/// # Errors
+/// When the new one exists already or would lie in the session, or a file is a link or cannot be
+/// read or written.
 pub fn write(from: &Stored, to: &Path, alignments: &Alignments, assumed: Assumed) -> anyhow::Result<usize> {
     let bytes = from.read(SESSION_FILE, MAX_INDEX_BYTES).context(SESSION_FILE)?;
     let mut index: Value = serde_json::from_slice(&bytes)?;

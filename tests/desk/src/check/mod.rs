@@ -46,8 +46,9 @@ pub struct Findings {
 
 /// Checks a session's index, files, numbers and pictures, and draws its predictions into `out`.
 ///
-/// # Errors When folder or recording cannot be opened, or the drawing cannot be written. Mistakes
-/// of the session are no errors.
+/// # Errors
+/// When folder or recording cannot be opened, or the drawing cannot be written. Mistakes of the
+/// session are no errors.
 pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyhow::Result<Findings> {
     let stored = Stored::open(session)?;
     // An old drawing in the folder may be of another session.
