@@ -46,7 +46,7 @@ pub enum FrameError {
     #[error("the camera's focal length is {0:?} px, its picture {1:?} px")]
     Camera([f32; 2], [i32; 2]),
     /// No picture arrived in any mode of the camera.
-    #[error("the camera gives no picture, of whatever size")]
+    #[error("the camera delivers no picture in any size")]
     NoPictures,
 }
 

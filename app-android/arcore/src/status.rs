@@ -63,9 +63,9 @@ pub const STATUSES: &[(ArStatus, &str, &str, Remedy)] = &[
     (-3, "AR_ERROR_SESSION_PAUSED", "Tracking is paused.", Remedy::Return),
     (-4, "AR_ERROR_SESSION_NOT_PAUSED", "The app changed tracking while it was running.", Remedy::Report),
     (-5, "AR_ERROR_NOT_TRACKING", "The phone does not know where it is. Move it slowly over the table.", Remedy::Return),
-    (-6, "AR_ERROR_TEXTURE_NOT_SET", "The app asked for the camera's picture in a way that it cannot be given.", Remedy::Report),
+    (-6, "AR_ERROR_TEXTURE_NOT_SET", "The app requested the camera's picture in an unsupported form.", Remedy::Report),
     (-7, "AR_ERROR_MISSING_GL_CONTEXT", "ARCore asks for OpenGL, which this app does not use.", Remedy::Report),
-    (UNSUPPORTED_CONFIGURATION, "AR_ERROR_UNSUPPORTED_CONFIGURATION", "This phone's ARCore lacks what the app needs.", Remedy::None),
+    (UNSUPPORTED_CONFIGURATION, "AR_ERROR_UNSUPPORTED_CONFIGURATION", "This phone's ARCore lacks a feature that the app needs.", Remedy::None),
     (PERMISSION_NOT_GRANTED, "AR_ERROR_CAMERA_PERMISSION_NOT_GRANTED", "The app may not use the camera.", Remedy::AllowCamera),
     (DEADLINE_EXCEEDED, "AR_ERROR_DEADLINE_EXCEEDED", "A picture of the camera came too late.", Remedy::Return),
     (RESOURCE_EXHAUSTED, "AR_ERROR_RESOURCE_EXHAUSTED", "The camera has no room for another picture.", Remedy::Return),
@@ -82,8 +82,8 @@ pub const STATUSES: &[(ArStatus, &str, &str, Remedy)] = &[
     (-22, "AR_ERROR_GOOGLE_PLAY_SERVICES_LOCATION_LIBRARY_NOT_LINKED", "ARCore expects a library for locations, which this app does not use.", Remedy::Report),
     (-23, "AR_ERROR_RECORDING_FAILED", "ARCore's recording failed.", Remedy::Report),
     (-24, "AR_ERROR_PLAYBACK_FAILED", "ARCore's playback failed.", Remedy::Report),
-    (-25, "AR_ERROR_SESSION_UNSUPPORTED", "ARCore's session cannot do what the app asked for.", Remedy::Report),
-    (-26, "AR_ERROR_METADATA_NOT_FOUND", "The camera does not tell how its picture was taken.", Remedy::Report),
+    (-25, "AR_ERROR_SESSION_UNSUPPORTED", "ARCore's session does not support the app's request.", Remedy::Report),
+    (-26, "AR_ERROR_METADATA_NOT_FOUND", "The camera does not report the metadata of its picture.", Remedy::Report),
     (-100, "AR_UNAVAILABLE_ARCORE_NOT_INSTALLED", "Google Play Services for AR is not installed.", Remedy::Install),
     (-101, "AR_UNAVAILABLE_DEVICE_NOT_COMPATIBLE", "This phone cannot run ARCore.", Remedy::None),
     (-103, "AR_UNAVAILABLE_APK_TOO_OLD", "Google Play Services for AR is too old.", Remedy::Install),
@@ -192,7 +192,7 @@ pub fn told(failure: Failure) -> ShellEvent {
         (Failure(PERMISSION_NOT_GRANTED), _) => ShellEvent::Permission(Permission::Denied),
         (Failure(CAMERA_NOT_AVAILABLE), _) => {
             // The app requests it again by itself.
-            let words = "Another app uses the camera. Close it, and it goes on here.";
+            let words = "Another app uses the camera. Close it to continue here.";
             ShellEvent::ArTrouble(ArSession::Interrupted, words.to_owned())
         }
         (_, Remedy::None | Remedy::UpdateApp) => {

@@ -355,7 +355,7 @@ impl Live {
         self.scene = None;
         let words = match &tested {
             Ok(off) => format!(
-                "{:.2} codes off where it is worst, {:.3} in the mean",
+                "{:.2} codes off in its worst block, {:.3} on average",
                 off.worst_codes, off.mean_codes
             ),
             Err(error) => error.to_string(),

@@ -176,7 +176,7 @@ fn a_camera_that_stops_is_begun_anew_and_one_that_never_comes_is_said() {
     world(|world| world.silent = vec![0, 1]);
     let steps = seconds(&mut tracker, 8.0, 7.0);
     let errors: Vec<_> = steps.iter().filter_map(|step| step.as_ref().err()).collect();
-    assert_eq!(errors, ["the camera gives no picture, of whatever size"]);
+    assert_eq!(errors, ["the camera delivers no picture in any size"]);
     assert_eq!(tracker.limited_to(), None, "a later start tries all again");
     world(|world| world.silent.clear());
     assert_eq!(tracker.run(&mut Desk, ANEW), Step::Ready);

@@ -52,7 +52,7 @@ pub enum SelfTestError {
     Toy(#[from] ToyError),
     /// Its picture is different.
     #[error(
-        "a test picture is {:.1} codes off where it is worst, {:.1} in the mean",
+        "a test picture is {:.1} codes off in its worst block, {:.1} on average",
         .0.worst_codes,
         .0.mean_codes
     )]

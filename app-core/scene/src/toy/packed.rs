@@ -82,7 +82,8 @@ impl Packing<'_> {
             let name = name.to_owned();
             ToyProblem::Neighbour { name, reason }.at(field)
         };
-        let name = base64::percent_decoded(uri).ok_or_else(|| flaw(uri, "the name is no text".to_owned()))?;
+        let name =
+            base64::percent_decoded(uri).ok_or_else(|| flaw(uri, "the name is not valid text".to_owned()))?;
         let name = name.strip_prefix("./").unwrap_or(&name);
         (self.read)(name).map_err(|reason| flaw(name, reason))
     }
