@@ -84,8 +84,8 @@ fn problems(name: &str, source: &str) -> Vec<String> {
     problems
 }
 
-/// Shaders that naga cannot translate to GLSL, which cannot load a texel of a depth map. The core
-/// runs on Vulkan and Metal alone: on OpenGL ES these would have to read another kind of texture.
+/// Those that naga cannot say in GLSL, which has no way to load a texel of a depth map. The core runs on Vulkan and Metal
+/// alone: on OpenGL ES these would have to read another kind of texture.
 const NOT_IN_GLSL: [&str; 5] = ["validity", "rim", "tint", "appearance", "toy"];
 
 #[test]
