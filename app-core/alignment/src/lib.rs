@@ -32,6 +32,7 @@ mod adapted;
 mod camera;
 mod directions;
 mod error;
+mod gloss;
 mod hand;
 mod kept_lights;
 mod laid;
@@ -68,13 +69,13 @@ use glam::DMat4;
 use crate::probe::ProbeReport;
 use adapted::MOST_ADAPTED_PX;
 use app_scene::frame::FrameInput;
+use app_scene::gloss::Gloss;
 use app_scene::scene::{Camera, Light, Plate, Scene};
 use app_scene::sharpness::Sharpness;
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 use kept_lights::KeptLights;
 use photograph::{MOST_OUTLINE_PX, Photograph};
-use picture::Mask;
 use ratio::{Ratio, Unknown};
 use view::{AlignedView, Seen};
 
@@ -119,6 +120,8 @@ pub struct Alignment {
     pub things: Option<Things>,
     /// How soft the picture is.
     pub sharpness: Sharpness,
+    /// How glossy the toy is.
+    pub gloss: Gloss,
     /// What was found.
     pub report: AlignmentReport,
     /// What could not be aligned.
@@ -136,6 +139,7 @@ impl Alignment {
             scene: None,
             things: input.things.clone(),
             sharpness: input.sharpness,
+            gloss: input.gloss,
             report: AlignmentReport::default(),
             warnings: Vec::new(),
         }
@@ -151,6 +155,7 @@ impl Alignment {
             .with_lights(self.lights.clone().or_else(|| input.lights.clone()))
             .with_things(self.things.clone())
             .with_sharpness(self.sharpness)
+            .with_gloss(self.gloss)
     }
 }
 
@@ -180,6 +185,8 @@ pub struct Aligner {
     /// Whether the scene's plates are in another light than they were taken in.
     is_relit: bool,
     are_shadows_withheld: bool,
+    /// How glossy the toy is, by the first view that shows it in its place.
+    gloss: Option<Gloss>,
     /// Once it was adapted.
     model: Option<ModelAlignment>,
     /// How often another model was looked for.
@@ -203,6 +210,7 @@ impl Aligner {
             held: None,
             lights: None,
             things: None,
+            gloss: None,
             is_relit: false,
             are_shadows_withheld: false,
             model: None,
@@ -394,23 +402,6 @@ impl Aligner {
         })
     }
 
-    /// What of a view is not to be read.
-    fn withheld(
-        &self,
-        input: &FrameInput,
-        (camera, grown): (&Camera, f64),
-        lights: Option<&KeptLights>,
-    ) -> Result<Option<Mask>, ToyError> {
-        let Some(lights) = lights.filter(|_| self.are_shadows_withheld) else {
-            return Ok(None);
-        };
-        let placed = input
-            .clone()
-            .with_camera(*camera)
-            .with_world_from_object(self.held.unwrap_or(input.world_from_object));
-        withheld::shadows(&self.scene, &placed, lights.in_use(), grown).map(Some)
-    }
-
     /// Corrects the cameras of the first plates, each against those before it, once.
     fn align_plates(&mut self) {
         if std::mem::replace(&mut self.are_plates_aligned, true) {
@@ -487,6 +478,7 @@ impl Aligner {
             scene: (!Arc::ptr_eq(&told, &self.scene)).then(|| Arc::clone(&self.scene)),
             things: self.things.clone(),
             sharpness: view.map_or(input.sharpness, |view| view.sharpness),
+            gloss: self.gloss.unwrap_or(input.gloss),
             report,
             warnings: warnings.collect(),
         }

@@ -2,21 +2,42 @@
 
 use glam::{DVec2, UVec2};
 
+use super::Aligner;
+use super::kept_lights::KeptLights;
 use super::lights::flat_shadows;
 use super::picture::Mask;
 use super::raster::{Rasterizer, project};
 use super::receivers::SeenReceiver;
 use super::shape::Shape;
 use app_scene::frame::FrameInput;
-use app_scene::scene::{Light, Scene};
+use app_scene::scene::{Camera, Light, Scene};
 use app_scene::toy::ToyError;
 
 /// Points around the rim of a light whose shadows are put together.
 const N_RIM: u8 = 16;
 
+impl Aligner {
+    /// What of a view is not to be read.
+    pub(super) fn withheld(
+        &self,
+        input: &FrameInput,
+        (camera, grown): (&Camera, f64),
+        lights: Option<&KeptLights>,
+    ) -> Result<Option<Mask>, ToyError> {
+        let Some(lights) = lights.filter(|_| self.are_shadows_withheld) else {
+            return Ok(None);
+        };
+        let placed = input
+            .clone()
+            .with_camera(*camera)
+            .with_world_from_object(self.held.unwrap_or(input.world_from_object));
+        shadows(&self.scene, &placed, lights.in_use(), grown).map(Some)
+    }
+}
+
 /// All shadows of the toy where `input` has it, grown to all sides by a part of the picture's width: other places of toy and camera
 /// are covered as far as that reaches.
-pub(super) fn shadows(
+fn shadows(
     scene: &Scene,
     input: &FrameInput,
     lights: &[Light],

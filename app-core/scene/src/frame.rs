@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use crate::camera_frame::CameraImage;
+use crate::gloss::Gloss;
 use crate::grain::Grain;
 use crate::scene::check;
 use crate::scene::{Camera, InputError, Light, LightEstimate, Pose, Scene};
@@ -36,6 +37,9 @@ pub struct FrameInput {
     pub things: Option<Things>,
     /// How soft the picture is, where that was measured: what is laid into it is made as soft. Alignment measures it.
     pub sharpness: Sharpness,
+    /// How glossy the real toy is, where that was measured: its highlights are then moved as reflections, and else as paint. It is the
+    /// toy's, not the picture's: with another one all is learned anew. Alignment measures it; presets of the model alone go by it.
+    pub gloss: Gloss,
     /// The pose the toy is to be shown in.
     pub shown_pose: Pose,
     /// Where the toy is to be shown, if that is not where the real one stands: by the rules of `world_from_object`.
@@ -65,6 +69,7 @@ impl FrameInput {
             light_estimate: None,
             things: None,
             sharpness: Sharpness::SHARP,
+            gloss: Gloss::NONE,
             shown_pose: Pose::default(),
             world_from_shown: None,
             effect: 1.0,
@@ -129,6 +134,13 @@ impl FrameInput {
         self
     }
 
+    /// Sets how glossy the toy is.
+    #[must_use]
+    pub fn with_gloss(mut self, gloss: Gloss) -> Self {
+        self.gloss = gloss;
+        self
+    }
+
     /// Sets the pose that the toy is shown in.
     #[must_use]
     pub fn with_shown_pose(mut self, pose: Pose) -> Self {
@@ -187,6 +199,7 @@ impl FrameInput {
             light.check(&format!("lights[{index}]"))?;
         }
         self.sharpness.check("sharpness")?;
+        self.gloss.check("gloss")?;
         self.shadow_style.check("shadow_style")?;
         if let Some(things) = &self.things {
             let [width_px, height_px] = things.size_px().to_array();

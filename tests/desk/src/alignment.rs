@@ -8,6 +8,7 @@ use app_core::alignment::{
     Aligner, Alignment, AlignmentReport, DiscoveredLight, LensAlignment, Observer, RatioAlignment,
 };
 use app_core::frame::FrameInput;
+use app_core::gloss::Gloss;
 use app_core::preset::Preset;
 use app_core::probe::TrackedLight;
 use app_core::scene::{Camera, Light, Receiver, Scene};
@@ -118,6 +119,7 @@ struct Observed {
     index: usize,
     things: Option<Things>,
     sharpness: Sharpness,
+    gloss: Gloss,
 }
 
 /// Of one frame.
@@ -325,6 +327,7 @@ impl Alignments {
             index,
             things: observed.things,
             sharpness: observed.sharpness,
+            gloss: observed.gloss,
         });
         Ok(())
     }
@@ -415,6 +418,7 @@ impl Alignments {
                     input
                         .with_things(observed.things.clone())
                         .with_sharpness(observed.sharpness)
+                        .with_gloss(observed.gloss)
                 })
             }
         }

@@ -97,6 +97,13 @@ pub enum Warning {
         /// Pixels that they would cover, one over the other.
         covered_px: f64,
     },
+    /// The toy is so glossy that it shows more than the listed lights and an even sky: what stands around it is mirrored, which no model here has.
+    TooGlossy {
+        /// Of the surface, as it was measured.
+        roughness: f32,
+        /// Of the glossiest material, over that of plastic.
+        strength: f32,
+    },
     /// The camera sees what the model cannot explain.
     Outlier(Outlier),
     /// Something beside the toy is in the pictures.
@@ -170,6 +177,10 @@ impl fmt::Display for Warning {
                 f,
                 "{} would stand inside the real toy, which lets no light out: check where lights and toy stand",
                 lights_in_words(lights)
+            ),
+            Self::TooGlossy { roughness, strength } => write!(
+                f,
+                "the toy is as glossy as a mirror or metal (roughness {roughness:.3}, {strength:.1} times as reflective as plastic): what it mirrors beside the lights is moved as paint; a matt spray or softer light would help"
             ),
             Self::AmbientAlone { strength } => ambient_alone(f, *strength),
             Self::FaintShadow { assumed } => write!(
