@@ -24,7 +24,6 @@ const STRAIGHT_REFLECTANCE: f32 = 0.04;
 const HORIZON_SLOPE: f32 = 2.5;
 // Cosines below this are taken as this: interpolated normals turn away from a camera that sees the surface.
 const LEAST_COSINE: f32 = 0.05;
-const PI: f32 = 3.14159265;
 
 fn strength_of(material: u32) -> f32 {
   let index = min(material, N_GLOSSES - 1u);

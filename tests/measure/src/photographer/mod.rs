@@ -2,7 +2,8 @@
 //!
 //! From a [`World`] it makes what a session holds, in memory: the toy as a glTF binary, plate, camera frame, and the
 //! photograph of the toy in its shown pose with the mask that scoring needs. Light is direct light of spheres and
-//! directional lights, a uniform sky, and one diffuse bounce. All is deterministic: rays follow fixed patterns, noise a fixed seed.
+//! directional lights, a uniform sky, and one diffuse bounce; a toy may be glossy.
+//! All is deterministic: rays follow fixed patterns, noise a fixed seed.
 
 mod film;
 pub mod folder;
@@ -11,6 +12,7 @@ mod mirror;
 mod motion;
 mod paint;
 mod rays;
+mod sheen;
 pub mod shape;
 mod shot;
 mod toy;
@@ -23,6 +25,7 @@ pub use mirror::{Exposure, Ghost, Mirror};
 pub use motion::{Key, Stance};
 pub use paint::Paint;
 pub use rays::Place;
+pub use sheen::Sheen;
 pub use shape::Shape;
 pub use shot::{Films, Photos, Shot};
 pub use toy::{CLIP, STILL_CLIP, ToyFile, toy_glb};
