@@ -37,12 +37,7 @@ impl Aligner {
 
 /// All shadows of the toy where `input` has it, grown to all sides by a part of the picture's width: other places of toy and camera
 /// are covered as far as that reaches.
-fn shadows(
-    scene: &Scene,
-    input: &FrameInput,
-    lights: &[Light],
-    grown: f64,
-) -> Result<Mask, ToyError> {
+fn shadows(scene: &Scene, input: &FrameInput, lights: &[Light], grown: f64) -> Result<Mask, ToyError> {
     let camera_from_world = input.camera.world_from_camera.inverse();
     let shape = Shape::new(scene, &(camera_from_world * input.world_from_object))?;
     let toy_in_world = input.world_from_object.w_axis.truncate();

@@ -11,7 +11,7 @@ const ROUGHNESS: RangeInclusive<f64> = 0.01..=1.0;
 /// To a mirror: smooth plastic reflects a twenty-fifth.
 const STRENGTH: RangeInclusive<f64> = 0.0..=25.0;
 /// Roughness below which a toy is a mirror to what stands around it, of which only the lights are known.
-const MIRROR_ROUGHNESS: f32 = 0.04;
+const MIRROR_ROUGHNESS: f32 = 0.03;
 /// Strength from which on the surface is no plastic or lacquer.
 const METAL_STRENGTH: f32 = 2.5;
 
@@ -58,7 +58,8 @@ impl Gloss {
         };
         within("roughness", self.roughness, &ROUGHNESS)?;
         let mut strengths = self.strengths.iter().enumerate();
-        strengths.try_for_each(|(index, strength)| within(&format!("strengths[{index}]"), *strength, &STRENGTH))
+        strengths
+            .try_for_each(|(index, strength)| within(&format!("strengths[{index}]"), *strength, &STRENGTH))
     }
 }
 

@@ -3,8 +3,8 @@
 
 use app_core::alignment::{AlignmentReport, AlignmentWarning, LensAlignment};
 use app_core::frame::{FrameReport, PassGroup, PassTime};
-use app_core::scene::MAX_LIGHTS;
 use app_core::gloss::{Gloss, N_GLOSSES};
+use app_core::scene::MAX_LIGHTS;
 use app_core::sharpness::{Sharpness, Spread};
 use app_pipeline::model::state::solution::Fit;
 use serde::Serialize;

@@ -74,7 +74,8 @@ impl Glossy {
 
 /// Reflectance of a rough dielectric under an even sky: Karis' fit of the split sum.
 fn ambient_reflectance(roughness: f64, cosine: f64) -> f64 {
-    let r = DVec4::new(-1.0, -0.0275, -0.572, 0.022) * roughness.sqrt() + DVec4::new(1.0, 0.0425, 1.04, -0.04);
+    let r =
+        DVec4::new(-1.0, -0.0275, -0.572, 0.022) * roughness.sqrt() + DVec4::new(1.0, 0.0425, 1.04, -0.04);
     let a004 = (r.x * r.x).min((-9.28 * cosine).exp2()) * r.x + r.y;
     STRAIGHT * (-1.04 * a004 + r.z) + (1.04 * a004 + r.w)
 }
@@ -96,22 +97,39 @@ fn brdf(squared: f64, normal: DVec3, [to_camera, to_light]: [DVec3; 2]) -> f64 {
 #[must_use]
 pub fn reflected(solution: &Solution, columns: &[f64]) -> [DVec3; 2] {
     let (of_sky, of_lights) = columns.split_at(2);
-    let sky = of_sky.iter().zip(&solution.toy).map(|(part, light)| *part * *light);
-    let lights = of_lights.iter().zip(&solution.toy[2..]).zip(&solution.intensities);
+    let sky = of_sky
+        .iter()
+        .zip(&solution.toy)
+        .map(|(part, light)| *part * *light);
+    let lights = of_lights
+        .iter()
+        .zip(&solution.toy[2..])
+        .zip(&solution.intensities);
     [
         sky.sum(),
-        lights.map(|((part, light), intensity)| *part * *light * *intensity).sum(),
+        lights
+            .map(|((part, light), intensity)| *part * *light * *intensity)
+            .sum(),
     ]
 }
 
 /// Reflected radiance over the gain, and how far a pixel that shows `shown` tells the paint of `base`.
 #[must_use]
-pub fn reflection(solution: &Solution, columns: &[f64], point: &SeenPoint, (base, shown): (DVec3, DVec3)) -> DVec4 {
+pub fn reflection(
+    solution: &Solution,
+    columns: &[f64],
+    point: &SeenPoint,
+    (base, shown): (DVec3, DVec3),
+) -> DVec4 {
     let [of_sky, of_lights] = reflected(solution, columns);
     let paint = base * toy_radiance(solution, point.normal, point.received);
     let total = (of_sky + of_lights + paint).element_sum();
     let share = of_lights.element_sum() / total;
     let is_clipped = shown.max_element() > BRIGHTEST_USABLE && share > HIGHLIGHT;
-    let told = if is_clipped { 0.0 } else { 1.0 - smoothstep(TOLD[0], TOLD[1], share) };
+    let told = if is_clipped {
+        0.0
+    } else {
+        1.0 - smoothstep(TOLD[0], TOLD[1], share)
+    };
     (of_sky + of_lights).extend(told)
 }

@@ -42,10 +42,16 @@ fn seen(scene: &Scene, input: &FrameInput) -> Gloss {
 #[test]
 fn roughness_and_strength_are_found() {
     for roughness in [0.12, 0.25] {
-        let (scene, input) = shot(Some(Sheen { roughness, strength: 1.0 }));
+        let (scene, input) = shot(Some(Sheen {
+            roughness,
+            strength: 1.0,
+        }));
         let found = seen(&scene, &input);
         let ratio = f64::from(found.roughness) / roughness;
-        assert!((0.75..1.33).contains(&ratio), "{roughness} is taken for {found:?}");
+        assert!(
+            (0.75..1.33).contains(&ratio),
+            "{roughness} is taken for {found:?}"
+        );
         assert!((0.6..1.6).contains(&found.strongest()), "{found:?} of plastic");
         assert!(!found.is_beyond_model(), "{found:?}");
     }
@@ -74,6 +80,8 @@ fn a_matt_toy_has_none() {
     for plate in &mut scene.plates {
         plate.image = Arc::new(through_a_camera(&plate.image));
     }
-    let input = input.clone().with_image(Arc::new(through_a_camera(input.image.rgba())));
+    let input = input
+        .clone()
+        .with_image(Arc::new(through_a_camera(input.image.rgba())));
     assert_eq!(seen(&scene, &input), Gloss::NONE);
 }

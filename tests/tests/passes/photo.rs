@@ -127,7 +127,9 @@ impl Photo {
             strengths: gloss.strengths.map(f64::from).to_vec(),
             angular_radii_rad: stand.angular_radii_rad(),
         };
-        reflected(&self.solution, &glossy.columns(region, point)).into_iter().sum()
+        reflected(&self.solution, &glossy.columns(region, point))
+            .into_iter()
+            .sum()
     }
 
     /// The toy in a pose, with each light's shadow of another.

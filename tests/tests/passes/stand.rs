@@ -47,7 +47,9 @@ impl Stand {
             .world_from_object
             .transform_point3(0.5 * (bounds.min + bounds.max).as_dvec3());
         let lights = self.setup.lights.iter();
-        lights.map(|light| light.angular_radius_rad_from(middle)).collect()
+        lights
+            .map(|light| light.angular_radius_rad_from(middle))
+            .collect()
     }
 
     /// Height over the first receiver of the box around the toy, over the physical pose and the whole clip.

@@ -44,7 +44,10 @@ impl LightDepth {
             cx_px: half_px,
             cy_px: half_px,
         };
-        let points = shape.points.iter().map(|point| light_from_camera * (*point - eye));
+        let points = shape
+            .points
+            .iter()
+            .map(|point| light_from_camera * (*point - eye));
         let corners = project(points, &intrinsics);
         Some(Self {
             depths: raster.with_depth(&corners, &shape.faces, IVec2::splat(SIDE_PX)),
@@ -60,7 +63,8 @@ impl LightDepth {
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         let lifted = self.light_from_camera * (point + LIFTED_PX * pixel_m * sine * normal - self.eye);
         let depth_m = -lifted.z;
-        let at = DVec2::new(lifted.x, -lifted.y) * self.intrinsics.fx_px / depth_m + self.intrinsics.cx_px - 0.5;
+        let at =
+            DVec2::new(lifted.x, -lifted.y) * self.intrinsics.fx_px / depth_m + self.intrinsics.cx_px - 0.5;
         let (low, between) = (at.floor(), at - at.floor());
         let [x, y] = [between.x, between.y];
         let four = [
@@ -69,7 +73,12 @@ impl LightDepth {
             (IVec2::Y, (1.0 - x) * y),
             (IVec2::ONE, x * y),
         ];
-        let passes = |step: IVec2| f64::from(self.depths.depth_m(low.as_ivec2() + step)) >= depth_m * (1.0 - SAME_DEPTH);
-        four.iter().filter(|(step, _)| passes(*step)).map(|(_, weight)| weight).sum()
+        let passes = |step: IVec2| {
+            f64::from(self.depths.depth_m(low.as_ivec2() + step)) >= depth_m * (1.0 - SAME_DEPTH)
+        };
+        four.iter()
+            .filter(|(step, _)| passes(*step))
+            .map(|(_, weight)| weight)
+            .sum()
     }
 }

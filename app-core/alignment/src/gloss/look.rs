@@ -8,8 +8,8 @@ use super::{reflectance, slot_of};
 use crate::pose::Surfel;
 use crate::raster::Rasterizer;
 use crate::shape::Shape;
-use app_scene::geometry::disc::vogel_disc;
 use app_scene::geometry::color::linear_of_codes;
+use app_scene::geometry::disc::vogel_disc;
 use app_scene::scene::{Light, MAX_LIGHTS};
 
 /// Points over a light.
@@ -31,7 +31,9 @@ impl Lights {
         let lights = listed.iter().take(MAX_LIGHTS);
         Self {
             lights: lights.map(|light| light.moved(camera_from_world)).collect(),
-            up: camera_from_world.transform_vector3(DVec3::Y).normalize_or(DVec3::Y),
+            up: camera_from_world
+                .transform_vector3(DVec3::Y)
+                .normalize_or(DVec3::Y),
         }
     }
 }
@@ -97,9 +99,15 @@ impl Look {
         let samples: Vec<Sample> = surfels.iter().map(sample).collect();
         let radii = lights.lights.iter();
         Self {
-            n_materials: samples.iter().map(|sample| sample.material + 1).max().unwrap_or(0),
+            n_materials: samples
+                .iter()
+                .map(|sample| sample.material + 1)
+                .max()
+                .unwrap_or(0),
             samples,
-            angular_radii_rad: radii.map(|light| light.angular_radius_rad_from(shape.centre)).collect(),
+            angular_radii_rad: radii
+                .map(|light| light.angular_radius_rad_from(shape.centre))
+                .collect(),
             up: lights.up,
             n_columns: (2 + lights.lights.len()).min(N_COLUMNS),
         }
@@ -146,7 +154,8 @@ fn maps(raster: &mut Rasterizer, shape: &Shape, light: &Light) -> Vec<LightDepth
     let radius_m = distance_m * light.slope_from(shape.centre).unwrap_or(0.0);
     let points = vogel_disc(N_POINTS).map(|at| radius_m * (at.x * across + at.y * along));
     let eyes = points.map(|offset| shape.centre + distance_m * direction + offset);
-    eyes.filter_map(|eye| LightDepth::new(raster, shape, eye)).collect()
+    eyes.filter_map(|eye| LightDepth::new(raster, shape, eye))
+        .collect()
 }
 
 /// Part of a light that falls on a surfel.

@@ -21,6 +21,8 @@ use solve::Material;
 /// Part of the loss that goes where a lobe is first believed, and from which on it is in full. Measured: matt toys 0 to .02, through a phone's
 /// pipeline too; glossy ones .3 and more.
 const BELIEVED: [f64; 2] = [0.15, 0.25];
+/// And by lamps' highlights, without which nothing tells the roughness: where these would be in another pose is a guess then.
+const HIGHLIGHTS_BELIEVED: [f64; 2] = [0.005, 0.015];
 /// Fewer pixels tell nothing.
 const LEAST_SURFELS: usize = 300;
 /// More add nothing.
@@ -34,7 +36,10 @@ pub(crate) fn gloss(look: &Look) -> Gloss {
     let Some(found) = search::found(look, BELIEVED[0]) else {
         return Gloss::NONE;
     };
-    let believed = smoothstep(BELIEVED, found.fall);
+    let believed = smoothstep(BELIEVED, found.fall) * smoothstep(HIGHLIGHTS_BELIEVED, found.of_highlights);
+    if believed == 0.0 {
+        return Gloss::NONE;
+    }
     let mut strengths = [0.0; N_GLOSSES];
     for (slot, strength) in strengths.iter_mut().zip(&found.strengths) {
         #[allow(clippy::cast_possible_truncation, reason = "a strength, to 7 digits")]

@@ -72,7 +72,12 @@ struct Part {
 }
 
 /// Light of a channel.
-fn fitted(look: &Look, glossy: &Glossy<'_>, (weights, tints): (&[[f64; 3]], &Tints), channel: usize) -> Columns {
+fn fitted(
+    look: &Look,
+    glossy: &Glossy<'_>,
+    (weights, tints): (&[[f64; 3]], &Tints),
+    channel: usize,
+) -> Columns {
     let mut normal = SMatrix::<f64, N_COLUMNS, N_COLUMNS>::zeros();
     let mut side = Columns::zeros();
     for ((sample, reflected), weight) in look.samples.iter().zip(glossy.reflected).zip(weights) {
@@ -116,7 +121,9 @@ fn tint(look: &Look, parts: &[[Part; 3]], tints: &mut Tints) {
     for channel in 0..3 {
         let told = |(sample, part): (&Sample, &[Part; 3])| {
             let part = part[channel];
-            let is_told = sample.is_usable[channel] && part.paint > 0.0 && part.reflected < LITTLE_REFLECTED * part.paint;
+            let is_told = sample.is_usable[channel]
+                && part.paint > 0.0
+                && part.reflected < LITTLE_REFLECTED * part.paint;
             is_told.then(|| (sample.shown[channel] - part.reflected) / part.paint)
         };
         for material in 0..look.n_materials {

@@ -96,7 +96,8 @@ impl Paint {
             let hit = seen.nearest[index_in(seen.size_px, at - seen.origin_px)?];
             let k = &level.intrinsics;
             let depth_m = hit.inverse_depth.recip();
-            let on_plane = (at.as_dvec2() + 0.5 - DVec2::new(k.cx_px, k.cy_px)) / DVec2::new(k.fx_px, k.fy_px);
+            let on_plane =
+                (at.as_dvec2() + 0.5 - DVec2::new(k.cx_px, k.cy_px)) / DVec2::new(k.fx_px, k.fy_px);
             Some(Surfel {
                 shown,
                 base: surface.color,

@@ -2,10 +2,10 @@
 
 use super::Stage;
 use crate::frame::warning::Warning;
+use crate::gpu::Gpu;
 use crate::preset::Settings;
 use app_scene::frame::FrameInput;
 use app_scene::gloss::Gloss;
-use crate::gpu::Gpu;
 
 impl Stage {
     /// Takes the toy as so glossy; what was learned of another one is forgotten. The baseline knows of no gloss.
@@ -21,9 +21,13 @@ impl Stage {
 
     /// Angular radius of each light in use, seen from the toy.
     pub(super) fn angular_radii_rad(&self) -> Vec<f64> {
-        let toy_in_world = self.world_from_object.transform_point3(self.bounds_in_object.centre());
+        let toy_in_world = self
+            .world_from_object
+            .transform_point3(self.bounds_in_object.centre());
         let lights = self.lights.used.iter();
-        lights.map(|light| light.angular_radius_rad_from(toy_in_world)).collect()
+        lights
+            .map(|light| light.angular_radius_rad_from(toy_in_world))
+            .collect()
     }
 
     pub(super) fn gloss_warning(&self) -> Option<Warning> {

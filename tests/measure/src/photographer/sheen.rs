@@ -31,12 +31,18 @@ impl Sheen {
         let squared = self.roughness * self.roughness;
         let slope_squared = 1.0 / (h * h) - 1.0;
         let distribution = (-slope_squared / squared).exp() / (PI * squared * h.powi(4));
-        let brdf = distribution * fresnel(to_lamp.dot(half_way)) * self.unmasked(v) * self.unmasked(l) / (4.0 * v * l);
+        let brdf = distribution * fresnel(to_lamp.dot(half_way)) * self.unmasked(v) * self.unmasked(l)
+            / (4.0 * v * l);
         self.strength * PI * brdf
     }
 
     /// Radiance of what stands around, and of the sky, by facets that slope along a pattern over the unit disc.
-    pub(super) fn of_place(&self, (place, hit): (&Place<'_>, &Hit), to_camera: DVec3, pattern: usize) -> DVec3 {
+    pub(super) fn of_place(
+        &self,
+        (place, hit): (&Place<'_>, &Hit),
+        to_camera: DVec3,
+        pattern: usize,
+    ) -> DVec3 {
         let (across, along) = hit.normal.any_orthonormal_pair();
         let pattern = place.sky_pattern(pattern);
         let light = pattern.iter().map(|at| {

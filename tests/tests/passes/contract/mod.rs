@@ -7,8 +7,8 @@ mod fragment;
 use std::fs;
 use std::path::Path;
 
-use app_core::preset::BALANCED;
 use app_core::gloss::Gloss;
+use app_core::preset::BALANCED;
 use app_core::sharpness::Sharpness;
 use app_pipeline::geometry::rect::{PixelRect, PlaneRect};
 use app_pipeline::gpu::context::phone_limits;

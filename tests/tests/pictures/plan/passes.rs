@@ -2,9 +2,9 @@
 
 use app_core::Core;
 use app_core::frame::{FrameInput, PassGroup};
+use app_core::gloss::Gloss;
 use app_core::preset::{BALANCED, Preset};
 use app_core::session::Session;
-use app_core::gloss::Gloss;
 use app_core::sharpness::Sharpness;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::geometry::rect::PixelRect;
