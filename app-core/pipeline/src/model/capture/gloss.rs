@@ -87,6 +87,11 @@ impl Pass {
         ];
         // Beyond the toy nothing is reflected, and every pixel tells its own.
         let near = inputs.plan.near_physical_toy(0);
-        recorder.fullscreen_within(draw, &groups, &[Some(cleared_to(&reflected.view, Color::BLACK))], near);
+        recorder.fullscreen_within(
+            draw,
+            &groups,
+            &[Some(cleared_to(&reflected.view, Color::BLACK))],
+            near,
+        );
     }
 }
