@@ -11,14 +11,14 @@ use crate::median::median;
 
 /// Unknowns: ambient light from above and from below, and each lamp.
 pub(super) const N_COLUMNS: usize = 2 + MAX_LIGHTS;
-/// What is told of each unknown.
+/// One value for each unknown.
 pub(super) type Columns = SVector<f64, N_COLUMNS>;
 /// Index of a material's strength.
 pub(super) type Material = usize;
 
 /// Residual, over what is expected, at which a pixel counts half: light between parts of the toy is not modelled.
 const CAUCHY_SCALE: f64 = 0.12;
-/// What is expected is no less, in linear light: residuals are noise there.
+/// Least expected linear light: below it residuals are noise.
 const DARKEST: f64 = 0.02;
 /// Rounds of reweighting.
 const N_ROUNDS: usize = 6;
@@ -35,7 +35,7 @@ type Tints = [[f64; 3]; N_GLOSSES];
 
 /// A toy of so much gloss.
 pub(super) struct Glossy<'a> {
-    /// What each sample reflects at strength 1.
+    /// The reflection of each sample at strength 1.
     pub(super) reflected: &'a [Columns],
     pub(super) strengths: [f64; N_GLOSSES],
 }
@@ -64,7 +64,7 @@ pub(super) fn loss(look: &Look, glossy: &Glossy<'_>) -> f64 {
     mean
 }
 
-/// What a pixel's light is expected to be made of, in one channel.
+/// The expected parts of a pixel's light, in one channel.
 #[derive(Clone, Copy)]
 struct Part {
     paint: f64,
@@ -116,7 +116,7 @@ fn non_negative(normal: &SMatrix<f64, N_COLUMNS, N_COLUMNS>, side: &Columns) -> 
     Columns::zeros()
 }
 
-/// What the photograph shows of each material's paint over what its model expects. All together they are as bright as that.
+/// Each material's paint in the photograph, over that of the model. On the whole they are equally bright.
 fn tint(look: &Look, parts: &[[Part; 3]], tints: &mut Tints) {
     for channel in 0..3 {
         let told = |(sample, part): (&Sample, &[Part; 3])| {
@@ -126,13 +126,13 @@ fn tint(look: &Look, parts: &[[Part; 3]], tints: &mut Tints) {
                 && part.reflected < LITTLE_REFLECTED * part.paint;
             is_told.then(|| (sample.shown[channel] - part.reflected) / part.paint)
         };
-        for material in 0..look.n_materials {
+        for (material, tint) in tints.iter_mut().take(look.n_materials).enumerate() {
             let all = look.samples.iter().zip(parts);
             let own = all.filter(|(sample, _)| sample.material == material);
             let ratios: Vec<f64> = own.filter_map(told).collect();
             if ratios.len() >= LEAST_OF_MATERIAL {
                 let middle = median(ratios, f64::total_cmp).unwrap_or(1.0);
-                tints[material][channel] = middle.clamp(TINTS[0], TINTS[1]);
+                tint[channel] = middle.clamp(TINTS[0], TINTS[1]);
             }
         }
         let (mut energy, mut tinted) = (0.0, 0.0);
