@@ -5,7 +5,7 @@
 // is linear in (c, c bounce, c fraction_i), with plate_falloff and gain of the previous step; c corrects the gain.
 // Without any light the first two columns add up to the plate, and a third holds what the frame shows beside it.
 // Toy: frame / gain = base (toy_0 (1 + n.y) / 2 + toy_1 (1 - n.y) / 2 + sum_i toy_i intensity_i max(n.l_i, 0) V_i), V_i
-// with self-shadowing.
+// with self-shadowing; a glossy toy adds, over its base, what it reflects of each.
 // Intensities: frame = gain plate (ambient_part + sum_i intensity_i f_i V_i) is linear in (gain, gain intensity_i).
 // Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the
 // previous step. Sums run over pixels here and over workgroups in `fit_solve`.
@@ -23,6 +23,8 @@
 //#import common/marks
 //#import common/completed
 //#import common/fit_sums
+//#import common/gloss
+//#import common/toy_point
 
 // Where the plate is to be completed.
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
@@ -38,6 +40,8 @@
 @group(2) @binding(8) var gbuffer_normal: texture_2d<f32>;
 // Each light's cosine times its visibility.
 @group(2) @binding(9) var gbuffer_received: texture_2d<f32>;
+@group(2) @binding(10) var gbuffer_depth: texture_depth_2d;
+@group(2) @binding(11) var<uniform> specular: Specular;
 
 // Residual, as a fraction of plate or base, at which a pixel counts half.
 const CAUCHY_SCALE: f32 = 0.03;
@@ -148,7 +152,9 @@ fn toy_equation(texel: vec2u) -> Equation {
   let in_box = physical_texel(vec2i(texel));
   let base = textureLoad(gbuffer_base, in_box, 0).rgb;
   let f = frame_at(vec2i(texel));
-  let normal = textureLoad(gbuffer_normal, in_box, 0).xyz;
+  let surface = textureLoad(gbuffer_normal, in_box, 0);
+  let normal = surface.xyz;
+  let strength = strength_of(u32(surface.w));
   eq.value = f / fit.gain.rgb;
   let received = textureLoad(gbuffer_received, in_box, 0);
   let part = hemispheres(normal);
@@ -157,10 +163,25 @@ fn toy_equation(texel: vec2u) -> Equation {
   for (var i = 0u; i < MAX_LIGHTS; i++) {
     if i < globals.n_lights { eq.columns[2u + i] = base * fit.intensity[i].rgb * received[i]; }
   }
-  let predicted = base * toy_radiance_over_base(normal, received);
+  var predicted = base * toy_radiance_over_base(normal, received);
+  var scale = TOY_CAUCHY_SCALE * base;
+  if strength > 0.0 {
+    let point = seen_in_anchor(vec2f(texel) + 0.5, textureLoad(gbuffer_depth, in_box, 0));
+    let to_camera = direction_to_camera(point);
+    let ambient = strength * reflected_ambient(normal, to_camera);
+    eq.columns[0] += vec3f(ambient.x);
+    eq.columns[1] += vec3f(ambient.y);
+    for (var i = 0u; i < MAX_LIGHTS; i++) {
+      if i >= globals.n_lights || received[i] == 0.0 { continue; }
+      let of_light = strength * received[i] * reflected_light(i, normal, to_camera, point);
+      eq.columns[2u + i] += fit.intensity[i].rgb * of_light;
+    }
+    predicted += strength * (reflected_of_ambient(normal, point) + reflected_of_lights(normal, point, received));
+    scale += TOY_CAUCHY_SCALE * (ambient.x + ambient.y);
+  }
   // A clipped toy is at least as bright, where nothing else tells how it is lit.
   eq.weight = evidence_of(f, f);
-  if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, TOY_CAUCHY_SCALE * base); }
+  if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, scale); }
   return eq;
 }
 

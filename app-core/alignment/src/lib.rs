@@ -34,6 +34,7 @@ mod adapted;
 mod camera;
 mod directions;
 mod error;
+mod gloss;
 mod hand;
 mod kept_lights;
 mod laid;
@@ -70,13 +71,13 @@ use glam::DMat4;
 use crate::probe::ProbeReport;
 use adapted::MOST_ADAPTED_PX;
 use app_scene::frame::FrameInput;
+use app_scene::gloss::Gloss;
 use app_scene::scene::{Camera, Light, Plate, Scene};
 use app_scene::sharpness::Sharpness;
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 use kept_lights::KeptLights;
 use photograph::{MOST_OUTLINE_PX, Photograph};
-use picture::Mask;
 use ratio::{Ratio, Unknown};
 use view::{AlignedView, Seen};
 
@@ -121,6 +122,8 @@ pub struct Alignment {
     pub things: Option<Things>,
     /// The softness of the picture.
     pub sharpness: Sharpness,
+    /// How glossy the toy is.
+    pub gloss: Gloss,
     /// The report.
     pub report: AlignmentReport,
     /// Failures of parts of the alignment.
@@ -138,6 +141,7 @@ impl Alignment {
             scene: None,
             things: input.things.clone(),
             sharpness: input.sharpness,
+            gloss: input.gloss,
             report: AlignmentReport::default(),
             warnings: Vec::new(),
         }
@@ -153,6 +157,7 @@ impl Alignment {
             .with_lights(self.lights.clone().or_else(|| input.lights.clone()))
             .with_things(self.things.clone())
             .with_sharpness(self.sharpness)
+            .with_gloss(self.gloss)
     }
 }
 
@@ -182,6 +187,8 @@ pub struct Aligner {
     /// Whether the scene's plates were relit.
     is_relit: bool,
     are_shadows_withheld: bool,
+    /// How glossy the toy is, by the first view that shows it in its place.
+    gloss: Option<Gloss>,
     /// The adapted model, once there is one.
     model: Option<ModelAlignment>,
     /// Number of attempts to adapt the model.
@@ -205,6 +212,7 @@ impl Aligner {
             held: None,
             lights: None,
             things: None,
+            gloss: None,
             is_relit: false,
             are_shadows_withheld: false,
             model: None,
@@ -398,23 +406,6 @@ impl Aligner {
         })
     }
 
-    /// The pixels of a view that must not be read.
-    fn withheld(
-        &self,
-        input: &FrameInput,
-        (camera, grown): (&Camera, f64),
-        lights: Option<&KeptLights>,
-    ) -> Result<Option<Mask>, ToyError> {
-        let Some(lights) = lights.filter(|_| self.are_shadows_withheld) else {
-            return Ok(None);
-        };
-        let placed = input
-            .clone()
-            .with_camera(*camera)
-            .with_world_from_object(self.held.unwrap_or(input.world_from_object));
-        withheld::shadows(&self.scene, &placed, lights.in_use(), grown).map(Some)
-    }
-
     /// Corrects the cameras of the first plates once, each relative to those before it.
     fn align_plates(&mut self) {
         if std::mem::replace(&mut self.are_plates_aligned, true) {
@@ -491,6 +482,7 @@ impl Aligner {
             scene: (!Arc::ptr_eq(&told, &self.scene)).then(|| Arc::clone(&self.scene)),
             things: self.things.clone(),
             sharpness: view.map_or(input.sharpness, |view| view.sharpness),
+            gloss: self.gloss.unwrap_or(input.gloss),
             report,
             warnings: warnings.collect(),
         }

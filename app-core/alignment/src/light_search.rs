@@ -179,6 +179,10 @@ impl Aligner {
             let photograph = &relit.as_ref().unwrap_or(seen).photograph;
             photograph.things(&self.scene, &seen.input, lights.in_use())?
         };
+        if are_told && self.gloss.is_none() {
+            let toy = &seen.input.world_from_object;
+            self.gloss = Some(looked_at.photograph.gloss(&self.scene, toy, lights.in_use())?);
+        }
         // Equal marks stay identical, so that nothing is learned anew.
         let is_same = |known: &Things| things.as_ref().is_some_and(|things| things.is_like(known));
         if !self.things.as_ref().is_some_and(is_same) {

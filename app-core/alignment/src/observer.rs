@@ -3,12 +3,15 @@
 use super::error::{self, AlignError};
 use super::photograph::Photograph;
 use app_scene::frame::FrameInput;
+use app_scene::gloss::Gloss;
 use app_scene::scene::Scene;
 
 /// Observes frames that are shown as given.
 #[derive(Debug, Default)]
 pub struct Observer {
     latest: Option<FrameInput>,
+    /// How glossy the toy is, once that was looked for.
+    gloss: Option<Gloss>,
 }
 
 impl Observer {
@@ -28,19 +31,31 @@ impl Observer {
             Some(latest) => input
                 .clone()
                 .with_things(latest.things.clone())
-                .with_sharpness(latest.sharpness),
-            None => observed(scene, input)?,
+                .with_sharpness(latest.sharpness)
+                .with_gloss(latest.gloss),
+            None => self.looked_at(scene, input)?,
         };
         self.latest = Some(observed.clone());
         Ok(observed)
     }
-}
 
-fn observed(scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
-    let photograph = Photograph::new(scene, input, None);
-    let sharpness = photograph.sharpness_as_given(scene, &input.world_from_object)?;
-    // Things are detected against an equally soft plate.
-    let photograph = photograph.with_plate_as_soft(sharpness.plate_spread);
-    let things = photograph.things(scene, input, &input.lights_in(scene))?;
-    Ok(input.clone().with_things(things).with_sharpness(sharpness))
+    fn looked_at(&mut self, scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
+        let photograph = Photograph::new(scene, input, None);
+        let sharpness = photograph.sharpness_as_given(scene, &input.world_from_object)?;
+        // Things are detected against an equally soft plate.
+        let photograph = photograph.with_plate_as_soft(sharpness.plate_spread);
+        let lights = input.lights_in(scene);
+        let things = photograph.things(scene, input, &lights)?;
+        let gloss = match self.gloss {
+            Some(gloss) => gloss,
+            None => {
+                let clear = things.as_ref().map(|things| photograph.clear_of(things));
+                let photograph = clear.as_ref().unwrap_or(&photograph);
+                photograph.gloss(scene, &input.world_from_object, &lights)?
+            }
+        };
+        self.gloss = Some(gloss);
+        let input = input.clone().with_things(things).with_sharpness(sharpness);
+        Ok(input.with_gloss(gloss))
+    }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use crate::camera_frame::CameraImage;
+use crate::gloss::Gloss;
 use crate::grain::Grain;
 use crate::scene::check;
 use crate::scene::{Camera, InputError, Light, LightEstimate, Pose, Scene};
@@ -39,6 +40,9 @@ pub struct FrameInput {
     /// Measured softness of the picture, which is applied to everything that is composed into it.
     /// Alignment measures it.
     pub sharpness: Sharpness,
+    /// How glossy the real toy is, where that was measured: its highlights are then moved as reflections, and else as paint. It is the
+    /// toy's, not the picture's: with another one all is learned anew. Alignment measures it; presets of the model alone go by it.
+    pub gloss: Gloss,
     /// The pose to show.
     pub shown_pose: Pose,
     /// The place to show the toy, if it differs from the real toy's: by the rules of
@@ -70,6 +74,7 @@ impl FrameInput {
             light_estimate: None,
             things: None,
             sharpness: Sharpness::SHARP,
+            gloss: Gloss::NONE,
             shown_pose: Pose::default(),
             world_from_shown: None,
             effect: 1.0,
@@ -134,6 +139,13 @@ impl FrameInput {
         self
     }
 
+    /// Sets how glossy the toy is.
+    #[must_use]
+    pub fn with_gloss(mut self, gloss: Gloss) -> Self {
+        self.gloss = gloss;
+        self
+    }
+
     /// Sets the pose to show.
     #[must_use]
     pub fn with_shown_pose(mut self, pose: Pose) -> Self {
@@ -192,6 +204,7 @@ impl FrameInput {
             light.check(&format!("lights[{index}]"))?;
         }
         self.sharpness.check("sharpness")?;
+        self.gloss.check("gloss")?;
         self.shadow_style.check("shadow_style")?;
         if let Some(things) = &self.things {
             let [width_px, height_px] = things.size_px().to_array();

@@ -7,6 +7,7 @@ pub mod card;
 pub mod disjoint;
 pub mod frame;
 pub mod geometry;
+pub mod gloss;
 pub mod grain;
 pub mod lens;
 pub mod picture;

@@ -8,6 +8,7 @@ use app_core::alignment::{
     Aligner, Alignment, AlignmentReport, DiscoveredLight, LensAlignment, Observer, RatioAlignment,
 };
 use app_core::frame::FrameInput;
+use app_core::gloss::Gloss;
 use app_core::preset::Preset;
 use app_core::probe::TrackedLight;
 use app_core::scene::{Camera, Light, Receiver, Scene};
@@ -119,6 +120,7 @@ struct Observed {
     index: usize,
     things: Option<Things>,
     sharpness: Sharpness,
+    gloss: Gloss,
 }
 
 /// The alignment of one frame.
@@ -327,6 +329,7 @@ impl Alignments {
             index,
             things: observed.things,
             sharpness: observed.sharpness,
+            gloss: observed.gloss,
         });
         Ok(())
     }
@@ -418,6 +421,7 @@ impl Alignments {
                     input
                         .with_things(observed.things.clone())
                         .with_sharpness(observed.sharpness)
+                        .with_gloss(observed.gloss)
                 })
             }
         }

@@ -32,7 +32,7 @@ use crate::output::folder::OutputFolder;
 use crate::page::pictures::Pictures;
 use crate::page::{MAPS_FOLDER, Page, folder_of, values};
 use crate::progress::Progress;
-use crate::report::{AlignmentEntry, FitEntry, FrameEntry, MapEntry, Mean, Report};
+use crate::report::{AlignmentEntry, FitEntry, FrameEntry, GlossEntry, MapEntry, Mean, Report};
 
 pub use crate::replay_error::ReplayError;
 
@@ -387,6 +387,7 @@ impl<'a> Run<'a> {
             report,
             alignment: shot.alignments.of(shot.index).map(AlignmentEntry::from),
             sharpness: input.sharpness.into(),
+            gloss: GlossEntry::of(&input.gloss),
             scores: None,
             floor_rmse: shot.floor_rmse,
             flicker: None,

@@ -3,6 +3,7 @@
 
 use app_core::alignment::{AlignmentReport, AlignmentWarning, LensAlignment};
 use app_core::frame::{FrameReport, PassGroup, PassTime};
+use app_core::gloss::{Gloss, N_GLOSSES};
 use app_core::scene::MAX_LIGHTS;
 use app_core::sharpness::{Sharpness, Spread};
 use app_pipeline::model::state::solution::Fit;
@@ -97,6 +98,8 @@ pub struct FrameEntry {
     pub alignment: Option<AlignmentEntry>,
     /// Measured softness of the picture.
     pub sharpness: SharpnessEntry,
+    /// How glossy the toy was measured to be; none of a matt one.
+    pub gloss: Option<GlossEntry>,
     /// Error against the truth, if there is one.
     pub scores: Option<Scores>,
     /// RMSE of the camera frame against the truth outside of both shadows, where they show the
@@ -124,6 +127,24 @@ impl From<Sharpness> for SharpnessEntry {
             plate_px: axes_px(sharpness.plate_spread),
             outline_px: axes_px(sharpness.outline_spread),
         }
+    }
+}
+
+/// How glossy a toy is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct GlossEntry {
+    /// Of its surface: root mean square slope of its facets, times the square root of 2.
+    pub roughness: f32,
+    /// Of each of its first materials, the reflectance over that of smooth plastic.
+    pub strengths: [f32; N_GLOSSES],
+}
+
+impl GlossEntry {
+    /// None of a matt toy.
+    #[must_use]
+    pub fn of(gloss: &Gloss) -> Option<Self> {
+        let Gloss { roughness, strengths } = *gloss;
+        (!gloss.is_none()).then_some(Self { roughness, strengths })
     }
 }
 

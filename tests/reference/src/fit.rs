@@ -317,7 +317,7 @@ fn take_receiver(
 }
 
 /// A pixel of one surface of the toy.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ToySample {
     /// Linear colour of the camera's frame.
     pub frame: DVec3,
@@ -327,6 +327,8 @@ pub struct ToySample {
     pub normal: DVec3,
     /// Cosine to each light times its visibility.
     pub received: DVec4,
+    /// What a glossy surface reflects of each unknown's light, at the plate's level; empty of a matt one.
+    pub reflected: Vec<f64>,
 }
 
 /// Fits the light on the toy in `n_steps`, from `start`, which stays without evidence.
@@ -433,10 +435,16 @@ fn toy_equations(
     for sample in samples {
         let [frame, base] = [sample.frame, sample.base].map(|color| color[channel]);
         let value = frame / before.gain[channel];
-        let columns: Vec<f64> = toy_columns(sample.normal, sample.received, &before.intensities)
+        let of_sky: f64 = sample.reflected.iter().take(2).sum();
+        let mut columns: Vec<f64> = toy_columns(sample.normal, sample.received, &before.intensities)
             .into_iter()
             .map(|column| base * column[channel])
             .collect();
+        let levels = [1.0, 1.0].into_iter();
+        let levels = levels.chain(before.intensities.iter().map(|intensity| intensity[channel]));
+        for ((column, reflected), level) in columns.iter_mut().zip(&sample.reflected).zip(levels) {
+            *column += level * reflected;
+        }
         let mut weight = evidence(frame, frame);
         if is_reweighted {
             let model: f64 = columns
@@ -444,7 +452,7 @@ fn toy_equations(
                 .zip(&before.toy)
                 .map(|(column, toy)| *column * toy[channel])
                 .sum();
-            weight *= cauchy_weight(value - model, TOY_CAUCHY_SCALE * base);
+            weight *= cauchy_weight(value - model, TOY_CAUCHY_SCALE * (base + of_sky));
         }
         equations.observe(&columns, value, weight);
     }

@@ -18,6 +18,7 @@ pub mod eligible;
 pub mod estimate;
 pub mod fill;
 pub mod fit;
+pub mod gloss;
 pub mod grain;
 pub mod grid;
 pub mod least_squares;

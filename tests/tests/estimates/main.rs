@@ -7,6 +7,7 @@ mod bundled;
 mod discovery;
 mod focal_length;
 mod from_photographs;
+mod gloss;
 mod lens_found;
 mod model;
 mod moved_lights;

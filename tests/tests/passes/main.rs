@@ -22,6 +22,7 @@ mod exposure;
 mod fill;
 mod fit;
 mod frame;
+mod gloss;
 mod goldens;
 mod grain;
 mod grazing;

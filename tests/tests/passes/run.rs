@@ -4,6 +4,7 @@ use std::sync::{Arc, LazyLock};
 
 use app_core::core::CoreError;
 use app_core::frame::{FrameInput, Warning};
+use app_core::gloss::Gloss;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Plate, Scene};
 use app_core::shadow_style::ShadowStyle;
@@ -101,6 +102,17 @@ impl Run {
     ) -> Result<Self, CoreError> {
         let input = input(&stand, &frame).with_sharpness(sharpness);
         Self::made((preset, &input), stand, [plate, frame], decoded)
+    }
+
+    /// The same of a glossy toy.
+    pub(crate) fn glossy(
+        gloss: Gloss,
+        stand: Stand,
+        [plate, frame]: [Arc<Image>; 2],
+        decoded: &[f64],
+    ) -> Result<Self, CoreError> {
+        let input = input(&stand, &frame).with_gloss(gloss);
+        Self::made((Preset::Balanced, &input), stand, [plate, frame], decoded)
     }
 
     /// The same with a shadow to taste.

@@ -3,8 +3,9 @@
 use glam::DMat4;
 
 use super::Photograph;
-use crate::{pose, softness, things};
+use crate::{gloss, pose, softness, things};
 use app_scene::frame::FrameInput;
+use app_scene::gloss::Gloss;
 use app_scene::scene::{Camera, Light, Scene};
 use app_scene::sharpness::{Sharpness, Spread};
 use app_scene::things::Things;
@@ -52,7 +53,22 @@ impl Photograph {
         Ok(found.and_then(|(size_px, marks)| Things::new(size_px.as_uvec2(), marks, camera)))
     }
 
-    /// The same for given camera and pose.
+    /// How glossy the toy is in its place, in given lights.
+    pub(crate) fn gloss(
+        &self,
+        scene: &Scene,
+        world_from_object: &DMat4,
+        lights: &[Light],
+    ) -> Result<Gloss, ToyError> {
+        let shape = self.shape(scene, world_from_object)?;
+        let paint = pose::Paint::new(scene, &self.camera_from_object(world_from_object))?;
+        let level = self.pyramid.level(0);
+        let surfels = paint.surfels(level, &pose::covered(&shape, level), gloss::MOST_SURFELS);
+        let lights = gloss::Lights::new(lights, &self.camera_from_world);
+        Ok(gloss::gloss(&gloss::Look::new(&shape, &surfels, &lights)))
+    }
+
+    /// How soft it is, for given camera and pose.
     pub(crate) fn sharpness_as_given(
         &self,
         scene: &Scene,

@@ -30,6 +30,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "frame",
     "fullscreen",
     "globals",
+    "gloss",
     "grain",
     "grid",
     "hemispheres",
@@ -53,6 +54,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "tint_cells",
     "tint_grid",
     "toy_light",
+    "toy_point",
     "toy_radiance",
 ];
 

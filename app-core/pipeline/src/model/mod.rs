@@ -3,6 +3,7 @@
 pub(crate) mod capture;
 pub mod diagnostics;
 pub(crate) mod frame;
+pub mod gloss;
 pub(crate) mod lighting;
 pub mod plan;
 pub(crate) mod readback;

@@ -5,6 +5,7 @@ use wgpu::TextureFormat;
 
 use crate::geometry::rect::PixelRect;
 use crate::geometry::shadow_atlas::ShadowAtlas;
+use crate::model::gloss::Specular;
 use crate::passes::plate::{CODED_FORMAT, FINE_FORMAT};
 use crate::passes::toy_mesh::CasterLod;
 use crate::plan::{SceneFacts, SkippedWork};
@@ -115,6 +116,8 @@ pub struct Plan {
     pub sharpness: Sharpness,
     /// Whether there is what makes the plate and the toy's colours as soft as the picture.
     pub is_softened: bool,
+    /// What the toy reflects.
+    pub specular: Specular,
     /// Steps of a first fit.
     pub n_fit_steps: u32,
     /// Steps of a fit that starts from a known solution.
@@ -157,6 +160,7 @@ impl Plan {
             casters: Casters::new(facts, settings),
             sharpness: facts.sharpness,
             is_softened: facts.is_softened,
+            specular: Specular::new(&facts.gloss, facts.angular_radii_rad.iter().copied()),
             n_fit_steps: N_FIT_STEPS,
             n_refine_steps: N_REFINE_STEPS,
             n_intensity_steps: N_INTENSITY_STEPS,

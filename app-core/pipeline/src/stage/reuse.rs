@@ -296,6 +296,8 @@ impl Stage {
             are_plates_scaled: footprint.plate_views.are_scaled(),
             sharpness: self.sharpness,
             is_softened: soft::is_soft(self.sharpness) || known.is_some_and(|plan| plan.is_softened),
+            gloss: self.gloss,
+            angular_radii_rad: self.angular_radii_rad(),
         }
     }
 

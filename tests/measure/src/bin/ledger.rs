@@ -89,6 +89,7 @@ fn in_words(input: &FrameInput) -> String {
         (input.things.is_some(), "other things"),
         (input.sharpness != Sharpness::SHARP, "softness"),
         (input.grain.is_some(), "grain"),
+        (!input.gloss.is_none(), "gloss"),
     ];
     let parts = parts.into_iter().filter(|(is_there, _)| *is_there);
     let parts: Vec<&str> = parts.map(|(_, part)| part).collect();

@@ -190,6 +190,7 @@ fn lit_toy() -> ([DVec3; 4], Solution, Vec<ToySample>) {
             base,
             normal,
             received,
+            reflected: Vec::new(),
         }
     };
     (lit, known.clone(), (0..N_SAMPLES).map(sample).collect())
