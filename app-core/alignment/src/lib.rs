@@ -32,8 +32,10 @@ mod adapted;
 mod camera;
 mod directions;
 mod error;
+mod found;
 mod hand;
 mod kept_lights;
+mod kept_reflection;
 mod laid;
 mod light_search;
 mod lights;
@@ -69,10 +71,10 @@ use crate::probe::ProbeReport;
 use adapted::MOST_ADAPTED_PX;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Light, Plate, Scene};
-use app_scene::sharpness::Sharpness;
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 use kept_lights::KeptLights;
+use kept_reflection::KeptReflection;
 use photograph::{MOST_OUTLINE_PX, Photograph};
 use picture::Mask;
 use ratio::{Ratio, Unknown};
@@ -80,6 +82,7 @@ use view::{AlignedView, Seen};
 
 pub use directions::LightSearch;
 pub use error::AlignError;
+pub use found::Alignment;
 pub use no_light::NoLight;
 pub use observer::Observer;
 pub use outlines::Outlines;
@@ -100,59 +103,6 @@ const MOST_ALIGNED_PLATES: usize = 32;
 /// tracker is not yet corrected, and by the pose.
 const CAMERA_GROWN: f64 = 0.05;
 const POSE_GROWN: f64 = 0.01;
-
-/// Where the toy and the lights of a frame are, by its picture.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Alignment {
-    /// The camera: as given, where it was not corrected.
-    pub camera: Camera,
-    /// Transform of the real toy, from object space to world: as given, where it was not corrected.
-    pub world_from_object: DMat4,
-    /// The lights; none where those that were given stay.
-    pub lights: Option<Arc<[Light]>>,
-    /// The scene that the core is to be given before this frame is shown: its plates' cameras were corrected, its plates are in another
-    /// light than before, its toy was adapted, or its receivers were laid under the toy. None if the core keeps the scene of the frame before, which for the
-    /// first frame is the one that the [`Aligner`] was made with.
-    pub scene: Option<Arc<Scene>>,
-    /// Things that stand in the picture beside the toy; none where nothing tells of any.
-    pub things: Option<Things>,
-    /// How soft the picture is.
-    pub sharpness: Sharpness,
-    /// What was found.
-    pub report: AlignmentReport,
-    /// What could not be aligned.
-    pub warnings: Vec<AlignmentWarning>,
-}
-
-impl Alignment {
-    /// An input as given, of which nothing was found.
-    #[must_use]
-    pub fn new(input: &FrameInput) -> Self {
-        Self {
-            camera: input.camera,
-            world_from_object: input.world_from_object,
-            lights: None,
-            scene: None,
-            things: input.things.clone(),
-            sharpness: input.sharpness,
-            report: AlignmentReport::default(),
-            warnings: Vec::new(),
-        }
-    }
-
-    /// The input that it was found for, corrected.
-    #[must_use]
-    pub fn applied_to(&self, input: &FrameInput) -> FrameInput {
-        input
-            .clone()
-            .with_camera(self.camera)
-            .with_world_from_object(self.world_from_object)
-            .with_lights(self.lights.clone().or_else(|| input.lights.clone()))
-            .with_things(self.things.clone())
-            .with_sharpness(self.sharpness)
-    }
-}
 
 /// Aligns the frames of one scene, one after the other.
 ///
@@ -177,6 +127,8 @@ pub struct Aligner {
     lights: Option<KeptLights>,
     /// In the latest view.
     things: Option<Things>,
+    /// Of the receiver that the toy stands on, once it was looked for.
+    reflection: KeptReflection,
     /// Whether the scene's plates are in another light than they were taken in.
     is_relit: bool,
     are_shadows_withheld: bool,
@@ -203,6 +155,7 @@ impl Aligner {
             held: None,
             lights: None,
             things: None,
+            reflection: KeptReflection::default(),
             is_relit: false,
             are_shadows_withheld: false,
             model: None,
@@ -487,6 +440,7 @@ impl Aligner {
             scene: (!Arc::ptr_eq(&told, &self.scene)).then(|| Arc::clone(&self.scene)),
             things: self.things.clone(),
             sharpness: view.map_or(input.sharpness, |view| view.sharpness),
+            reflection: self.reflection.found.map(|found| found.reflection),
             report,
             warnings: warnings.collect(),
         }

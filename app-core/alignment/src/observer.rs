@@ -28,7 +28,8 @@ impl Observer {
             Some(latest) => input
                 .clone()
                 .with_things(latest.things.clone())
-                .with_sharpness(latest.sharpness),
+                .with_sharpness(latest.sharpness)
+                .with_reflection(latest.reflection),
             None => observed(scene, input)?,
         };
         self.latest = Some(observed.clone());
@@ -41,6 +42,17 @@ fn observed(scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError>
     let sharpness = photograph.sharpness_as_given(scene, &input.world_from_object)?;
     // Things are told by what a plate shows that is as soft.
     let photograph = photograph.with_plate_as_soft(sharpness.plate_spread);
-    let things = photograph.things(scene, input, &input.lights_in(scene))?;
-    Ok(input.clone().with_things(things).with_sharpness(sharpness))
+    let lights = input.lights_in(scene);
+    let found = photograph.reflection(scene, input, &lights)?;
+    let things = match &found {
+        Some(found) => photograph
+            .freed_of(scene, input, found)?
+            .things(scene, input, &lights)?,
+        None => photograph.things(scene, input, &lights)?,
+    };
+    Ok(input
+        .clone()
+        .with_things(things)
+        .with_sharpness(sharpness)
+        .with_reflection(found.map(|found| found.reflection)))
 }

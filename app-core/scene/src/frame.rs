@@ -6,6 +6,7 @@ use glam::DMat4;
 
 use crate::camera_frame::CameraImage;
 use crate::grain::Grain;
+use crate::reflection::Reflection;
 use crate::scene::check;
 use crate::scene::{Camera, InputError, Light, LightEstimate, Pose, Scene};
 use crate::shadow_style::ShadowStyle;
@@ -36,6 +37,9 @@ pub struct FrameInput {
     pub things: Option<Things>,
     /// How soft the picture is, where that was measured: what is laid into it is made as soft. Alignment measures it.
     pub sharpness: Sharpness,
+    /// How the receiver that the toy stands on reflects; none where it is matt, as far as is known. Alignment measures it. Presets of
+    /// the model alone go by it, and only beside fewer lights than shadows are moved of.
+    pub reflection: Option<Reflection>,
     /// The pose the toy is to be shown in.
     pub shown_pose: Pose,
     /// Where the toy is to be shown, if that is not where the real one stands: by the rules of `world_from_object`.
@@ -65,6 +69,7 @@ impl FrameInput {
             light_estimate: None,
             things: None,
             sharpness: Sharpness::SHARP,
+            reflection: None,
             shown_pose: Pose::default(),
             world_from_shown: None,
             effect: 1.0,
@@ -129,6 +134,13 @@ impl FrameInput {
         self
     }
 
+    /// Sets how the receiver that the toy stands on reflects.
+    #[must_use]
+    pub fn with_reflection(mut self, reflection: Option<Reflection>) -> Self {
+        self.reflection = reflection;
+        self
+    }
+
     /// Sets the pose that the toy is shown in.
     #[must_use]
     pub fn with_shown_pose(mut self, pose: Pose) -> Self {
@@ -187,6 +199,8 @@ impl FrameInput {
             light.check(&format!("lights[{index}]"))?;
         }
         self.sharpness.check("sharpness")?;
+        self.reflection
+            .map_or(Ok(()), |reflection| reflection.check("reflection"))?;
         self.shadow_style.check("shadow_style")?;
         if let Some(things) = &self.things {
             let [width_px, height_px] = things.size_px().to_array();

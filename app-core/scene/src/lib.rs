@@ -10,6 +10,7 @@ pub mod geometry;
 pub mod grain;
 pub mod lens;
 pub mod picture;
+pub mod reflection;
 pub mod scene;
 pub mod shadow_style;
 pub mod sharpness;

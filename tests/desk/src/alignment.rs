@@ -10,6 +10,7 @@ use app_core::alignment::{
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::probe::TrackedLight;
+use app_core::reflection::Reflection;
 use app_core::scene::{Camera, Light, Receiver, Scene};
 use app_core::session::{Session, SessionFrame};
 use app_core::sharpness::Sharpness;
@@ -118,6 +119,7 @@ struct Observed {
     index: usize,
     things: Option<Things>,
     sharpness: Sharpness,
+    reflection: Option<Reflection>,
 }
 
 /// Of one frame.
@@ -325,6 +327,7 @@ impl Alignments {
             index,
             things: observed.things,
             sharpness: observed.sharpness,
+            reflection: observed.reflection,
         });
         Ok(())
     }
@@ -415,6 +418,7 @@ impl Alignments {
                     input
                         .with_things(observed.things.clone())
                         .with_sharpness(observed.sharpness)
+                        .with_reflection(observed.reflection)
                 })
             }
         }

@@ -386,6 +386,7 @@ impl<'a> Run<'a> {
             report,
             alignment: shot.alignments.of(shot.index).map(AlignmentEntry::from),
             sharpness: input.sharpness.into(),
+            reflection: input.reflection.map(Into::into),
             scores: None,
             floor_rmse: shot.floor_rmse,
             flicker: None,

@@ -3,6 +3,7 @@
 
 use app_core::alignment::{AlignmentReport, AlignmentWarning, LensAlignment};
 use app_core::frame::{FrameReport, PassGroup, PassTime};
+use app_core::reflection::Reflection;
 use app_core::scene::MAX_LIGHTS;
 use app_core::sharpness::{Sharpness, Spread};
 use app_pipeline::model::state::solution::Fit;
@@ -94,6 +95,8 @@ pub struct FrameEntry {
     pub alignment: Option<AlignmentEntry>,
     /// How soft the picture was measured to be.
     pub sharpness: SharpnessEntry,
+    /// How the receiver that the toy stands on was found to reflect; none where it is taken for matt.
+    pub reflection: Option<ReflectionEntry>,
     /// Error against the truth, where there is one.
     pub scores: Option<Scores>,
     /// RMSE of the camera frame against the truth beyond both shadows, where they show the same: the noise of both and their
@@ -110,6 +113,27 @@ pub struct SharpnessEntry {
     pub plate_px: [f64; 2],
     /// What makes a sharp outline as soft.
     pub outline_px: [f64; 2],
+}
+
+/// How a receiver reflects.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ReflectionEntry {
+    /// Width of the lobe, as Beckmann's alpha.
+    pub roughness: f64,
+    /// Linear light of the surroundings that it reflects.
+    pub surroundings: [f32; 3],
+    /// What the toy's is above it.
+    pub toy_above_surroundings: [f32; 3],
+}
+
+impl From<Reflection> for ReflectionEntry {
+    fn from(reflection: Reflection) -> Self {
+        Self {
+            roughness: reflection.roughness,
+            surroundings: reflection.surroundings,
+            toy_above_surroundings: reflection.toy_above_surroundings,
+        }
+    }
 }
 
 impl From<Sharpness> for SharpnessEntry {

@@ -6,6 +6,7 @@
 use serde::Serialize;
 
 use crate::geometry::rect::PixelRect;
+use app_scene::reflection::Reflection;
 use app_scene::sharpness::Sharpness;
 
 /// Facts of a scene that decide its plan.
@@ -36,6 +37,8 @@ pub struct SceneFacts {
     pub sharpness: Sharpness,
     /// Whether this picture, or one before it, is softer than what is laid into it.
     pub is_softened: bool,
+    /// How the receiver that the toy stands on reflects; none where it is matt.
+    pub reflection: Option<Reflection>,
 }
 
 /// Factor up to which a penumbra's width may change before it counts as another.

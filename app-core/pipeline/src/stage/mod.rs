@@ -6,6 +6,7 @@ mod footprint;
 pub(crate) mod method;
 mod output;
 mod placement;
+mod reflection;
 mod reuse;
 mod soft;
 mod style;
@@ -38,6 +39,7 @@ use crate::readback::{FloatMap, Map};
 use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
 use app_scene::geometry::bounds::Bounds;
+use app_scene::reflection::Reflection;
 use app_scene::scene::{Camera, Image, Scene};
 use app_scene::shadow_style::ShadowStyle;
 use app_scene::sharpness::Sharpness;
@@ -95,6 +97,8 @@ pub(crate) struct Stage {
     reached_rects: Vec<PlaneRect>,
     /// How soft the latest picture is taken to be.
     sharpness: Sharpness,
+    /// How the first receiver reflects, as the latest frame says.
+    reflection: Option<Reflection>,
     /// How the latest frame's shadow is to look.
     shadow_style: ShadowStyle,
     /// How the shadow that was drawn last looks.
@@ -189,6 +193,7 @@ impl Stage {
             state: None,
             reached_rects: Vec::new(),
             sharpness: Sharpness::SHARP,
+            reflection: None,
             shadow_style: ShadowStyle::TRUE,
             drawn_style: ShadowStyle::TRUE,
             lights_inside: None,

@@ -152,6 +152,7 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
             has_things: false,
             sharpness: Sharpness::SHARP,
             is_softened: false,
+            reflection: None,
             region,
             physical_toy: Some(region),
             toy_box: Some(region),

@@ -46,6 +46,7 @@ fn facts_with(size_px: [u32; 2], penumbrae_px: Vec<f64>) -> SceneFacts {
         has_things: false,
         sharpness: Sharpness::SHARP,
         is_softened: false,
+        reflection: None,
         region,
         physical_toy: Some(region),
         toy_box: Some(region),
