@@ -12,6 +12,9 @@
 //! physical pose ─► shape ─────────────┴► pose ─► model ─► lights ─► things ─► Alignment
 //! ```
 //!
+//! Where the receiver that the toy stands on reflects the toy, that is found as well, once a session, and shadows are read without it
+//! (`lights/reflection`).
+//!
 //! How soft the photograph is, beside its plate and at the toy's outline, is measured on the way (`softness`).
 //!
 //! Where one of them is asked for, the **focal length** or the **scale** of the world is found first, by toy and shadow together (`ratio`);

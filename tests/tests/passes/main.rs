@@ -38,6 +38,7 @@ mod photo;
 mod plate;
 mod plates;
 mod references;
+mod reflection;
 mod residual;
 mod resources;
 mod retarget;

@@ -441,6 +441,7 @@ impl Stage {
         report.warnings.extend(self.plate_warning(footprint));
         report.warnings.extend(self.light_warning());
         report.warnings.extend(self.thing_warnings());
+        report.warnings.extend(self.reflection_warning());
         if !self.shows_toy(&footprint.view) {
             report.warnings.push(Warning::ToyOutOfPicture);
         }

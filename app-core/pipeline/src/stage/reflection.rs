@@ -3,12 +3,16 @@
 use glam::Vec4;
 
 use super::Stage;
+use crate::frame::warning::Warning;
 use crate::geometry::view::View;
 use crate::model::plan::Plan;
 use crate::preset::Settings;
 use app_scene::frame::FrameInput;
 use app_scene::reflection::Reflection;
 use app_scene::scene::MAX_LIGHTS;
+
+/// A smoother receiver shows more of the toy than its mean colour.
+const LEAST_ROUGHNESS: f64 = 0.05;
 
 /// Below a receiver, as a homogeneous light: it casts no shadow there.
 const NOWHERE: Vec4 = Vec4::NEG_Y;
@@ -27,6 +31,12 @@ impl Stage {
     pub(super) fn reflection_in_use(&self) -> Option<&Reflection> {
         let has_channel = self.lights.used.len() < MAX_LIGHTS;
         self.reflection.as_ref().filter(|_| has_channel)
+    }
+
+    /// That it reflects too sharply for one colour of the toy.
+    pub(super) fn reflection_warning(&self) -> Option<Warning> {
+        let roughness = self.reflection_in_use()?.roughness;
+        (roughness < LEAST_ROUGHNESS).then_some(Warning::MirrorLike { roughness })
     }
 
     /// The same with its channel.
