@@ -1,4 +1,4 @@
-//! What alignment finds of a frame.
+//! The result of aligning a frame.
 
 use std::sync::Arc;
 
@@ -12,34 +12,34 @@ use app_scene::scene::{Camera, Light, Scene};
 use app_scene::sharpness::Sharpness;
 use app_scene::things::Things;
 
-/// Where the toy and the lights of a frame are, by its picture.
+/// Camera, toy and lights of a frame, estimated from its picture.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Alignment {
-    /// The camera: as given, where it was not corrected.
+    /// The camera: as given if it was not corrected.
     pub camera: Camera,
-    /// Transform of the real toy, from object space to world: as given, where it was not corrected.
+    /// Transform of the real toy, from object space to world: as given if it was not corrected.
     pub world_from_object: DMat4,
-    /// The lights; none where those that were given stay.
+    /// The lights; `None` if the given ones stay.
     pub lights: Option<Arc<[Light]>>,
-    /// The scene that the core is to be given before this frame is shown: its plates' cameras were corrected, its plates are in another
-    /// light than before, its toy was adapted, or its receivers were laid under the toy. None if the core keeps the scene of the frame before, which for the
-    /// first frame is the one that the [`Aligner`](crate::Aligner) was made with.
+    /// The scene to set before this frame is shown, if it changed: its plates' cameras were corrected, its plates were
+    /// relit, its toy was adapted, or its receivers were fitted under the toy. `None` if the previous frame's scene
+    /// stays, which for the first frame is the one that the [`Aligner`](crate::Aligner) was made with.
     pub scene: Option<Arc<Scene>>,
-    /// Things that stand in the picture beside the toy; none where nothing tells of any.
+    /// Other things in the picture; `None` if they cannot be detected.
     pub things: Option<Things>,
-    /// How soft the picture is.
+    /// The softness of the picture.
     pub sharpness: Sharpness,
-    /// How the receiver that the toy stands on reflects; none where nothing tells that it does.
+    /// The reflection of the receiver below the toy; `None` if it is matt, as far as the picture shows.
     pub reflection: Option<Reflection>,
-    /// What was found.
+    /// The report.
     pub report: AlignmentReport,
-    /// What could not be aligned.
+    /// Failures of parts of the alignment.
     pub warnings: Vec<AlignmentWarning>,
 }
 
 impl Alignment {
-    /// An input as given, of which nothing was found.
+    /// An input as given, without any estimate.
     #[must_use]
     pub fn new(input: &FrameInput) -> Self {
         Self {
@@ -55,7 +55,7 @@ impl Alignment {
         }
     }
 
-    /// The input that it was found for, corrected.
+    /// The input, corrected.
     #[must_use]
     pub fn applied_to(&self, input: &FrameInput) -> FrameInput {
         input

@@ -17,6 +17,7 @@ mod probe_session;
 mod real_pictures;
 mod reflection;
 mod softness;
+mod texture;
 mod things;
 mod uncertainty;
 mod withheld;

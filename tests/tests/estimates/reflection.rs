@@ -68,15 +68,22 @@ impl Table {
         let is_hidden = |index: u32| {
             // Beckmann's slopes are normal, of a variance of half the square of alpha.
             let [radius, turn] = [2 * index, 2 * index + 1].map(|index| even(seed * 128 + index));
-            let slope = VARNISH.roughness * (-(1.0 - radius).ln()).sqrt() * DVec2::from_angle(turn * std::f64::consts::TAU);
+            let slope = VARNISH.roughness
+                * (-(1.0 - radius).ln()).sqrt()
+                * DVec2::from_angle(turn * std::f64::consts::TAU);
             let direction = ray.reflect(DVec3::new(slope.x, 1.0, slope.y).normalize());
             self.toy.nearest(at, direction).is_some()
         };
-        let n_hidden = if has_toy { (0..N_RAYS).filter(|index| is_hidden(*index)).count() } else { 0 };
+        let n_hidden = if has_toy {
+            (0..N_RAYS).filter(|index| is_hidden(*index)).count()
+        } else {
+            0
+        };
         let hidden = n_hidden as f32 / N_RAYS as f32;
         #[allow(clippy::cast_possible_truncation, reason = "a part of one")]
         let reflectance = VARNISH.reflectance(-ray.y) as f32;
-        let light = |channel: usize| VARNISH.surroundings[channel] + hidden * VARNISH.toy_above_surroundings[channel];
+        let light =
+            |channel: usize| VARNISH.surroundings[channel] + hidden * VARNISH.toy_above_surroundings[channel];
         [0, 1, 2].map(|channel| reflectance * light(channel))
     }
 
@@ -105,10 +112,13 @@ impl Table {
 #[test]
 fn a_varnished_table_is_told_from_a_matt_one() {
     let (scene, input) = SESSION.clone();
-    let found = |scene: &Scene, input: &FrameInput| Observer::default().observed(scene, input).unwrap().reflection;
+    let found =
+        |scene: &Scene, input: &FrameInput| Observer::default().observed(scene, input).unwrap().reflection;
     assert_eq!(found(&scene, &input), None);
     let table = Table::of(&scene, &input);
-    let varnished_input = input.clone().with_image(table.varnished(input.image.rgba(), true));
+    let varnished_input = input
+        .clone()
+        .with_image(table.varnished(input.image.rgba(), true));
     let mut varnished = scene.clone();
     for plate in &mut varnished.plates {
         plate.image = Arc::new(table.varnished(&plate.image, false));

@@ -83,7 +83,11 @@ fn the_toy_is_reflected_where_rays_from_the_table_meet_it() {
         let actual = visibility.texels().iter().map(|texel| texel[channel]);
         let errors = Errors::between(actual.zip(expected.texels().iter().copied()));
         // As of lights: a corner that is snapped moves an edge over a position, and what is stored is off by a code.
-        errors.check("toy's image", (0.5 / N_EYES as f64, 0.005), 2.0 / N_EYES as f64 + 1.0 / 255.0);
+        errors.check(
+            "toy's image",
+            (0.5 / N_EYES as f64, 0.005),
+            2.0 / N_EYES as f64 + 1.0 / 255.0,
+        );
     }
 }
 

@@ -154,7 +154,9 @@ impl Run {
         let residuals = core.read_residuals()?;
         Ok(Self {
             region: Region {
-                reflection: input.reflection.map(|reflection| known_reflection(&stand, &reflection)),
+                reflection: input
+                    .reflection
+                    .map(|reflection| known_reflection(&stand, &reflection)),
                 ..stand.region(&plan.region)
             },
             pictures: Pictures {

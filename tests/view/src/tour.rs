@@ -1,4 +1,5 @@
-//! A tour through every screen of the app, by a person who is simulated: what they see is written as pictures.
+//! A tour through every screen of the app by a simulated person: the screens are written as
+//! pictures.
 
 use std::path::{Path, PathBuf};
 
@@ -14,25 +15,25 @@ use desk::output::{WriteError, make_folder, write_png};
 
 /// Time between two frames, in seconds.
 const FRAME_S: f64 = 1.0 / 30.0;
-/// Frames that a screen takes to settle: menus open, messages come.
+/// Number of frames until a screen is stable: menus open, messages appear.
 const N_SETTLE: usize = 4;
-/// Frames after which a step that did not come is not waited for.
+/// Number of frames to wait for a step.
 const N_PATIENCE: usize = 60;
-/// Frames that are recorded, and as many as screens take meanwhile.
+/// Number of recorded frames, which the screens meanwhile take.
 const N_RECORDED: usize = 24;
 /// Frames of a video.
 const N_VIDEO: usize = 15;
-/// How far off the simulated person leaves the ghost: in metres, and in radians.
+/// Error of the ghost as the simulated person leaves it: in metres, and in radians.
 const GHOST_OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
 const GHOST_OFF_RAD: f64 = 0.1;
-/// Drags after which a button that is still out of sight is touched where it is.
+/// Number of drags after which a button that is still out of sight is touched at its place.
 const N_SCROLLS: usize = 6;
-/// What a sheet leaves free below what can be touched in it, in points.
+/// Free margin of a sheet below its controls, in points.
 const SHEET_MARGIN_POINTS: f64 = 28.0;
-/// What a step of the wheel turns, in radians, as the interface has it.
+/// Turn per step of the wheel, in radians, as in the interface.
 const WHEEL_RAD: f64 = 0.05;
 
-/// A tour that did not come to its end.
+/// A tour that ended early.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TourError {
@@ -42,24 +43,24 @@ pub enum TourError {
     /// A picture cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// There is no such button.
+    /// A button is missing.
     #[error("at {at}: no button «{label}»; there are {found:?}")]
     NoButton {
         /// The step.
         at: String,
         /// The label.
         label: String,
-        /// Those that there are.
+        /// The existing buttons.
         found: Vec<String>,
     },
-    /// The app did not go where it should.
+    /// The app is at the wrong step.
     #[error("after {after}: the step is {is:?}, not {expected:?}")]
     Astray {
-        /// What was done.
+        /// The last action.
         after: String,
-        /// Where it is.
+        /// The present step.
         is: Step,
-        /// Where it should be.
+        /// The expected step.
         expected: Step,
     },
 }
@@ -91,10 +92,9 @@ impl<'a> Tour<'a> {
         })
     }
 
-    /// Goes all the way, and returns the pictures in their order.
+    /// Makes the whole tour, and returns the pictures in their order.
     ///
-    /// # Errors
-    /// When the app does not go where it should.
+    /// # Errors When the app reaches a wrong step.
     pub fn go(mut self) -> Result<Vec<PathBuf>, TourError> {
         self.welcome()?;
         self.find_table()?;
@@ -141,7 +141,7 @@ impl<'a> Tour<'a> {
         self.expect(Step::TakePlate, "the table was tapped")
     }
 
-    /// Each question of a new phone.
+    /// All questions of a new phone.
     fn check_phone(&mut self) -> Result<(), TourError> {
         self.press("Check this phone")?;
         for number in 1..=PhoneQuestion::ALL.len() {
@@ -174,7 +174,7 @@ impl<'a> Tour<'a> {
         self.wait_for(Step::Play, "the toy was found")
     }
 
-    /// Of a session that has a picture of a lens.
+    /// For a session that has a picture of a lens.
     fn take_lens(&mut self) -> Result<(), TourError> {
         // A camera takes some frames to darken.
         self.press("Light from the lens")?;
@@ -197,7 +197,7 @@ impl<'a> Tour<'a> {
         }
         self.press("More")?;
         self.shoot("menu")?;
-        // Each of these changes what the sheet is made of, and with it where its buttons are.
+        // Each of these changes the contents of the sheet, and so the places of its buttons.
         for label in ["Show times", "Record the session", "Close", "Play"] {
             self.press(label)?;
             self.shoot_nothing()?;
@@ -266,7 +266,7 @@ impl<'a> Tour<'a> {
         self.during(Fault::NoAr)
     }
 
-    /// The screen while something goes wrong, and on until it has passed.
+    /// The screen during a fault, until it has passed.
     fn during(&mut self, fault: Fault) -> Result<(), TourError> {
         if let Some(event) = fault.strikes(&mut self.desk.feed) {
             self.desk.tell(event);
@@ -281,7 +281,7 @@ impl<'a> Tour<'a> {
         Ok(())
     }
 
-    /// Pixels of the picture where the toy's origin is seen, moved in the world.
+    /// The image of the toy's origin, moved in the world, in pixels.
     fn toy_px(&self, moved_m: DVec3) -> DVec2 {
         let (world_from_object, camera) = self.desk.feed.toy();
         let at = world_from_object.w_axis.truncate() + moved_m;
@@ -289,7 +289,7 @@ impl<'a> Tour<'a> {
         camera.intrinsics.pixel_of(in_camera).unwrap_or(DVec2::ZERO)
     }
 
-    /// Turns the ghost with the wheel until it faces as the toy does, but for a little.
+    /// Turns the ghost with the wheel until it almost has the toy's orientation.
     fn turn_ghost(&mut self) -> Result<(), TourError> {
         let (world_from_object, camera) = self.desk.feed.toy();
         let yaw = |pose: &DMat4| pose.z_axis.x.atan2(pose.z_axis.z);
@@ -319,7 +319,7 @@ impl<'a> Tour<'a> {
         Ok(())
     }
 
-    /// Touches a button by what a screen reader calls it, which may have to be scrolled to.
+    /// Touches a button by its accessibility label, after scrolling if needed.
     fn press(&mut self, label: &str) -> Result<(), TourError> {
         for _ in 0..N_SCROLLS {
             let [left, _, right, bottom] = self.button(label)?;
@@ -334,7 +334,8 @@ impl<'a> Tour<'a> {
         self.touch([0.5 * (left + right), 0.5 * (top + bottom)])
     }
 
-    /// Scrolls what is below a finger, which then rests for a while so that nothing rolls on.
+    /// Scrolls the contents below a finger, which then rests for a while so that the scrolling
+    /// stops.
     fn drag_up(&mut self, [x, y]: [f64; 2], by_px: f64) -> Result<(), TourError> {
         let phases = [
             (TouchPhase::Began, 0.0),
@@ -404,7 +405,7 @@ impl<'a> Tour<'a> {
         Ok(())
     }
 
-    /// Writes what the screen shows.
+    /// Writes the screen as a picture.
     fn shoot(&mut self, name: &str) -> Result<(), TourError> {
         self.shoot_nothing()?;
         self.time_s += FRAME_S;

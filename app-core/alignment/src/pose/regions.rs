@@ -1,11 +1,13 @@
-//! Where an upright toy may be in a picture, seen from given directions: the first guess if no pose is known.
+//! Initial guesses of an upright toy's place in a picture, for given viewing directions, if no pose
+//! is known.
 //!
-//! A silhouette in the right place has the toy's colours within it, and beside it the plate, lit or in shadow. So the colours within and
-//! the ratios to the plate beside it each fill as few bins of a histogram as possible: the sum of both entropies is least there. No
-//! colour of the model is needed, and no threshold separates toy and shadow.
+//! A silhouette in the right place has the toy's colours within it, and beside it the plate, lit or
+//! in shadow. So the colours within and the ratios to the plate beside it each fill as few bins of
+//! a histogram as possible: the sum of both entropies is least there. No colour of the model is
+//! needed, and no threshold separates toy and shadow.
 //!
-//! Source: region-based pose estimation (Rosenhahn et al. 2007; Prisacariu and Reid 2012, PWP3D), with the ratio to the plate in place of
-//! the background's colours.
+//! Source: region-based pose estimation (Rosenhahn et al. 2007; Prisacariu and Reid 2012, PWP3D),
+//! with the ratio to the plate in place of the background's colours.
 
 use std::collections::BTreeMap;
 
@@ -19,20 +21,21 @@ use app_scene::scene::Intrinsics;
 
 /// Width of a bin of colours, in natural logarithms of light.
 const BIN: f32 = 0.25;
-/// Of all pixels, what may have any colour at all, and how many bins that are.
+/// Fraction of all pixels that may have any colour, and its number of bins.
 const ANY_COLOR: f64 = 0.02;
 const N_LIKELY_BINS: f64 = 500.0;
-/// A pixel changed if a channel's ratio to the plate is farther from the median's, in natural logarithms.
+/// Distance of a changed pixel's ratio to the plate from the median, in natural logarithms, in any
+/// channel.
 const CHANGED: f32 = 0.12;
-/// What changed is toy and shadow: sizes of the toy's silhouette over that.
+/// Sizes of the toy's silhouette over the changed area, which is toy and shadow.
 const SHARES: [f64; 7] = [0.95, 0.8, 0.66, 0.55, 0.45, 0.36, 0.28];
-/// Sizes over the picture's where no plate tells what changed.
+/// Sizes over the picture's if there is no plate.
 const SHARES_OF_PICTURE: [f64; 7] = [0.3, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035];
-/// A silhouette has to be that far within the picture, as a part of its pixels.
+/// Smallest fraction of a silhouette's pixels inside the picture.
 const LEAST_INSIDE: f64 = 0.8;
-/// Pixels between places that are tried.
+/// Distance of the places to try, in pixels.
 const STRIDE_PX: i32 = 2;
-/// Pixels around what changed that are looked at, over the square root of its area.
+/// Margin around the changed area, over the square root of that area.
 const MARGIN: f64 = 0.35;
 
 /// A direction from which an upright toy is seen.
@@ -52,16 +55,17 @@ impl ViewDirection {
     }
 }
 
-/// A place of the toy, and how badly its silhouette divides the picture.
+/// A place of the toy, with the cost of its silhouette.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Guess {
-    /// From the space that its shape was given in.
+    /// Transform from the space of the given shape.
     pub(crate) camera_from_upright: DMat4,
     /// Mean entropy of a pixel, in nats.
     pub(crate) cost: f64,
 }
 
-/// The best place for each direction, the best first. The shape is upright, its middle at `shape.centre`.
+/// The best place for each direction, the best first. The shape is upright, its centre at
+/// `shape.centre`.
 pub(crate) fn guesses(shape: &Shape, level: &Level, directions: &[ViewDirection]) -> Vec<Guess> {
     let regions = Regions::new(level);
     let guesses = directions
@@ -72,20 +76,21 @@ pub(crate) fn guesses(shape: &Shape, level: &Level, directions: &[ViewDirection]
     guesses
 }
 
-/// The pixels of a level that are looked at, each with its bins.
+/// The pixels of a level, each with its bins.
 struct Regions<'a> {
     k: &'a Intrinsics,
     size_px: IVec2,
-    /// Bins of the colour and of the ratio to the plate; none where nothing is known, or beside what is looked at.
+    /// Bins of the colour and of the ratio to the plate; `None` for unknown pixels, and outside of
+    /// the searched rectangle.
     bins: Vec<Option<[u32; 2]>>,
     /// Number of bins of colours and of ratios.
     n_bins: [usize; 2],
-    /// How often each ratio is seen.
+    /// Histogram of the ratios.
     ratios: Vec<f64>,
     n: f64,
     /// Sizes of silhouettes, in pixels.
     areas_px: Vec<f64>,
-    /// What is looked at.
+    /// Corner of the searched rectangle.
     from_px: IVec2,
     to_px: IVec2,
 }
@@ -134,7 +139,7 @@ impl<'a> Regions<'a> {
         let mut best: Option<Guess> = None;
         for area_px in &self.areas_px {
             let mut silhouette = self.silhouette(shape, &upright, depth_m);
-            // Twice, since a near toy looks another way than a far one.
+            // Twice, since the view of a near toy differs from that of a far one.
             for _ in 0..2 {
                 depth_m = (depth_m * (silhouette.len() as f64 / area_px).sqrt()).max(1.5 * shape.radius_m);
                 silhouette = self.silhouette(shape, &upright, depth_m);
@@ -152,14 +157,14 @@ impl<'a> Regions<'a> {
         best
     }
 
-    /// A toy that is seen in the middle of the picture, moved to be seen elsewhere in the same way.
+    /// A toy in the centre of the picture, moved to another place with the same view.
     fn placed(&self, at_px: DVec2, depth_m: f64) -> DMat4 {
         let ray = DVec3::new(at_px.x / self.k.fx_px, -at_px.y / self.k.fy_px, -1.0);
         let turn = DQuat::from_rotation_arc(DVec3::NEG_Z, ray.normalize());
         DMat4::from_translation(depth_m * ray) * DMat4::from_quat(turn)
     }
 
-    /// Pixels of the toy in the middle of the picture, against the principal point.
+    /// Pixels of the toy in the centre of the picture, relative to the principal point.
     fn silhouette(&self, shape: &Shape, camera_from_upright: &DMat4, depth_m: f64) -> Vec<IVec2> {
         let moved = DMat4::from_translation(DVec3::new(0.0, 0.0, -depth_m)) * *camera_from_upright;
         let points = shape.points.iter().map(|point| moved.transform_point3(*point));
@@ -174,7 +179,7 @@ impl<'a> Regions<'a> {
         covered.map(|at| at - self.size_px).collect()
     }
 
-    /// The shift from the principal point at which a silhouette explains the picture best.
+    /// The shift from the principal point with the lowest cost.
     fn best_place(&self, silhouette: &[IVec2]) -> Option<(IVec2, f64)> {
         let middle = DVec2::new(self.k.cx_px, self.k.cy_px).round().as_ivec2();
         let span = (self.to_px - self.from_px) / STRIDE_PX;
@@ -189,7 +194,7 @@ impl<'a> Regions<'a> {
         costs.min_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
-    /// Mean entropy of a pixel; none where the silhouette leaves what is looked at.
+    /// Mean entropy of a pixel; `None` if the silhouette leaves the searched rectangle.
     fn cost(&self, silhouette: &[IVec2], shift: IVec2) -> Option<f64> {
         let middle = DVec2::new(self.k.cx_px, self.k.cy_px).round().as_ivec2();
         let mut colors = vec![0.0; self.n_bins[0]];
@@ -207,7 +212,7 @@ impl<'a> Regions<'a> {
     }
 }
 
-/// Of so many values that are distributed over bins, in nats.
+/// Entropy of `n` values distributed over bins, in nats.
 fn entropy(counts: &[f64], n: f64) -> f64 {
     let used = counts.iter().filter(|count| **count > 0.0);
     let terms = used.map(|count| {
@@ -217,7 +222,8 @@ fn entropy(counts: &[f64], n: f64) -> f64 {
     terms.sum()
 }
 
-/// Sizes that the toy's silhouette may have, and the rectangle to look at: around what changed, if a plate says what that is.
+/// Possible sizes of the toy's silhouette, and the rectangle to search: around the changed area, if
+/// there is a plate.
 fn extent(level: &Level) -> (Vec<f64>, IVec2, IVec2) {
     let size_px = level.frame.size_px;
     let n_pixels = f64::from(size_px.x * size_px.y);
@@ -246,7 +252,7 @@ fn extent(level: &Level) -> (Vec<f64>, IVec2, IVec2) {
         return whole;
     }
     let n_changed = changed.len() as f64;
-    // A speck far away is no part of it.
+    // A distant speck is no part of it.
     let [x, y] = [0, 1].map(|axis| {
         let mut values: Vec<i32> = changed.iter().map(|at| at[axis]).collect();
         values.sort_unstable();
