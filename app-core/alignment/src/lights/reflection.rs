@@ -49,6 +49,10 @@ const LEAST_HIDDEN: usize = 60;
 /// ones up to .13, and with the widest lobe .16.
 const LEAST_EXPLAINED: f64 = 0.2;
 
+/// And the toy in it is brighter or darker than the surroundings by as much, in the mean over the channels: less is what a shadow
+/// beside its place leaves (.06 if a light is 3 degrees off), and hardly shows.
+const LEAST_LIGHT: f64 = 0.12;
+
 type Row = SVector<f64, N_COLUMNS>;
 
 /// A reflection that explains a part of a picture.
@@ -136,8 +140,10 @@ impl Trial {
         let left = |fit: &Fit| -> f64 { hidden.iter().map(|index| fit.losses[*index]).sum() };
         let factors = &self.fit.factors;
         let gain = [0, 1, 2].map(|channel: usize| factors[channel][0]);
-        let is_told =
-            hidden.len() >= LEAST_HIDDEN && left(&self.fit) <= (1.0 - LEAST_EXPLAINED) * left(without);
+        let toy_light = [0, 1, 2].map(|channel: usize| (factors[channel][TOY] / gain[channel]).abs());
+        let is_told = hidden.len() >= LEAST_HIDDEN
+            && left(&self.fit) <= (1.0 - LEAST_EXPLAINED) * left(without)
+            && toy_light.iter().sum::<f64>() >= 3.0 * LEAST_LIGHT;
         #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
         let light =
             |column: usize| [0, 1, 2].map(|channel: usize| (factors[channel][column] / gain[channel]) as f32);
