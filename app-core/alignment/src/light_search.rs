@@ -158,6 +158,10 @@ impl Aligner {
         // If the toy's pose is wrong, the picture shows the place behind it, as if a thing stood in
         // front of the toy.
         let are_told = !self.are_shadows_withheld && seen.view.is_trusted(MOST_OUTLINE_PX);
+        let as_it_is = seen;
+        let is_looked_for = self.look_for_reflection(seen, &known)?;
+        let freed = self.freed_of_reflection(seen)?;
+        let seen = freed.as_ref().unwrap_or(seen);
         let things = if !are_told {
             None
         } else {
@@ -170,13 +174,18 @@ impl Aligner {
             Some(kept) => self.watch_lights(kept, looked_at)?,
             None => self.find_lights(given, looked_at)?,
         };
+        if is_looked_for && lights.in_use() != &*known {
+            self.look_again(as_it_is, lights.in_use())?;
+        }
         let things = if !are_told || lights.in_use() == &*known {
             things
         } else {
             // Plates may have been relit.
             let is_same = Arc::ptr_eq(&before, &self.scene);
             let relit = (!is_same).then(|| Seen::again(&self.scene, seen.view.clone(), &seen.input));
-            let photograph = &relit.as_ref().unwrap_or(seen).photograph;
+            let relit = relit.as_ref().unwrap_or(as_it_is);
+            let freed = self.freed_of_reflection(relit)?;
+            let photograph = &freed.as_ref().unwrap_or(relit).photograph;
             photograph.things(&self.scene, &seen.input, lights.in_use())?
         };
         if are_told && self.gloss.is_none() {

@@ -32,6 +32,7 @@ impl Observer {
                 .clone()
                 .with_things(latest.things.clone())
                 .with_sharpness(latest.sharpness)
+                .with_reflection(latest.reflection)
                 .with_gloss(latest.gloss),
             None => self.looked_at(scene, input)?,
         };
@@ -45,17 +46,25 @@ impl Observer {
         // Things are detected against an equally soft plate.
         let photograph = photograph.with_plate_as_soft(sharpness.plate_spread);
         let lights = input.lights_in(scene);
+        let reflection = photograph.reflection(scene, input, &lights)?;
+        // And on a receiver as if it were matt.
+        let freed = match &reflection {
+            Some(found) => Some(photograph.freed_of(scene, input, found)?),
+            None => None,
+        };
+        let photograph = freed.as_ref().unwrap_or(&photograph);
         let things = photograph.things(scene, input, &lights)?;
         let gloss = match self.gloss {
             Some(gloss) => gloss,
             None => {
                 let clear = things.as_ref().map(|things| photograph.clear_of(things));
-                let photograph = clear.as_ref().unwrap_or(&photograph);
+                let photograph = clear.as_ref().unwrap_or(photograph);
                 photograph.gloss(scene, &input.world_from_object, &lights)?
             }
         };
         self.gloss = Some(gloss);
         let input = input.clone().with_things(things).with_sharpness(sharpness);
-        Ok(input.with_gloss(gloss))
+        let reflection = reflection.map(|found| found.reflection);
+        Ok(input.with_reflection(reflection).with_gloss(gloss))
     }
 }

@@ -11,6 +11,7 @@ use app_core::frame::FrameInput;
 use app_core::gloss::Gloss;
 use app_core::preset::Preset;
 use app_core::probe::TrackedLight;
+use app_core::reflection::Reflection;
 use app_core::scene::{Camera, Light, Receiver, Scene};
 use app_core::session::{Session, SessionFrame};
 use app_core::sharpness::Sharpness;
@@ -121,6 +122,7 @@ struct Observed {
     things: Option<Things>,
     sharpness: Sharpness,
     gloss: Gloss,
+    reflection: Option<Reflection>,
 }
 
 /// The alignment of one frame.
@@ -330,6 +332,7 @@ impl Alignments {
             things: observed.things,
             sharpness: observed.sharpness,
             gloss: observed.gloss,
+            reflection: observed.reflection,
         });
         Ok(())
     }
@@ -422,6 +425,7 @@ impl Alignments {
                         .with_things(observed.things.clone())
                         .with_sharpness(observed.sharpness)
                         .with_gloss(observed.gloss)
+                        .with_reflection(observed.reflection)
                 })
             }
         }

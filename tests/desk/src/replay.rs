@@ -388,6 +388,7 @@ impl<'a> Run<'a> {
             alignment: shot.alignments.of(shot.index).map(AlignmentEntry::from),
             sharpness: input.sharpness.into(),
             gloss: GlossEntry::of(&input.gloss),
+            reflection: input.reflection.map(Into::into),
             scores: None,
             floor_rmse: shot.floor_rmse,
             flicker: None,

@@ -16,6 +16,7 @@ mod pose_filter;
 mod probe;
 mod probe_session;
 mod real_pictures;
+mod reflection;
 mod softness;
 mod texture;
 mod things;

@@ -77,6 +77,16 @@ impl<'a> Caster<'a> {
         taken.into_iter().map(|[taken]| taken).collect()
     }
 
+    /// The part of a lobe that the toy hides from each pixel of the first receiver; of eyes behind it in its space, homogeneous.
+    pub(super) fn image(&self, raster: &mut Rasterizer, pixels: &[FloorPixel], eyes: &[DVec4]) -> Vec<f32> {
+        let mut hidden = vec![[0.0]; pixels.len()];
+        if !self.receivers.is_empty() {
+            let eyes = eyes.iter().map(|eye| (*eye, [1.0]));
+            self.add(raster, pixels, 0, eyes.collect(), &mut hidden);
+        }
+        hidden.into_iter().map(|[hidden]| hidden).collect()
+    }
+
     /// Irradiance of each pixel's receiver from a lamp, relative to the foot of the toy there.
     pub(super) fn lit(&self, pixels: &[FloorPixel], lamp: &Lamp) -> Vec<f32> {
         let seen = self.receivers.iter().map(|receiver| {

@@ -22,6 +22,7 @@ mod leftover;
 mod long;
 mod prior;
 mod refine;
+mod reflection;
 mod relight;
 mod shading;
 mod shadows;
@@ -46,6 +47,7 @@ pub(super) use follow::{Around, Followed, View};
 pub(super) use guess::{Guess, Hints};
 use lamp::{Lamp, N_PARTS, disc};
 use prior::Prior;
+pub(super) use reflection::{FoundReflection, reflected, reflection};
 pub(super) use relight::Relight;
 pub(super) use watch::{Watched, watch};
 

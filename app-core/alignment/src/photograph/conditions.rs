@@ -3,7 +3,8 @@
 use glam::DMat4;
 
 use super::Photograph;
-use crate::{gloss, pose, softness, things};
+use crate::lights::FoundReflection;
+use crate::{gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
 use app_scene::gloss::Gloss;
 use app_scene::scene::{Camera, Light, Scene};
@@ -25,6 +26,55 @@ impl Photograph {
             receivers: self.receivers.clone(),
             camera_from_world: self.camera_from_world,
         }
+    }
+
+    /// How the receiver that the toy stands on reflects, in given lights; none where the picture does not tell.
+    pub(crate) fn reflection(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        lights: &[Light],
+    ) -> Result<Option<FoundReflection>, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let world_from_camera = &input.camera.world_from_camera;
+        Ok(lights::reflection(
+            lights,
+            (&shape, &self.receivers),
+            &self.pyramid,
+            world_from_camera,
+        ))
+    }
+
+    /// As if the receiver that the toy stands on were matt.
+    pub(crate) fn freed_of(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        found: &FoundReflection,
+    ) -> Result<Self, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let mut level = self.pyramid.level(0).clone();
+        let reflection = &found.reflection;
+        let (surroundings, toy) = (reflection.surroundings, reflection.toy_above_surroundings);
+        for (at, reflectance, hidden) in lights::reflected((&shape, &self.receivers), &level, reflection) {
+            #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
+            let light = |channel: usize, hidden: f64, gain: f64| {
+                let light = f64::from(surroundings[channel]) + hidden * f64::from(toy[channel]);
+                (-gain * reflectance * light) as f32
+            };
+            level.frame.add(
+                at,
+                [0, 1, 2].map(|channel| light(channel, hidden, found.gain[channel])),
+            );
+            if let Some(plate) = &mut level.plate {
+                plate.add(at, [0, 1, 2].map(|channel| light(channel, 0.0, 1.0)));
+            }
+        }
+        Ok(Self {
+            pyramid: self.pyramid.with_largest(level),
+            receivers: self.receivers.clone(),
+            camera_from_world: self.camera_from_world,
+        })
     }
 
     /// Other things beside the toy in its place, under given lights; `None` if they cannot be

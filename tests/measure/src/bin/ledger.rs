@@ -88,6 +88,7 @@ fn in_words(input: &FrameInput) -> String {
     let parts = [
         (input.things.is_some(), "other things"),
         (input.sharpness != Sharpness::SHARP, "softness"),
+        (input.reflection.is_some(), "the toy's reflection"),
         (input.grain.is_some(), "grain"),
         (!input.gloss.is_none(), "gloss"),
     ];

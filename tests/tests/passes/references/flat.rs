@@ -30,6 +30,7 @@ pub(crate) fn region(size_px: UVec2, lights: Vec<DVec4>) -> Region {
         size_px,
         border_px: [0.0; 4],
         lights,
+        reflection: None,
     }
 }
 
