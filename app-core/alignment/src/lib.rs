@@ -39,6 +39,7 @@ mod directions;
 mod error;
 mod gloss;
 mod found;
+mod found_planes;
 mod hand;
 mod kept_lights;
 mod kept_reflection;
@@ -94,7 +95,8 @@ pub use observer::Observer;
 pub use outlines::Outlines;
 pub use report::{
     AlignmentReport, AssumedLight, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment,
-    LightDeviation, ModelAlignment, PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome, Stand,
+    LightDeviation, ModelAlignment, PlaneAlignment, PoseAlignment, PoseDeviation, RatioAlignment,
+    RatioOutcome, Stand,
 };
 pub use toy_search::{FoundToy, ToySearch, ViewDirection, find_toy};
 pub use warning::AlignmentWarning;
@@ -133,8 +135,10 @@ pub struct Aligner {
     lights: Option<KeptLights>,
     /// The things in the latest view.
     things: Option<Things>,
-    /// Of the receiver that the toy stands on, once it was looked for.
+    /// The reflection of the receiver under the toy, once it was searched.
     reflection: KeptReflection,
+    /// Planes of things on the table.
+    planes: found_planes::FoundPlanes,
     /// Whether the scene's plates were relit.
     is_relit: bool,
     are_shadows_withheld: bool,
@@ -165,6 +169,7 @@ impl Aligner {
             things: None,
             gloss: None,
             reflection: KeptReflection::default(),
+            planes: found_planes::FoundPlanes::default(),
             is_relit: false,
             are_shadows_withheld: false,
             model: None,
@@ -399,6 +404,7 @@ impl Aligner {
             unexplained: lights.and_then(KeptLights::unexplained),
             probe: self.probe.clone().filter(|_| discovered.is_some()),
             is_relit: self.is_relit,
+            planes: self.planes.report.clone(),
         };
         let applied = lights.and_then(|lights| lights.applied.clone());
         let off = report.pose.filter(|pose| pose.shown_px() > MOST_OUTLINE_PX);

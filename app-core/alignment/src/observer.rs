@@ -1,17 +1,24 @@
 //! Observes a photograph's other properties if camera, toy and lights stay as given.
 
+use std::sync::Arc;
+
 use super::error::{self, AlignError};
+use super::found_planes::FoundPlanes;
+use super::lights::FoundReflection;
 use super::photograph::Photograph;
+use super::report::PlaneAlignment;
 use app_scene::frame::FrameInput;
 use app_scene::gloss::Gloss;
-use app_scene::scene::Scene;
+use app_scene::scene::{Light, Scene};
+use app_scene::sharpness::Spread;
 
-/// Observes frames that are shown as given.
+/// Observes frames of one scene that are shown as given.
 #[derive(Debug, Default)]
 pub struct Observer {
     latest: Option<FrameInput>,
     /// How glossy the toy is, once that was looked for.
     gloss: Option<Gloss>,
+    planes: FoundPlanes,
 }
 
 impl Observer {
@@ -34,31 +41,55 @@ impl Observer {
                 .with_sharpness(latest.sharpness)
                 .with_reflection(latest.reflection)
                 .with_gloss(latest.gloss),
-            None => self.looked_at(scene, input)?,
+            None => self.look(scene, input)?,
         };
         self.latest = Some(observed.clone());
         Ok(observed)
     }
 
-    fn looked_at(&mut self, scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
-        let photograph = Photograph::new(scene, input, None);
-        let sharpness = photograph.sharpness_as_given(scene, &input.world_from_object)?;
-        // Things are detected against an equally soft plate.
-        let photograph = photograph.with_plate_as_soft(sharpness.plate_spread);
-        let lights = input.lights_in(scene);
-        let reflection = photograph.reflection(scene, input, &lights)?;
-        // And on a receiver as if it were matt.
-        let freed = match &reflection {
-            Some(found) => Some(photograph.freed_of(scene, input, found)?),
-            None => None,
+    /// Planes of things that were found in the frames so far.
+    #[must_use]
+    pub fn planes(&self) -> &[PlaneAlignment] {
+        &self.planes.report
+    }
+
+    /// A scene with these planes among its receivers: the one to give to the core.
+    #[must_use]
+    pub fn scene(&self, scene: &Scene) -> Scene {
+        let mut scene = Arc::new(scene.clone());
+        self.planes.add_to(&mut scene);
+        Arc::unwrap_or_clone(scene)
+    }
+
+    fn look(&mut self, scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
+        let known = self.scene(scene);
+        let photograph = Photograph::new(&known, input, None);
+        let sharpness = photograph.sharpness_as_given(&known, &input.world_from_object)?;
+        let lights = input.lights_in(&known);
+        // The reflection is that of the receiver under the toy, which found planes do not change.
+        let reflection = photograph
+            .with_plate_as_soft(sharpness.plate_spread)
+            .reflection(&known, input, &lights)?;
+        let look = Look {
+            input,
+            lights: &lights,
+            plate_spread: sharpness.plate_spread,
+            reflection: reflection.as_ref(),
         };
-        let photograph = freed.as_ref().unwrap_or(&photograph);
-        let things = photograph.things(scene, input, &lights)?;
+        let mut photograph = look.photograph(&known)?;
+        let wants_planes = self.planes.are_wanted();
+        let sighted = photograph.things(&known, input, &lights, wants_planes)?;
+        let mut things = sighted.things;
+        if wants_planes && things.is_some() && self.planes.take(sighted.planes) {
+            let known = self.scene(scene);
+            photograph = look.photograph(&known)?;
+            things = photograph.things(&known, input, &lights, false)?.things;
+        }
         let gloss = match self.gloss {
             Some(gloss) => gloss,
             None => {
                 let clear = things.as_ref().map(|things| photograph.clear_of(things));
-                let photograph = clear.as_ref().unwrap_or(photograph);
+                let photograph = clear.as_ref().unwrap_or(&photograph);
                 photograph.gloss(scene, &input.world_from_object, &lights)?
             }
         };
@@ -66,5 +97,24 @@ impl Observer {
         let input = input.clone().with_things(things).with_sharpness(sharpness);
         let reflection = reflection.map(|found| found.reflection);
         Ok(input.with_reflection(reflection).with_gloss(gloss))
+    }
+}
+
+/// The conditions in which a frame is looked at.
+struct Look<'a> {
+    input: &'a FrameInput,
+    lights: &'a [Light],
+    plate_spread: Spread,
+    reflection: Option<&'a FoundReflection>,
+}
+
+impl Look<'_> {
+    /// The frame beside an equally soft plate, both as if the receiver under the toy were matt.
+    fn photograph(&self, scene: &Scene) -> Result<Photograph, AlignError> {
+        let photograph = Photograph::new(scene, self.input, None).with_plate_as_soft(self.plate_spread);
+        Ok(match self.reflection {
+            Some(found) => photograph.freed_of(scene, self.input, found)?,
+            None => photograph,
+        })
     }
 }

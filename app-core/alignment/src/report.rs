@@ -52,6 +52,36 @@ pub struct AlignmentReport {
     pub unexplained: Option<f64>,
     /// Whether plates were relit, since lights were moved or switched on.
     pub is_relit: bool,
+    /// Planes of things on the receivers that were found by the toy's shadow on them: the scene has them as receivers.
+    pub planes: Vec<PlaneAlignment>,
+}
+
+/// A plane of a thing that stands on a receiver, by the toy's shadow on it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PlaneAlignment {
+    /// Of its middle above that receiver, in metres.
+    pub height_m: f64,
+    /// Between both, in radians.
+    pub tilt_rad: f64,
+    /// Half the sides of its rectangle, in metres.
+    pub half_extent_m: [f64; 2],
+    /// Mean squared difference from what the thing shows, in plates: of that receiver, and of this plane.
+    pub losses: [f64; 2],
+}
+
+impl fmt::Display for PlaneAlignment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, z] = self.half_extent_m.map(|half_m| 2e2 * half_m);
+        write!(f, "a plane {:.0} mm above the receiver", 1e3 * self.height_m)?;
+        if self.tilt_rad > 0.0 {
+            write!(
+                f,
+                " in its middle, tilted by {:.0} degrees",
+                self.tilt_rad.to_degrees()
+            )?;
+        }
+        write!(f, ", {x:.0} x {z:.0} cm")
+    }
 }
 
 /// The camera, estimated from the receivers in the plates.

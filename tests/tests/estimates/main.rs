@@ -11,6 +11,7 @@ mod gloss;
 mod lens_found;
 mod model;
 mod moved_lights;
+mod planes;
 mod plate_taker;
 mod pose_filter;
 mod probe;

@@ -54,7 +54,10 @@ impl Found {
             let plate = painted(&scene.plates[0].image, rect);
             scene.plates[0].image = Arc::new(plate);
         }
-        let things = Observer::default().observed(&scene, &input).unwrap().things;
+        let mut observer = Observer::default();
+        let things = observer.observed(&scene, &input).unwrap().things;
+        // No shadow lies on what is painted.
+        assert!(observer.planes().is_empty());
         Self { things, rect }
     }
 

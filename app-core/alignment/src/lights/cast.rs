@@ -225,7 +225,7 @@ fn on_plane(point: DVec3, light: DVec4, camera_from_plane: &DMat4) -> DVec3 {
 }
 
 /// Irradiance of the plane from a point of a light, up to a factor.
-fn irradiance(point: DVec4, at: DVec3) -> f64 {
+pub(super) fn irradiance(point: DVec4, at: DVec3) -> f64 {
     let to = point.truncate() - point.w * at;
     let falloff = if point.w == 0.0 {
         to.length()

@@ -3,14 +3,25 @@
 use glam::DMat4;
 
 use super::Photograph;
+use crate::found_planes::FoundReceiver;
 use crate::lights::FoundReflection;
 use crate::{gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
 use app_scene::gloss::Gloss;
+use app_scene::geometry::nearest_receivers::nearest_receivers;
 use app_scene::scene::{Camera, Light, Scene};
 use app_scene::sharpness::{Sharpness, Spread};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
+
+/// What stands beside the toy.
+#[derive(Default)]
+pub(crate) struct Sighted {
+    /// None where nothing tells of any.
+    pub(crate) things: Option<Things>,
+    /// Planes that things have.
+    pub(crate) planes: Vec<FoundReceiver>,
+}
 
 impl Photograph {
     /// With the plate blurred by a spread, in pixels of the picture.
@@ -84,7 +95,8 @@ impl Photograph {
         scene: &Scene,
         input: &FrameInput,
         lights: &[Light],
-    ) -> Result<Option<Things>, ToyError> {
+        wants_planes: bool,
+    ) -> Result<Sighted, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let paint = pose::Paint::new(scene, &self.camera_from_object(&input.world_from_object))?;
         let found = things::find(&things::Sight {
@@ -94,13 +106,33 @@ impl Photograph {
             pyramid: &self.pyramid,
             lights,
             world_from_camera: &input.camera.world_from_camera,
+            wants_planes,
+        });
+        let Some(found) = found else {
+            return Ok(Sighted::default());
+        };
+        let toy_in_world = input.world_from_object.w_axis.truncate();
+        let in_scene = nearest_receivers(&scene.receivers, &[toy_in_world]);
+        let planes = found.planes.into_iter().map(|found| {
+            let receiver = found.plane.receiver(
+                format!("{:.0} mm up", 1e3 * found.report.height_m),
+                &input.camera.world_from_camera,
+            );
+            FoundReceiver {
+                receiver,
+                instead_of: found.instead_of.and_then(|index| in_scene.get(index).copied()),
+                report: found.report,
+            }
         });
         // Camera of the largest level, which may be smaller than the picture.
         let camera = Camera {
             intrinsics: input.camera.intrinsics.scaled(self.pyramid.picture_px().recip()),
             ..input.camera
         };
-        Ok(found.and_then(|(size_px, marks)| Things::new(size_px.as_uvec2(), marks, camera)))
+        Ok(Sighted {
+            planes: planes.collect(),
+            things: Things::new(found.size_px.as_uvec2(), found.marks, camera),
+        })
     }
 
     /// How glossy the toy is in its place, in given lights.

@@ -8,9 +8,12 @@
 
 mod codes;
 mod colors;
+mod extent;
 mod groups;
 mod grown;
+pub(crate) mod planes;
 mod seeds;
+mod simplex;
 
 use glam::{DMat4, DVec2, IVec2};
 
@@ -18,14 +21,15 @@ use crate::lights::Compared;
 use crate::picture::{Color, Level, Mask, Pyramid, index_in, places};
 use crate::pose::Paint;
 use crate::raster::{Coverage, Rasterizer, project};
-use crate::receivers::SeenReceiver;
+use crate::receivers::{SeenReceiver, receiver_at};
 use crate::shape::Shape;
 use app_scene::geometry::color::srgb_from_linear;
-use app_scene::scene::Light;
+use app_scene::scene::{Light, MAX_RECEIVERS};
 use app_scene::things::Mark;
 use codes::{Codes, UNLIKE_CODES, apart, from_shaded};
 use groups::{groups, most_around, place_of};
 use grown::Grown;
+use planes::FoundPlane;
 use seeds::{Seed, Seeds};
 
 /// Pixels of the level on which things are looked for, at most: more tell no more and take longer.
@@ -43,6 +47,8 @@ const LEAST_ALONE: usize = 60;
 const LEAST_IN_FRAME: usize = 12;
 /// And that part of where it would be before the toy.
 const PART_BEFORE: f32 = 0.04;
+/// Of the pixels that are of a thing and show a receiver, fewer are seeds where it is the receiver's own surface.
+const OF_PLANE: f32 = 0.1;
 /// What a plate shows differs from the model by as much around what is wrong in it, in plates; it is wrong for some pixels more.
 const DIFFERS: f32 = 0.05;
 const WRONG_PX: i32 = 2;
@@ -55,10 +61,21 @@ pub(crate) struct Sight<'a> {
     pub(crate) pyramid: &'a Pyramid,
     pub(crate) lights: &'a [Light],
     pub(crate) world_from_camera: &'a DMat4,
+    /// Whether planes of things are looked for.
+    pub(crate) wants_planes: bool,
 }
 
-/// Marks of the pixels of the largest level; none where nothing stands beside the toy, or nothing tells.
-pub(crate) fn find(sight: &Sight<'_>) -> Option<(IVec2, Vec<Mark>)> {
+/// What stands beside the toy.
+pub(crate) struct Sighting {
+    /// Of the pixels of the largest level.
+    pub(crate) size_px: IVec2,
+    pub(crate) marks: Vec<Mark>,
+    /// Planes that things have, where these are wanted.
+    pub(crate) planes: Vec<FoundPlane>,
+}
+
+/// None where nothing stands beside the toy, or nothing tells.
+pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
     let level = sight.level();
     let plate = Codes::of(level.plate.as_ref()?);
     let frame = Codes::of(&level.frame);
@@ -69,7 +86,7 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<(IVec2, Vec<Mark>)> {
         sight.world_from_camera,
     )?;
     let toy = Toy::of(sight, level);
-    let seeds = Seeds::found(&compared, toy.hidden(&frame, &plate), (&frame, &plate));
+    let seeds = Seeds::found(&compared.pixels, toy.hidden(&frame, &plate), (&frame, &plate));
     let grown = Grown::from(&seeds, Seed::Thing, &plate);
     let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
     let in_frame = toy.before_in_frame(&seeds, &frame);
@@ -79,14 +96,29 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<(IVec2, Vec<Mark>)> {
     let before = grown
         .as_ref()
         .map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
-    let wrong = wrong.map(|wrong| wrong_plate(&wrong, &toy, level.frame.size_px, &compared));
+    let planes = match &grown {
+        Some(grown) if sight.wants_planes => {
+            planes::find((sight.shape, sight.receivers), level, &compared, grown)
+        }
+        _ => Vec::new(),
+    };
+    let wrong = wrong.map(|wrong| wrong_plate(&wrong, &toy, level.frame.size_px, &compared.pixels));
+    let on_planes = grown.as_ref().map_or(Vec::new(), |grown| {
+        sight.on_planes((grown, &seeds), level, &before)
+    });
     let found = Found {
+        on_planes,
         grown,
         before,
         wrong,
         in_frame,
     };
-    Some(sight.marks(level, &found))
+    let (size_px, marks) = sight.marks(level, &found);
+    Some(Sighting {
+        size_px,
+        marks,
+        planes,
+    })
 }
 
 /// What is found in a level.
@@ -94,6 +126,8 @@ struct Found {
     /// Things that plate and frame show, and of each whether it is before the toy.
     grown: Option<Grown>,
     before: Vec<bool>,
+    /// Of each pixel whether it is of a thing, but shows a receiver that is no part of it.
+    on_planes: Vec<bool>,
     /// Where the plate is wrong.
     wrong: Option<Mask>,
     /// Things before the toy that the frame alone shows, such as a hand.
@@ -107,7 +141,13 @@ impl Found {
             .grown
             .as_ref()
             .and_then(|grown| Some((grown, grown.at(place)?)));
+        let is_on_plane = thing.is_some_and(|(grown, _)| {
+            grown
+                .index(place)
+                .is_some_and(|index| self.on_planes.get(index).is_some_and(|is_on| *is_on))
+        });
         match thing {
+            Some(_) if is_on_plane => Mark::None,
             Some((grown, thing)) if self.before[thing] && !grown.is_like_place(place) => Mark::BeforeToy,
             Some((grown, thing)) if self.before[thing] || grown.n_seeds(thing) >= LEAST_ALONE => Mark::Thing,
             _ if self
@@ -170,6 +210,32 @@ impl Sight<'_> {
             .into_iter()
             .find(fits)
             .unwrap_or(self.pyramid.level(Pyramid::SMALLEST))
+    }
+
+    /// Of each pixel of a level whether it is of a thing and shows another receiver than the thing stands on, where the thing has hardly
+    /// a seed: such as the top of a book that is a receiver, while its sides are none.
+    fn on_planes(&self, (grown, seeds): (&Grown, &Seeds), level: &Level, before: &[bool]) -> Vec<bool> {
+        let mut counts = vec![[[0; 2]; MAX_RECEIVERS]; before.len()];
+        let pixels: Vec<Option<(usize, usize)>> = places(level.frame.size_px)
+            .map(|at| {
+                let thing = grown.of_pixel(at)?;
+                let (on, _) = receiver_at(self.receivers, &level.intrinsics, at)?;
+                let [n_seeds, n] = &mut counts[thing][on];
+                *n += 1;
+                *n_seeds += usize::from(seeds.get(at) == Seed::Thing);
+                Some((thing, on))
+            })
+            .collect();
+        let stands_on = |thing: usize| (0..MAX_RECEIVERS).max_by_key(|on| counts[thing][*on][0]);
+        let stands_on: Vec<Option<usize>> = (0..before.len()).map(stands_on).collect();
+        let is_of_receiver = |(thing, on): (usize, usize)| {
+            let [n_seeds, n] = counts[thing][on];
+            stands_on[thing] != Some(on) && (n_seeds as f32) < OF_PLANE * n as f32
+        };
+        pixels
+            .into_iter()
+            .map(|pixel| pixel.is_some_and(is_of_receiver))
+            .collect()
     }
 
     /// In the largest level.

@@ -7,9 +7,9 @@ use super::aligning::{AlignedJob, Place, Verdict};
 use super::event::{PlatformCommand, ShellCommand, Thermal, WorkCommand};
 use super::notice::Notice;
 use super::step::{Cause, Step};
-use super::table::as_told_now;
+use super::table::{as_told_now, beside};
 use app_alignment::plate_taker::{PlateShot, PlateStep};
-use app_scene::camera_frame::{Arrival, CameraFrame, Tracking};
+use app_scene::camera_frame::{Arrival, CameraFrame, FoundPlane, Tracking};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Receiver, Scene, Surface};
 
@@ -118,21 +118,32 @@ impl App {
         self.plate_step = Some(step);
     }
 
-    /// Makes a scene of the table, the plates and the ghost.
+    /// Makes a scene of the table, the planes that its shadow may reach, the plates and the ghost: what a tracker finds later, or corrects, is
+    /// no other scene.
     pub(super) fn place_toy(&mut self) {
         let (Some(table), Some(ghost), Some(latest)) = (&self.table, &self.ghost, &self.latest) else {
             return;
+        };
+        let others = beside(table, &latest.planes, &ghost.world_from_object(), &self.toy);
+        let receiver = |(index, plane): (usize, &FoundPlane)| Receiver {
+            name: if index == 0 {
+                "table".to_owned()
+            } else {
+                format!("plane {index}")
+            },
+            world_from_plane: plane.world_from_plane,
+            half_extent_m: plane.half_extent_m,
+            surface: Surface::Textured,
         };
         let scene = Scene::new(
             latest.image.size_px(),
             Arc::clone(&self.toy),
             ghost.world_from_object(),
-            vec![Receiver {
-                name: "table".to_owned(),
-                world_from_plane: table.world_from_plane,
-                half_extent_m: table.half_extent_m,
-                surface: Surface::Textured,
-            }],
+            std::iter::once(table)
+                .chain(others)
+                .enumerate()
+                .map(receiver)
+                .collect(),
         )
         .with_plates(self.plates.clone())
         .with_probe(self.lens.probe());
