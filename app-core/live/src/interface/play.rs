@@ -1,8 +1,8 @@
 //! The sheet while the toy moves: clip, time, photo, video, and all else behind one button.
 
-use egui::{ComboBox, Slider, Ui};
+use egui::{ComboBox, Ui};
 
-use super::parts::other;
+use super::parts::{other, slider};
 use super::{style, text};
 use crate::app::{App, UserAction};
 
@@ -73,12 +73,9 @@ fn clip(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
         if other(ui, label) {
             actions.push(UserAction::Play(!playback.is_playing()));
         }
-        let mut time_s = playback.time_s();
-        ui.spacing_mut().slider_width = (ui.available_width() - 12.0).max(60.0);
-        let slider = Slider::new(&mut time_s, 0.0..=playback.length_s()).show_value(false);
-        let response = ui.add(slider);
-        response.widget_info(|| egui::WidgetInfo::slider(true, playback.time_s(), text::TIME));
-        if response.changed() {
+        let part = playback.time_s() / playback.length_s();
+        if let Some(part) = slider(ui, part, (playback.time_s(), text::TIME)) {
+            let time_s = part * playback.length_s();
             actions.extend([UserAction::Play(false), UserAction::Scrub(time_s)]);
         }
     });
