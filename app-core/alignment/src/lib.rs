@@ -54,7 +54,9 @@ pub(crate) mod report;
 mod rigid_motion;
 mod robust;
 mod shape;
+mod silhouette;
 mod softness;
+mod standing_search;
 mod things;
 mod toy_search;
 mod view;
@@ -87,6 +89,8 @@ pub use report::{
     AlignmentReport, AssumedLight, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment,
     LightDeviation, ModelAlignment, PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome, Stand,
 };
+pub use silhouette::Silhouette;
+pub use standing_search::{Newcomer, StandingPose, StandingSearch};
 pub use toy_search::{FoundToy, ToySearch, ViewDirection, find_toy};
 pub use warning::AlignmentWarning;
 

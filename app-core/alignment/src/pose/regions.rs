@@ -30,10 +30,16 @@ const SHARES: [f64; 7] = [0.95, 0.8, 0.66, 0.55, 0.45, 0.36, 0.28];
 const SHARES_OF_PICTURE: [f64; 7] = [0.3, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035];
 /// A silhouette has to be that far within the picture, as a part of its pixels.
 const LEAST_INSIDE: f64 = 0.8;
+/// Pixels of the tiny level that guesses are made in, at most.
+pub(crate) const TINY_PIXELS: i32 = 7000;
 /// Pixels between places that are tried.
 const STRIDE_PX: i32 = 2;
 /// Pixels around what changed that are looked at, over the square root of its area.
 const MARGIN: f64 = 0.35;
+/// How often a standing toy is moved to where it explains the picture best.
+const N_STANDING: usize = 4;
+/// A line of sight that meets a plane at less than this to its surface tells no place on it: sine of 3 degrees.
+const LEAST_SLOPE: f64 = 0.052;
 
 /// A direction from which an upright toy is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +73,31 @@ pub(crate) fn guesses(shape: &Shape, level: &Level, directions: &[ViewDirection]
     let guesses = directions
         .iter()
         .filter_map(|direction| regions.best(shape, *direction));
+    let mut guesses: Vec<Guess> = guesses.collect();
+    guesses.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    guesses
+}
+
+/// Where a toy may stand: a plane that its middle lies in, in camera space, with the plane's normal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Standing {
+    /// A point of the plane.
+    pub(crate) point: DVec3,
+    /// Of unit length.
+    pub(crate) normal: DVec3,
+}
+
+/// For each turn the best place of a toy whose middle lies in a plane, the best first: the shape is in camera space, upright, and turned
+/// about the plane's normal by the angles, in radians. The plane tells the toy's distance, and so its size.
+pub(crate) fn standing_guesses(
+    shape: &Shape,
+    level: &Level,
+    (standing, turns_rad): (Standing, &[f64]),
+) -> Vec<Guess> {
+    let regions = Regions::new(level);
+    let guesses = turns_rad
+        .iter()
+        .filter_map(|turn_rad| regions.best_standing(shape, (standing, *turn_rad)));
     let mut guesses: Vec<Guess> = guesses.collect();
     guesses.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     guesses
@@ -152,6 +183,46 @@ impl<'a> Regions<'a> {
         best
     }
 
+    /// The best place for a turn about a plane's normal.
+    fn best_standing(&self, shape: &Shape, (standing, turn_rad): (Standing, f64)) -> Option<Guess> {
+        let turn = DMat4::from_quat(DQuat::from_axis_angle(standing.normal, turn_rad));
+        let turned = turn * DMat4::from_translation(-shape.centre);
+        let mut at_px = 0.5 * (self.from_px + self.to_px).as_dvec2();
+        let mut best: Option<Guess> = None;
+        // The more often the better the silhouette is that of the place.
+        for _ in 0..N_STANDING {
+            let middle = self.seen_at(standing, at_px)?;
+            let moved = DMat4::from_translation(middle) * turned;
+            let silhouette = self.seen_silhouette(shape, &moved);
+            let from = at_px.round().as_ivec2();
+            let (to, cost) = self.best_place_from(&silhouette, from)?;
+            if best.is_none_or(|best| cost < best.cost) {
+                best = Some(Guess {
+                    camera_from_upright: moved,
+                    cost,
+                });
+            }
+            if to == IVec2::ZERO {
+                break;
+            }
+            at_px += to.as_dvec2();
+        }
+        best
+    }
+
+    /// The point of a plane that is seen at a pixel.
+    fn seen_at(&self, standing: Standing, at_px: DVec2) -> Option<DVec3> {
+        let ray = DVec3::new(
+            (at_px.x - self.k.cx_px) / self.k.fx_px,
+            -(at_px.y - self.k.cy_px) / self.k.fy_px,
+            -1.0,
+        );
+        let toward = ray.dot(standing.normal);
+        let depth = standing.point.dot(standing.normal) / toward;
+        // Above the horizon there is none.
+        (toward.abs() > LEAST_SLOPE * ray.length() && depth > 0.0).then_some(depth * ray)
+    }
+
     /// A toy that is seen in the middle of the picture, moved to be seen elsewhere in the same way.
     fn placed(&self, at_px: DVec2, depth_m: f64) -> DMat4 {
         let ray = DVec3::new(at_px.x / self.k.fx_px, -at_px.y / self.k.fy_px, -1.0);
@@ -174,14 +245,38 @@ impl<'a> Regions<'a> {
         covered.map(|at| at - self.size_px).collect()
     }
 
+    /// Pixels of the toy in its place, against the principal point; also those that are beside the picture.
+    fn seen_silhouette(&self, shape: &Shape, camera_from_upright: &DMat4) -> Vec<IVec2> {
+        let points = shape.points.iter();
+        let points = points.map(|point| camera_from_upright.transform_point3(*point));
+        let half_px = self.size_px / 2;
+        let k = Intrinsics {
+            cx_px: self.k.cx_px + f64::from(half_px.x),
+            cy_px: self.k.cy_px + f64::from(half_px.y),
+            ..*self.k
+        };
+        let corners = project(points, &k);
+        let coverage = Rasterizer::default().coverage(&corners, &shape.faces, 2 * self.size_px);
+        let covered = coverage.pixels().filter(|at| coverage.at(*at) >= 0.5);
+        let middle = self.middle();
+        covered.map(|at| at - half_px - middle).collect()
+    }
+
+    /// The shift at which a silhouette that is about a pixel explains the picture best.
+    fn best_place_from(&self, silhouette: &[IVec2], from_px: IVec2) -> Option<(IVec2, f64)> {
+        let span = (self.to_px - self.from_px) / STRIDE_PX;
+        let coarse = places(span + 1).map(|at| self.from_px + STRIDE_PX * at - from_px);
+        let (best, _) = self.best_of(silhouette, coarse)?;
+        self.best_of(silhouette, beside(best))
+    }
+
+    fn middle(&self) -> IVec2 {
+        DVec2::new(self.k.cx_px, self.k.cy_px).round().as_ivec2()
+    }
+
     /// The shift from the principal point at which a silhouette explains the picture best.
     fn best_place(&self, silhouette: &[IVec2]) -> Option<(IVec2, f64)> {
-        let middle = DVec2::new(self.k.cx_px, self.k.cy_px).round().as_ivec2();
-        let span = (self.to_px - self.from_px) / STRIDE_PX;
-        let coarse = places(span + 1).map(|at| self.from_px + STRIDE_PX * at - middle);
-        let (best, _) = self.best_of(silhouette, coarse)?;
-        let fine = places(IVec2::splat(2 * STRIDE_PX - 1)).map(|at| best + at - (STRIDE_PX - 1));
-        self.best_of(silhouette, fine)
+        self.best_place_from(silhouette, self.middle())
     }
 
     fn best_of(&self, silhouette: &[IVec2], shifts: impl Iterator<Item = IVec2>) -> Option<(IVec2, f64)> {
@@ -191,7 +286,7 @@ impl<'a> Regions<'a> {
 
     /// Mean entropy of a pixel; none where the silhouette leaves what is looked at.
     fn cost(&self, silhouette: &[IVec2], shift: IVec2) -> Option<f64> {
-        let middle = DVec2::new(self.k.cx_px, self.k.cy_px).round().as_ivec2();
+        let middle = self.middle();
         let mut colors = vec![0.0; self.n_bins[0]];
         let mut ratios = self.ratios.clone();
         let mut n_inside = 0.0;
@@ -205,6 +300,11 @@ impl<'a> Regions<'a> {
         let is_inside = n_inside >= LEAST_INSIDE * silhouette.len() as f64 && n_inside > 0.0;
         is_inside.then(|| (entropy(&colors, n_inside) + entropy(&ratios, self.n - n_inside)) / self.n)
     }
+}
+
+/// Shifts that the coarse ones leave out around one.
+fn beside(shift: IVec2) -> impl Iterator<Item = IVec2> {
+    places(IVec2::splat(2 * STRIDE_PX - 1)).map(move |at| shift + at - (STRIDE_PX - 1))
 }
 
 /// Of so many values that are distributed over bins, in nats.
@@ -229,19 +329,7 @@ fn extent(level: &Level) -> (Vec<f64>, IVec2, IVec2) {
     if level.plate.is_none() {
         return whole;
     }
-    let ratios: Vec<(IVec2, Color)> = places(size_px)
-        .filter_map(|at| Some((at, logarithms(level, at)?.1)))
-        .collect();
-    let median = [0, 1, 2].map(|channel| {
-        let mut values: Vec<f32> = ratios.iter().map(|(_, ratio)| ratio[channel]).collect();
-        values.sort_by(f32::total_cmp);
-        values.get(values.len() / 2).copied().unwrap_or(0.0)
-    });
-    let is_changed = |ratio: &Color| (0..3).any(|channel| (ratio[channel] - median[channel]).abs() > CHANGED);
-    let changed: Vec<IVec2> = ratios
-        .iter()
-        .filter_map(|(at, ratio)| is_changed(ratio).then_some(*at))
-        .collect();
+    let changed = changed(level);
     if changed.is_empty() {
         return whole;
     }
@@ -258,4 +346,20 @@ fn extent(level: &Level) -> (Vec<f64>, IVec2, IVec2) {
     let from_px = (IVec2::new(x[0], y[0]) - margin_px).max(IVec2::ZERO);
     let to_px = (IVec2::new(x[1], y[1]) + margin_px + 1).min(size_px);
     (SHARES.map(|share| share * n_changed).to_vec(), from_px, to_px)
+}
+
+/// Pixels that differ from the plate by more than light and noise explain; all without a plate.
+pub(crate) fn changed(level: &Level) -> Vec<IVec2> {
+    let size_px = level.frame.size_px;
+    let ratios: Vec<(IVec2, Color)> = places(size_px)
+        .filter_map(|at| Some((at, logarithms(level, at)?.1)))
+        .collect();
+    let median = [0, 1, 2].map(|channel| {
+        let mut values: Vec<f32> = ratios.iter().map(|(_, ratio)| ratio[channel]).collect();
+        values.sort_by(f32::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or(0.0)
+    });
+    let is_changed = |ratio: &Color| (0..3).any(|channel| (ratio[channel] - median[channel]).abs() > CHANGED);
+    let changed = ratios.iter().filter_map(|(at, ratio)| is_changed(ratio).then_some(*at));
+    changed.collect()
 }

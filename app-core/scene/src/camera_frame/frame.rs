@@ -65,6 +65,11 @@ pub struct Anchor {
     pub world_from_anchor: DMat4,
 }
 
+impl Anchor {
+    /// Number of the anchor that nobody asked for: of the toy itself, as the platform recognises it by a scan. Its axes are the scan's.
+    pub const OF_TOY: u64 = u64::MAX;
+}
+
 /// A camera picture and all that the platform says of it.
 ///
 /// Pixels count from the top left of the sensor's picture, which is never turned; the world is in metres, +Y up.

@@ -49,7 +49,7 @@ fn a_toy_is_chosen_from_the_files_that_there_are() {
     // The ghost is the other toy's, where the person taps next.
     let _ = app.event(ShellEvent::Toy(Ok(world::toy())));
     assert_eq!(app.step(), Step::PlaceToy);
-    assert!(app.ghost_contour_px().is_empty());
+    assert!(app.ghost().is_none());
     let _ = app.event(ShellEvent::User(UserAction::Tap(DVec2::new(32.0, 24.0))));
-    assert!(!app.ghost_contour_px().is_empty());
+    assert!(app.ghost().is_some());
 }
