@@ -184,7 +184,9 @@ impl Phone for Activity {
 
     fn language(&self) -> Language {
         let language = self.app.config().language();
-        language.as_deref().map_or_else(Language::default, Language::of_tag)
+        language
+            .as_deref()
+            .map_or_else(Language::default, Language::of_tag)
     }
 
     fn say(&mut self, words: String) {

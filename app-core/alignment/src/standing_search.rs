@@ -75,7 +75,10 @@ fn on_receiver(scene: &Scene, input: &FrameInput, pixel: DVec2) -> Option<DVec3>
         -1.0,
     );
     let world_from_camera = input.camera.world_from_camera;
-    let (eye, ray) = (world_from_camera.w_axis.truncate(), world_from_camera.transform_vector3(ray));
+    let (eye, ray) = (
+        world_from_camera.w_axis.truncate(),
+        world_from_camera.transform_vector3(ray),
+    );
     let plane = scene.receivers.first()?.world_from_plane;
     let normal = plane.y_axis.truncate();
     let (height, slope) = ((eye - plane.w_axis.truncate()).dot(normal), ray.dot(normal));
@@ -270,7 +273,11 @@ impl StandingSearch {
             return Ok(Stage::Follow(waiting));
         };
         self.followed.push(followed);
-        if self.best.and_then(|best| best.outline_px).is_none_or(|px| followed.outline_px < px) {
+        if self
+            .best
+            .and_then(|best| best.outline_px)
+            .is_none_or(|px| followed.outline_px < px)
+        {
             self.best = Some(StandingPose {
                 world_from_object: followed.world_from_object,
                 outline_px: Some(followed.outline_px),
@@ -291,7 +298,8 @@ impl StandingSearch {
         let Some(search) = &self.search else {
             return Stage::Done;
         };
-        self.followed.sort_by(|a, b| a.outline_px.total_cmp(&b.outline_px));
+        self.followed
+            .sort_by(|a, b| a.outline_px.total_cmp(&b.outline_px));
         let mut waiting: Vec<Followed> = Vec::new();
         for followed in &self.followed {
             let is_known = waiting

@@ -6,7 +6,9 @@ use app_core::camera_frame::PlanarImage;
 use objc2::rc::Retained;
 use objc2::runtime::Sel;
 use objc2::{Message, msg_send, sel};
-use objc2_ar_kit::{ARAnchor, ARFrame, ARImageAnchor, ARObjectAnchor, ARPlaneAnchor, ARPlaneGeometry, ARTrackable};
+use objc2_ar_kit::{
+    ARAnchor, ARFrame, ARImageAnchor, ARObjectAnchor, ARPlaneAnchor, ARPlaneGeometry, ARTrackable,
+};
 use objc2_core_video::{CVPixelBufferGetHeight, CVPixelBufferGetPixelFormatType, CVPixelBufferGetWidth};
 use objc2_foundation::{NSArray, NSNumber, NSProcessInfo, ns_string};
 

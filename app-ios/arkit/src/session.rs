@@ -13,8 +13,8 @@ use objc2::{
     AnyThread, ClassType, DefinedClass, MainThreadMarker, MainThreadOnly, define_class, msg_send, sel,
 };
 use objc2_ar_kit::{
-    ARAnchor, ARFrame, ARPlaneDetection, ARReferenceImage, ARReferenceObject, ARSession, ARSessionDelegate, ARSessionObserver,
-    ARSessionRunOptions, ARWorldTrackingConfiguration,
+    ARAnchor, ARFrame, ARPlaneDetection, ARReferenceImage, ARReferenceObject, ARSession, ARSessionDelegate,
+    ARSessionObserver, ARSessionRunOptions, ARWorldTrackingConfiguration,
 };
 use objc2_foundation::{NSError, NSObjectProtocol, NSProcessInfo, NSSet};
 use objc2_ui_kit::UIView;

@@ -132,7 +132,11 @@ impl<'a> Tour<'a> {
         self.press("Here")?;
         self.wait_for(Step::PlaceToy, "the place was photographed")?;
         let mut since = Instant::now();
-        let mut lap_s = || std::mem::replace(&mut since, Instant::now()).elapsed().as_secs_f64();
+        let mut lap_s = || {
+            std::mem::replace(&mut since, Instant::now())
+                .elapsed()
+                .as_secs_f64()
+        };
         let mut machine_s = [0.0; 3];
         self.desk.feed.is_toy_there = true;
         self.search(|placing| matches!(placing, Placing::Asked { .. }))?;

@@ -360,6 +360,8 @@ pub(crate) fn changed(level: &Level) -> Vec<IVec2> {
         values.get(values.len() / 2).copied().unwrap_or(0.0)
     });
     let is_changed = |ratio: &Color| (0..3).any(|channel| (ratio[channel] - median[channel]).abs() > CHANGED);
-    let changed = ratios.iter().filter_map(|(at, ratio)| is_changed(ratio).then_some(*at));
+    let changed = ratios
+        .iter()
+        .filter_map(|(at, ratio)| is_changed(ratio).then_some(*at));
     changed.collect()
 }

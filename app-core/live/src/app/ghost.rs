@@ -88,7 +88,9 @@ impl Ghost {
     /// Moves it as a finger goes over the plane within the ring, and turns it as one goes around it anywhere else.
     pub(super) fn drag(&mut self, camera: &Camera, [from_px, to_px]: [DVec2; 2]) {
         let places = [from_px, to_px].map(|pixel| seen_at(&self.world_from_plane, camera, pixel));
-        let [Some(from_m), Some(to_m)] = places else { return };
+        let [Some(from_m), Some(to_m)] = places else {
+            return;
+        };
         let (from, to) = (from_m - self.place_m, to_m - self.place_m);
         if from.length() < WITHIN * self.ring_m {
             self.place_m += to_m - from_m;
@@ -101,7 +103,9 @@ impl Ghost {
     /// The ring that turns it, corner by corner, and its knob, before the toy's front; in pixels.
     pub(super) fn ring_px(&self, camera: &Camera) -> Option<(Vec<DVec2>, DVec2)> {
         let pixel = |at_m: DVec2| {
-            let at = self.world_from_plane.transform_point3(DVec3::new(at_m.x, 0.0, at_m.y));
+            let at = self
+                .world_from_plane
+                .transform_point3(DVec3::new(at_m.x, 0.0, at_m.y));
             let in_camera = camera.world_from_camera.inverse().transform_point3(at);
             camera.intrinsics.pixel_of(in_camera)
         };

@@ -17,8 +17,8 @@ mod log;
 mod notice;
 mod panics;
 mod phone_check;
-mod platform;
 mod plates;
+mod platform;
 mod playback;
 mod recorder;
 mod recordings;
@@ -62,8 +62,8 @@ pub use log::Log;
 pub use notice::{LensFailure, Notice};
 pub use panics::Panics;
 pub use phone_check::{CheckInk, PhoneQuestion};
-pub use platform::Obstacle;
 pub use plates::{PlateJob, PlatedJob};
+pub use platform::Obstacle;
 pub use playback::Playback;
 pub use reticle::Reticle;
 pub use search::{Placing, SearchJob, SearchedJob};
@@ -392,7 +392,8 @@ impl App {
             _ => self.search.give_up(),
         }
         let seen = place.filter(Place::is_known).zip(self.table.as_ref());
-        let seen = seen.and_then(|(place, table)| Ghost::standing(&self.toy, table, place.world_from_object()));
+        let seen =
+            seen.and_then(|(place, table)| Ghost::standing(&self.toy, table, place.world_from_object()));
         self.ghost = seen.or(self.ghost.take());
     }
 

@@ -35,7 +35,9 @@ impl App {
         let camera = latest.camera()?;
         let (plane, place_m) = hit(latest, &camera)?;
         let pixel = |at_m: DVec2| {
-            let at = plane.world_from_plane.transform_point3(DVec3::new(at_m.x, 0.0, at_m.y));
+            let at = plane
+                .world_from_plane
+                .transform_point3(DVec3::new(at_m.x, 0.0, at_m.y));
             let in_camera = camera.world_from_camera.inverse().transform_point3(at);
             camera.intrinsics.pixel_of(in_camera)
         };

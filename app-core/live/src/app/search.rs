@@ -120,7 +120,11 @@ pub(super) struct Search {
 impl Search {
     /// Begins anew: with a plate it waits until something new stands on the table, else it is where the ghost is.
     pub(super) fn begin(&mut self, has_plate: bool) {
-        let stage = if has_plate { Stage::Watch(None) } else { Stage::Begin };
+        let stage = if has_plate {
+            Stage::Watch(None)
+        } else {
+            Stage::Begin
+        };
         self.turn_to(stage);
     }
 
@@ -171,7 +175,11 @@ impl Search {
     }
 
     /// The next part, if it is time for one; `frame` is the latest that has a pose.
-    fn job(&mut self, elapsed_s: f64, frame: impl FnOnce() -> Option<(Scene, FrameInput)>) -> Option<SearchJob> {
+    fn job(
+        &mut self,
+        elapsed_s: f64,
+        frame: impl FnOnce() -> Option<(Scene, FrameInput)>,
+    ) -> Option<SearchJob> {
         self.looked_s += elapsed_s;
         self.waited_s += elapsed_s;
         if self.is_at_work {
@@ -243,8 +251,7 @@ impl Search {
 
 /// Whether what is new is the same, in the same place.
 fn is_still([before, now]: [Newcomer; 2]) -> bool {
-    before.at.distance(now.at) < STILL_M
-        && (now.share - before.share).abs() < STILL_SHARE * before.share
+    before.at.distance(now.at) < STILL_M && (now.share - before.share).abs() < STILL_SHARE * before.share
 }
 
 impl App {
@@ -295,7 +302,9 @@ impl App {
     pub(super) fn search(&mut self, is_trusted: bool, elapsed_s: f64, commands: &mut Vec<ShellCommand>) {
         let mut search = std::mem::take(&mut self.search);
         let job = search.job(elapsed_s, || {
-            let scene = self.placed_scene().filter(|_| is_trusted && !self.lens.is_awaited())?;
+            let scene = self
+                .placed_scene()
+                .filter(|_| is_trusted && !self.lens.is_awaited())?;
             let latest = self.latest.as_ref()?;
             let camera = latest.camera()?;
             // The job runs for some tenths of a second, and a platform has few pictures to lend.
@@ -326,5 +335,4 @@ impl App {
         }
         self.note(&("search", best.outline_px));
     }
-
 }

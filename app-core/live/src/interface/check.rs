@@ -4,8 +4,8 @@ use egui::{Color32, Pos2, Rect, RichText, Stroke, Ui, vec2};
 use glam::DVec2;
 
 use super::parts::{lead, other};
-use super::text::{self, say};
 use super::style;
+use super::text::{self, say};
 use crate::app::{App, CheckInk, PhoneQuestion, UserAction};
 
 /// Side of a patch, in points.

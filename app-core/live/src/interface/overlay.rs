@@ -40,7 +40,8 @@ pub(super) fn show(ui: &Ui, app: &App, at: impl Fn(DVec2) -> Pos2) {
     }
     if let Some((ring_px, knob_px)) = app.ring_px() {
         outline(ui, ring_px.into_iter().map(&at), Stroke::new(5.0, style::ACCENT));
-        ui.painter().circle_filled(at(knob_px), KNOB_POINTS, style::ACCENT);
+        ui.painter()
+            .circle_filled(at(knob_px), KNOB_POINTS, style::ACCENT);
     }
 }
 

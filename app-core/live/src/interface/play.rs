@@ -32,7 +32,14 @@ pub(super) fn show(ui: &mut Ui, app: &App, is_menu_open: &mut bool, actions: &mu
         if other(ui, video) {
             actions.push(UserAction::Video(!app.is_making_video()));
         }
-        if other(ui, if *is_menu_open { say(app, text::LESS) } else { say(app, text::MORE) }) {
+        if other(
+            ui,
+            if *is_menu_open {
+                say(app, text::LESS)
+            } else {
+                say(app, text::MORE)
+            },
+        ) {
             *is_menu_open = !*is_menu_open;
         }
     });

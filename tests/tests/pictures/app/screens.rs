@@ -191,7 +191,10 @@ fn flaw([english, german]: [&str; Language::ALL.len()]) -> Option<&'static str> 
         (is_long(german, english) || is_long(english, german), "one is much longer"),
         (!is_of_font(english) || !is_of_font(german), "the font lacks a sign"),
     ];
-    flaws.into_iter().find(|(is_wrong, _)| *is_wrong).map(|(_, flaw)| flaw)
+    flaws
+        .into_iter()
+        .find(|(is_wrong, _)| *is_wrong)
+        .map(|(_, flaw)| flaw)
 }
 
 #[test]
@@ -203,7 +206,10 @@ fn words_are_whole_in_each_language() {
     }
     assert_eq!(flaw(["Yes", ""]), Some("a language lacks them"));
     assert_eq!(flaw(["{} lights", "Lichter"]), Some("not the same is filled in"));
-    assert_eq!(flaw(["Begin", "Hier geht es jetzt also endlich los"]), Some("one is much longer"));
+    assert_eq!(
+        flaw(["Begin", "Hier geht es jetzt also endlich los"]),
+        Some("one is much longer")
+    );
     assert_eq!(flaw(["Yes", "\u{434}\u{430}"]), Some("the font lacks a sign"));
 }
 

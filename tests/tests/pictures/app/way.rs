@@ -153,7 +153,10 @@ fn a_toy_that_is_put_down_is_found_without_a_touch() {
     let silhouette = person.app.ghost().expect("a ghost");
     let [low, high] = silhouette.corners_px;
     let toy_px = person.pixel_of(DVec3::new(0.0, 0.02, 0.0));
-    assert!(low.cmplt(toy_px).all() && toy_px.cmplt(high).all(), "{low} {high}");
+    assert!(
+        low.cmplt(toy_px).all() && toy_px.cmplt(high).all(),
+        "{low} {high}"
+    );
     person.act(UserAction::Placed);
     person.frames(1);
     assert_eq!(person.app.step(), Step::Play, "{:?}", person.app.verdict());
