@@ -39,7 +39,7 @@ impl App {
             UserAction::ByHand => self.by_hand(|_, _| {}),
             UserAction::LookAgain => {
                 if let (Step::PlaceToy, Some(ghost)) = (self.step, &self.ghost) {
-                    self.search.look_again(ghost);
+                    self.search.look_again(ghost.world_from_object());
                 }
             }
             UserAction::TakeLens => self.take_lens(),
@@ -169,7 +169,7 @@ impl App {
                     _ => {}
                 }
                 if let Some(ghost) = &self.ghost {
-                    self.search.look_again(ghost);
+                    self.search.look_again(ghost.world_from_object());
                 }
             }
             _ => {}

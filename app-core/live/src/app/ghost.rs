@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use glam::{DMat4, DVec2, DVec3};
 
-use super::reticle::circle;
 use app_scene::camera_frame::FoundPlane;
 use app_scene::scene::{Camera, Pose};
 use app_scene::toy::{Toy, ToyError};
@@ -158,4 +157,10 @@ pub(super) fn seen_at(world_from_plane: &DMat4, camera: &Camera, pixel: DVec2) -
     let distance_m = eye.y / -ray.y;
     let place = eye + distance_m * ray;
     (distance_m <= FARTHEST_M).then_some(DVec2::new(place.x, place.z))
+}
+
+/// Corners of a circle, the first on the first axis.
+pub(super) fn circle(middle: DVec2, radius: f64, n: u32) -> impl Iterator<Item = DVec2> {
+    let step_rad = TAU / f64::from(n);
+    (0..n).map(move |corner| middle + radius * DVec2::from_angle(step_rad * f64::from(corner)))
 }

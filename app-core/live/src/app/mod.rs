@@ -17,6 +17,7 @@ mod log;
 mod notice;
 mod panics;
 mod phone_check;
+mod placing;
 mod plates;
 mod platform;
 mod playback;

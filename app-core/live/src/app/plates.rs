@@ -1,10 +1,8 @@
 //! The photograph of the empty place, made on another thread: its pictures are decoded there.
 
-use super::App;
-use super::event::{ShellCommand, WorkCommand};
-use super::step::{Cause, Step};
 use app_alignment::plate_taker::{PlateShot, PlateStep, PlateTaker};
 use app_scene::camera_frame::CameraFrame;
+use app_scene::scene::Plate;
 
 /// A picture that may become part of a plate, for another thread.
 #[derive(Debug)]
@@ -50,6 +48,16 @@ pub(super) struct Plating {
     pub(super) step: Option<PlateStep>,
 }
 
+impl PlatedJob {
+    /// The plate, and its exposure; none while it grows.
+    pub(super) fn plate(&self) -> Option<(Plate, Option<f64>)> {
+        match &self.step {
+            PlateStep::Taken { plate, .. } => Some((plate.clone(), self.exposure)),
+            _ => None,
+        }
+    }
+}
+
 impl Plating {
     /// Another plate is to be taken.
     pub(super) fn begin(&mut self) {
@@ -60,7 +68,8 @@ impl Plating {
         };
     }
 
-    fn job(&mut self, frame: &CameraFrame, elapsed_s: f64) -> Option<PlateJob> {
+    /// A shot of `frame`, if none is looked at.
+    pub(super) fn job(&mut self, frame: &CameraFrame, elapsed_s: f64) -> Option<PlateJob> {
         self.waited_s += elapsed_s;
         let taker = self.taker.take()?;
         Some(PlateJob {
@@ -75,34 +84,14 @@ impl Plating {
             exposure: frame.exposure.and_then(|exposure| exposure.amount()),
         })
     }
-}
 
-impl App {
-    pub(super) fn offer_plate(
-        &mut self,
-        frame: &CameraFrame,
-        elapsed_s: f64,
-        commands: &mut Vec<ShellCommand>,
-    ) {
-        let job = self.plating.job(frame, elapsed_s);
-        commands.extend(job.map(|job| WorkCommand::Plate(Box::new(job)).into()));
-    }
-
-    /// Takes what came of a shot; none if its thread did not come to an end.
-    pub(super) fn plated(&mut self, done: Option<Box<PlatedJob>>) {
-        let Some(done) = done else {
-            // Another thread may have more luck.
-            return self.plating.begin();
-        };
-        if done.number != self.plating.number || self.step != Step::TakePlate {
-            return;
+    /// Takes what came of a shot; whether it was of this plate.
+    pub(super) fn take(&mut self, done: PlatedJob) -> bool {
+        if done.number != self.number {
+            return false;
         }
-        self.plating.taker = Some(done.taker);
-        if let PlateStep::Taken { plate, .. } = &done.step {
-            self.plates.push(plate.clone());
-            self.plate_exposure = done.exposure;
-            self.go(Cause::PlateTaken);
-        }
-        self.plating.step = Some(done.step);
+        self.taker = Some(done.taker);
+        self.step = Some(done.step);
+        true
     }
 }

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::App;
 use super::event::{PlatformCommand, ShellCommand};
-use super::ghost::seen_at;
+use super::ghost::{circle, seen_at};
 use super::step::Step;
 use super::table::table_at;
 use app_scene::camera_frame::{CameraFrame, FoundPlane};
@@ -79,12 +79,6 @@ fn hit(frame: &CameraFrame, camera: &Camera) -> Option<(FoundPlane, DVec2)> {
     let plane = table_at(frame, camera, middle_px)?;
     let place_m = seen_at(&plane.world_from_plane, camera, middle_px)?;
     Some((plane, place_m))
-}
-
-/// Corners of a circle.
-pub(super) fn circle(middle: DVec2, radius: f64, n: u32) -> impl Iterator<Item = DVec2> {
-    let step_rad = std::f64::consts::TAU / f64::from(n);
-    (0..n).map(move |corner| middle + radius * DVec2::from_angle(step_rad * f64::from(corner)))
 }
 
 /// Places of a plane's grid around one, within its extent. They belong to the plane, and stay as the reticle moves.

@@ -2,12 +2,9 @@
 
 use std::sync::Arc;
 
-use super::App;
-use super::event::{PlatformCommand, ShellCommand, WorkCommand};
-use super::ghost::Ghost;
-use super::step::{Cause, Step};
+use glam::DMat4;
+
 use app_alignment::{Newcomer, StandingPose, StandingSearch};
-use app_scene::camera_frame::{Anchor, CameraFrame};
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 
@@ -17,8 +14,6 @@ const LOOK_S: f64 = 0.4;
 /// held by a hand.
 const STILL_M: f64 = 0.015;
 const STILL_SHARE: f64 = 0.25;
-/// A toy that the platform sees farther from where it saw it before was moved, in metres.
-const MOVED_M: f64 = 0.03;
 /// A person who waits for longer is told what else helps.
 const LONG_S: f64 = 6.0;
 /// An outline that comes no nearer to the picture's, in pixels, is no find.
@@ -114,7 +109,7 @@ pub(super) struct Search {
     /// Since the last look, and since the search was begun.
     looked_s: f64,
     waited_s: f64,
-    best: Option<StandingPose>,
+    pub(super) best: Option<StandingPose>,
 }
 
 impl Search {
@@ -134,16 +129,16 @@ impl Search {
     }
 
     /// Begins at once, where a ghost was put.
-    pub(super) fn look_again(&mut self, ghost: &Ghost) {
+    pub(super) fn look_again(&mut self, world_from_object: DMat4) {
         self.turn_to(Stage::Begin);
         self.best = Some(StandingPose {
-            world_from_object: ghost.world_from_object(),
+            world_from_object,
             outline_px: None,
         });
     }
 
     /// The thread of a part did not come to an end: the person goes on by hand.
-    fn die(&mut self) {
+    pub(super) fn die(&mut self) {
         if self.is_at_work {
             self.give_up();
         }
@@ -158,7 +153,8 @@ impl Search {
         };
     }
 
-    fn placing(&self) -> Placing {
+    /// How the person is asked.
+    pub(super) fn placing(&self) -> Placing {
         match (&self.stage, self.best) {
             (Stage::ByHand, _) => Placing::ByHand,
             (Stage::Ended, Some(best)) if best.outline_px.is_some_and(|px| px <= FOUND_PX) => {
@@ -175,7 +171,7 @@ impl Search {
     }
 
     /// The next part, if it is time for one; `frame` is the latest that has a pose.
-    fn job(
+    pub(super) fn job(
         &mut self,
         elapsed_s: f64,
         frame: impl FnOnce() -> Option<(Scene, FrameInput)>,
@@ -217,7 +213,7 @@ impl Search {
     }
 
     /// Takes what came of a part; whether there is a better pose.
-    fn take(&mut self, done: SearchedJob) -> bool {
+    pub(super) fn take(&mut self, done: SearchedJob) -> bool {
         if done.number != self.number {
             return false;
         }
@@ -252,87 +248,4 @@ impl Search {
 /// Whether what is new is the same, in the same place.
 fn is_still([before, now]: [Newcomer; 2]) -> bool {
     before.at.distance(now.at) < STILL_M && (now.share - before.share).abs() < STILL_SHARE * before.share
-}
-
-impl App {
-    /// How the person is asked where the toy is; in [`Step::PlaceToy`].
-    #[must_use]
-    pub fn placing(&self) -> Placing {
-        match self.search.placing() {
-            // Nothing tells where it is but a tap.
-            Placing::ByHand if self.ghost.is_none() => Placing::Waiting { is_long: true },
-            placing => placing,
-        }
-    }
-
-    /// Whether the ghost means anything yet.
-    pub(super) fn shows_ghost(&self) -> bool {
-        match self.step {
-            Step::Align => true,
-            Step::PlaceToy => matches!(self.placing(), Placing::Asked { .. } | Placing::ByHand),
-            _ => false,
-        }
-    }
-
-    /// The platform recognises the toy by its scan, or sees it elsewhere than before: the search begins there, in all turns, since the
-    /// scan's axes are its own.
-    pub(super) fn follow_scan(&mut self, frame: &CameraFrame) {
-        let own = frame.anchors.iter().rfind(|anchor| anchor.id == Anchor::OF_TOY);
-        let (Some(own), Some(table)) = (own, &self.table) else {
-            return;
-        };
-        let at = own.world_from_anchor.w_axis.truncate();
-        let is_elsewhere = self.scanned_at.is_none_or(|before| before.distance(at) > MOVED_M);
-        let is_lost = self.step == Step::Play && self.place.as_ref().is_some_and(|place| !place.is_known());
-        if !is_elsewhere || !(self.step == Step::PlaceToy || is_lost) {
-            return;
-        }
-        let Some(ghost) = Ghost::standing(&self.toy, table, &own.world_from_anchor) else {
-            return;
-        };
-        self.scanned_at = Some(at);
-        self.note(&("the platform recognises the toy", at));
-        if is_lost {
-            self.go(Cause::Replace);
-        }
-        self.search.look_again(&ghost);
-        self.ghost = Some(ghost);
-    }
-
-    pub(super) fn search(&mut self, is_trusted: bool, elapsed_s: f64, commands: &mut Vec<ShellCommand>) {
-        let mut search = std::mem::take(&mut self.search);
-        let job = search.job(elapsed_s, || {
-            let scene = self
-                .placed_scene()
-                .filter(|_| is_trusted && !self.lens.is_awaited())?;
-            let latest = self.latest.as_ref()?;
-            let camera = latest.camera()?;
-            // The job runs for some tenths of a second, and a platform has few pictures to lend.
-            let input = FrameInput::new(latest.image.kept(), camera, scene.world_from_object);
-            Some((scene, input.with_exposure(self.exposure_of(latest))))
-        });
-        self.search = search;
-        commands.extend(job.map(|job| WorkCommand::Search(Box::new(job)).into()));
-    }
-
-    /// Takes what came of a part of the search; none if its thread did not come to an end.
-    pub(super) fn searched(&mut self, done: Option<Box<SearchedJob>>, commands: &mut Vec<ShellCommand>) {
-        let Some(done) = done else {
-            return self.search.die();
-        };
-        let was_known = self.search.best.is_some();
-        if !self.search.take(*done) || self.step != Step::PlaceToy {
-            return;
-        }
-        if !was_known {
-            commands.push(PlatformCommand::Knock.into());
-        }
-        let (Some(best), Some(table)) = (self.search.best, &self.table) else {
-            return;
-        };
-        if let Some(ghost) = Ghost::standing(&self.toy, table, &best.world_from_object) {
-            self.ghost = Some(ghost);
-        }
-        self.note(&("search", best.outline_px));
-    }
 }
