@@ -104,7 +104,7 @@ pub(crate) fn placed(off_m: DVec3) -> Person {
     let at = person.pixel_of(off_m);
     person.act(UserAction::Twist(turn_rad));
     person.act(UserAction::Tap(at));
-    assert!(person.app.ghost().is_some());
+    assert!(matches!(person.app.placing(), Placing::Asked { .. }));
     person.act(UserAction::Placed);
     assert_eq!(person.app.step(), Step::Align);
     person
