@@ -120,3 +120,8 @@ document!(architecture, "../doc/architecture.md");
 document!(glossary, "../doc/glossary.md");
 document!(passes, "../doc/passes.md");
 document!(spaces, "../doc/spaces.md");
+
+/// The program in the document on embedding is compiled with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../doc/embedding.md")]
+mod embedding {}

@@ -1,18 +1,19 @@
-//! Why a scene has no light.
+//! Reasons why a scene has no light.
 
 use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-/// Why no light was found.
+/// The reason why no light was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NoLight {
     /// The toy's pose is not known well enough.
     PoseUnknown,
-    /// Too little of the receivers is seen beside the toy.
+    /// Too little of the receivers is visible beside the toy.
     ReceiversUnseen,
-    /// No light explains enough of the picture: it comes from all around, or too little of a shadow is seen.
+    /// No light explains enough of the picture: the light is ambient, or too little of a shadow is
+    /// visible.
     NoneDominant,
 }
 

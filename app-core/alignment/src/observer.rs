@@ -1,21 +1,20 @@
-//! What a photograph shows beside camera, toy and lights, where these stay as they are given.
+//! Observes a photograph's other properties if camera, toy and lights stay as given.
 
 use super::error::{self, AlignError};
 use super::photograph::Photograph;
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 
-/// Looks at frames that are shown as they are given.
+/// Observes frames that are shown as given.
 #[derive(Debug, Default)]
 pub struct Observer {
     latest: Option<FrameInput>,
 }
 
 impl Observer {
-    /// A frame with what its picture shows. The same frame as the one before costs nothing.
+    /// A frame with its observations. The same frame as the one before costs nothing.
     ///
-    /// # Errors
-    /// As [`Aligner::align`](crate::Aligner::align).
+    /// # Errors As [`Aligner::align`](crate::Aligner::align).
     pub fn observed(&mut self, scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
         error::check(scene, input)?;
         let latest = self.latest.as_ref().filter(|latest| {
@@ -39,7 +38,7 @@ impl Observer {
 fn observed(scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
     let photograph = Photograph::new(scene, input, None);
     let sharpness = photograph.sharpness_as_given(scene, &input.world_from_object)?;
-    // Things are told by what a plate shows that is as soft.
+    // Things are detected against an equally soft plate.
     let photograph = photograph.with_plate_as_soft(sharpness.plate_spread);
     let things = photograph.things(scene, input, &input.lights_in(scene))?;
     Ok(input.clone().with_things(things).with_sharpness(sharpness))

@@ -1,4 +1,4 @@
-//! A view: one picture with its camera, and where the toy is in it.
+//! A view: one picture with its camera, and the pose of the toy in it.
 
 use glam::DMat4;
 
@@ -14,7 +14,7 @@ use app_scene::things::Things;
 pub(super) struct Seen {
     pub(super) view: AlignedView,
     pub(super) photograph: Photograph,
-    /// The frame's, with the camera and the pose that were found.
+    /// The frame's input, with the estimated camera and pose.
     pub(super) input: FrameInput,
 }
 
@@ -33,7 +33,7 @@ pub(super) struct AlignedView {
 }
 
 impl Seen {
-    /// A view that is known.
+    /// A view that was aligned before.
     pub(super) fn again(scene: &Scene, view: AlignedView, input: &FrameInput) -> Self {
         let input = input
             .clone()
@@ -48,7 +48,7 @@ impl Seen {
 }
 
 impl Seen {
-    /// The same view, of which nothing is known where things stand or the plate is wrong.
+    /// The same view, with unknown pixels at things and at wrong parts of the plate.
     pub(super) fn clear_of(&self, things: &Things) -> Self {
         Self {
             view: self.view.clone(),
@@ -65,7 +65,7 @@ impl AlignedView {
             && self.given == input.world_from_object
     }
 
-    /// Whether the outline is where the picture has it, within some pixels.
+    /// Whether the outline fits the picture's, within some pixels.
     pub(super) fn is_trusted(&self, most_px: f64) -> bool {
         self.report.is_some_and(|pose| pose.shown_px() <= most_px)
     }

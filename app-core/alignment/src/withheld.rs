@@ -1,4 +1,4 @@
-//! Shadows that are not to be read, since they are what is to be predicted: pixels of which alignment is to know nothing.
+//! Withheld shadows, which are to be predicted: alignment must not read their pixels.
 
 use glam::{DVec2, UVec2};
 
@@ -11,11 +11,11 @@ use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, Scene};
 use app_scene::toy::ToyError;
 
-/// Points around the rim of a light whose shadows are put together.
+/// Number of points around the rim of a light whose shadows are united.
 const N_RIM: u8 = 16;
 
-/// All shadows of the toy where `input` has it, grown to all sides by a part of the picture's width: other places of toy and camera
-/// are covered as far as that reaches.
+/// All shadows of the toy in the input's place, grown in all directions by a fraction of the
+/// picture's width, so that they cover nearby places of toy and camera.
 pub(super) fn shadows(
     scene: &Scene,
     input: &FrameInput,

@@ -1,6 +1,6 @@
-//! Kinds of picture files that are not read, by their first bytes, and the way to one that is.
+//! Unsupported picture formats, recognised by their first bytes, and the way to convert them.
 
-/// The kind of a picture that is not read, and what makes one of it that is; `None` if it is not known.
+/// The format of an unsupported picture, and the way to convert it; `None` for an unknown one.
 #[must_use]
 pub fn kind(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     const DEVELOP: &str = "develop it into PNG or JPEG with the program that reads the camera's raw files";

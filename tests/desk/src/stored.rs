@@ -1,4 +1,4 @@
-//! A session wherever it is stored: in a folder, or in a recording.
+//! A session's storage: a folder or a recording.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -13,9 +13,9 @@ use crate::files::{Folder, FolderError};
 
 /// A session's files.
 pub enum Stored {
-    /// In a folder.
+    /// The files of a folder.
     Folder(Folder),
-    /// In a recording.
+    /// The files of a recording.
     Recording(Box<Recording>),
 }
 
@@ -26,12 +26,12 @@ pub enum StoredError {
     /// There is no such folder or file.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// The file is no recording, or nothing is left of it.
+    /// The file is no recording, or nothing of it can be read.
     #[error("{}: {reason}", path.display())]
     Recording {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         reason: RecordingError,
     },
 }
@@ -39,8 +39,7 @@ pub enum StoredError {
 impl Stored {
     /// Opens a folder, or a file as a recording.
     ///
-    /// # Errors
-    /// When there is no such thing, or the recording cannot be read at all.
+    /// # Errors When the path does not exist, or nothing of the recording can be read.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, StoredError> {
         let path = path.as_ref();
         if !path.is_file() {
@@ -56,8 +55,7 @@ impl Stored {
 
     /// Paths of all its files, relative to the session.
     ///
-    /// # Errors
-    /// When a folder of it cannot be read, or has a link in it.
+    /// # Errors When a folder of it cannot be read, or has a link in it.
     pub fn paths(&self) -> anyhow::Result<Vec<String>> {
         match self {
             Self::Folder(folder) => Ok(folder.paths()?),
@@ -65,7 +63,7 @@ impl Stored {
         }
     }
 
-    /// What is lost of a recording.
+    /// The losses of a damaged recording.
     #[must_use]
     pub fn losses(&self) -> &[Loss] {
         match self {
@@ -84,7 +82,7 @@ impl Files for Stored {
     }
 }
 
-/// A file that is read at any place.
+/// A file that is read at any offset.
 struct OpenFile {
     file: Mutex<File>,
     n_bytes: u64,

@@ -16,6 +16,7 @@ mod probe;
 mod probe_session;
 mod real_pictures;
 mod softness;
+mod texture;
 mod things;
 mod uncertainty;
 mod withheld;

@@ -6,6 +6,7 @@ mod bench;
 mod card;
 mod check;
 mod dependencies;
+mod documents;
 mod film;
 mod gizmo;
 mod imported;

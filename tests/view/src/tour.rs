@@ -1,4 +1,5 @@
-//! A tour through every screen of the app, by a person who is simulated: what they see is written as pictures.
+//! A tour through every screen of the app by a simulated person: the screens are written as
+//! pictures.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -15,22 +16,22 @@ use desk::output::{WriteError, make_folder, write_png};
 
 /// Time between two frames, in seconds.
 const FRAME_S: f64 = 1.0 / 30.0;
-/// Frames that a screen takes to settle: menus open, messages come.
+/// Number of frames until a screen is stable: menus open, messages appear.
 const N_SETTLE: usize = 4;
-/// Frames after which a step that did not come is not waited for.
+/// Number of frames to wait for a step.
 const N_PATIENCE: usize = 60;
-/// Frames that are recorded, and as many as screens take meanwhile.
+/// Number of recorded frames, which the screens meanwhile take.
 const N_RECORDED: usize = 24;
 /// Frames of a video.
 const N_VIDEO: usize = 15;
-/// Frames after which a toy that was put down is not found any more.
+/// Number of frames after which the search for the toy has failed.
 const N_SEARCHED: usize = 150;
-/// Drags after which a button that is still out of sight is touched where it is.
+/// Number of drags after which a button that is still out of sight is touched at its place.
 const N_SCROLLS: usize = 6;
-/// What a sheet leaves free below what can be touched in it, in points.
+/// Free margin of a sheet below its controls, in points.
 const SHEET_MARGIN_POINTS: f64 = 28.0;
 
-/// A tour that did not come to its end.
+/// A tour that ended early.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TourError {
@@ -40,27 +41,27 @@ pub enum TourError {
     /// A picture cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// There is no such button.
+    /// A button is missing.
     #[error("at {at}: no button «{label}»; there are {found:?}")]
     NoButton {
         /// The step.
         at: String,
         /// The label.
         label: String,
-        /// Those that there are.
+        /// The existing buttons.
         found: Vec<String>,
     },
     /// The toy that was put down was not found.
     #[error("the toy was not found: {0:?}")]
     NotFound(Placing),
-    /// The app did not go where it should.
+    /// The app is at the wrong step.
     #[error("after {after}: the step is {is:?}, not {expected:?}")]
     Astray {
-        /// What was done.
+        /// The last action.
         after: String,
-        /// Where it is.
+        /// The present step.
         is: Step,
-        /// Where it should be.
+        /// The expected step.
         expected: Step,
     },
 }
@@ -106,10 +107,9 @@ impl<'a> Tour<'a> {
         })
     }
 
-    /// Goes all the way, and returns the pictures in their order.
+    /// Makes the whole tour, and returns the pictures in their order.
     ///
-    /// # Errors
-    /// When the app does not go where it should.
+    /// # Errors When the app reaches a wrong step.
     pub fn go(mut self) -> Result<Vec<PathBuf>, TourError> {
         self.welcome()?;
         self.find_table()?;
@@ -200,7 +200,7 @@ impl<'a> Tour<'a> {
         self.expect(Step::TakePlate, "the table was tapped")
     }
 
-    /// Each question of a new phone.
+    /// All questions of a new phone.
     fn check_phone(&mut self) -> Result<(), TourError> {
         self.press("Check this phone")?;
         for number in 1..=PhoneQuestion::ALL.len() {
@@ -237,7 +237,7 @@ impl<'a> Tour<'a> {
         self.wait_for(Step::Play, "the toy was found")
     }
 
-    /// Of a session that has a picture of a lens.
+    /// For a session that has a picture of a lens.
     fn take_lens(&mut self) -> Result<(), TourError> {
         // A camera takes some frames to darken.
         self.press("Light from the lens")?;
@@ -260,7 +260,7 @@ impl<'a> Tour<'a> {
         }
         self.press("More")?;
         self.shoot("menu")?;
-        // Each of these changes what the sheet is made of, and with it where its buttons are.
+        // Each of these changes the contents of the sheet, and so the places of its buttons.
         for label in ["Show times", "Record the session", "Close", "Play"] {
             self.press(label)?;
             self.shoot_nothing()?;
@@ -329,7 +329,7 @@ impl<'a> Tour<'a> {
         self.during(Fault::NoAr)
     }
 
-    /// The screen while something goes wrong, and on until it has passed.
+    /// The screen during a fault, until it has passed.
     fn during(&mut self, fault: Fault) -> Result<(), TourError> {
         if let Some(event) = fault.strikes(&mut self.desk.feed) {
             self.desk.tell(event);
@@ -344,7 +344,7 @@ impl<'a> Tour<'a> {
         Ok(())
     }
 
-    /// Pixels of the picture where the toy's origin is seen, moved in the world.
+    /// The image of the toy's origin, moved in the world, in pixels.
     fn toy_px(&self, moved_m: DVec3) -> DVec2 {
         let (world_from_object, camera) = self.desk.feed.toy();
         let at = world_from_object.w_axis.truncate() + moved_m;
@@ -373,7 +373,7 @@ impl<'a> Tour<'a> {
         Ok(())
     }
 
-    /// Touches a button by what a screen reader calls it, which may have to be scrolled to.
+    /// Touches a button by its accessibility label, after scrolling if needed.
     fn press(&mut self, label: &str) -> Result<(), TourError> {
         for _ in 0..N_SCROLLS {
             let [left, _, right, bottom] = self.button(label)?;
@@ -388,7 +388,8 @@ impl<'a> Tour<'a> {
         self.touch([0.5 * (left + right), 0.5 * (top + bottom)])
     }
 
-    /// Scrolls what is below a finger, which then rests for a while so that nothing rolls on.
+    /// Scrolls the contents below a finger, which then rests for a while so that the scrolling
+    /// stops.
     fn drag_up(&mut self, [x, y]: [f64; 2], by_px: f64) -> Result<(), TourError> {
         let phases = [
             (TouchPhase::Began, 0.0),
@@ -458,7 +459,7 @@ impl<'a> Tour<'a> {
         Ok(())
     }
 
-    /// Writes what the screen shows.
+    /// Writes the screen as a picture.
     fn shoot(&mut self, name: &str) -> Result<(), TourError> {
         self.shoot_nothing()?;
         self.time_s += FRAME_S;

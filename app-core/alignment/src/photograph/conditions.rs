@@ -1,4 +1,4 @@
-//! In which conditions a photograph was taken: how soft it is, and what stands in it beside the toy.
+//! The conditions of a photograph: its softness, and the other things in it.
 
 use glam::DMat4;
 
@@ -11,13 +11,13 @@ use app_scene::things::Things;
 use app_scene::toy::ToyError;
 
 impl Photograph {
-    /// With the plate as soft as a spread makes it, in pixels of the picture.
+    /// With the plate blurred by a spread, in pixels of the picture.
     pub(crate) fn with_plate_as_soft(self, spread: Spread) -> Self {
         let picture_px = self.pyramid.picture_px();
         self.with_plate_spread(spread.mean_px() / picture_px)
     }
 
-    /// Of which nothing is known where things stand or the plate is wrong.
+    /// With unknown pixels at things and at wrong parts of the plate.
     pub(crate) fn clear_of(&self, things: &Things) -> Self {
         Self {
             pyramid: self.pyramid.clear_of(things.marks()),
@@ -26,7 +26,8 @@ impl Photograph {
         }
     }
 
-    /// Things that stand beside the toy in its place, in given lights; none where nothing tells of any.
+    /// Other things beside the toy in its place, under given lights; `None` if they cannot be
+    /// detected.
     pub(crate) fn things(
         &self,
         scene: &Scene,
@@ -43,7 +44,7 @@ impl Photograph {
             lights,
             world_from_camera: &input.camera.world_from_camera,
         });
-        // Of the largest level, which may be smaller than the picture.
+        // Camera of the largest level, which may be smaller than the picture.
         let camera = Camera {
             intrinsics: input.camera.intrinsics.scaled(self.pyramid.picture_px().recip()),
             ..input.camera
@@ -51,7 +52,7 @@ impl Photograph {
         Ok(found.and_then(|(size_px, marks)| Things::new(size_px.as_uvec2(), marks, camera)))
     }
 
-    /// The same where camera and pose stay as they are given.
+    /// The same for given camera and pose.
     pub(crate) fn sharpness_as_given(
         &self,
         scene: &Scene,
@@ -63,7 +64,8 @@ impl Photograph {
         self.sharpness(scene, world_from_object, outline_px)
     }
 
-    /// How soft it is around a toy in its place, whose outline was found spread by so many pixels; none where it was not seen.
+    /// The softness around a toy in its place, whose outline has the given blur in pixels; `None`
+    /// for an outline that was not measured.
     pub(crate) fn sharpness(
         &self,
         scene: &Scene,

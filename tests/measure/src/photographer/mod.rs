@@ -1,8 +1,10 @@
-//! An analytic photographer: small worlds of convex shapes on planes, photographed by exact rays in 64 bits.
+//! An analytic photographer: small worlds of convex shapes on planes, photographed by exact rays in
+//! 64 bits.
 //!
-//! From a [`World`] it makes what a session holds, in memory: the toy as a glTF binary, plate, camera frame, and the
-//! photograph of the toy in its shown pose with the mask that scoring needs. Light is direct light of spheres and
-//! directional lights, a uniform sky, and one diffuse bounce. All is deterministic: rays follow fixed patterns, noise a fixed seed.
+//! From a [`World`] it makes the parts of a session, in memory: the toy as a glTF binary, plate,
+//! camera frame, and the photograph of the toy in its shown pose with the mask that scoring needs.
+//! Light is direct light of spheres and directional lights, a uniform sky, and one diffuse bounce.
+//! All is deterministic: rays follow fixed patterns, noise a fixed seed.
 
 mod film;
 pub mod folder;

@@ -14,8 +14,7 @@ const FONT: (&str, i32) = ("sans-serif", 14);
 
 /// Draws a sweep into a folder, as a file of its name.
 ///
-/// # Errors
-/// When the file cannot be written.
+/// # Errors When the file cannot be written.
 pub fn draw(folder: &Path, sweep: &Sweep) -> Result<(), WriteError> {
     let path = folder.join(format!("{}.svg", sweep.name));
     let svg = drawing(sweep).map_err(|reason| WriteError {
@@ -63,7 +62,7 @@ fn render(sweep: &Sweep, svg: &mut String) -> Result<(), Box<dyn std::error::Err
     Ok(())
 }
 
-/// Smallest and largest finite number, a little apart.
+/// Smallest and largest finite number, with a gap between them.
 fn range(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     let finite = numbers.filter(|number| number.is_finite());
     let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], number| {

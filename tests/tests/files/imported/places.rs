@@ -99,7 +99,7 @@ fn frames_without_a_picture_are_counted() {
     let imported = nerfstudio(&["1.png", "2.png", "3.png"], &["2.png"]).unwrap();
     assert_eq!(
         imported.notes,
-        ["2 of 3 frames have no picture and are left out, the first of them \"1.png\""]
+        ["2 of 3 frames have no picture and are skipped; the first is \"1.png\""]
     );
     assert!(nerfstudio(&["1.png"], &["1.png"]).unwrap().notes.is_empty());
 }

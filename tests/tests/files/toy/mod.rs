@@ -271,7 +271,7 @@ fn a_pose_can_be_given_by_its_nodes() {
         ..authored
     };
     assert!(refused(nowhere).contains("not finite"));
-    assert!(refused(unturned).contains("no length"));
+    assert!(refused(unturned).contains("no quaternion"));
     let weights = Pose::Nodes(Arc::new(NodePose {
         morph_weights: vec![(arm, vec![0.5])],
         ..NodePose::default()

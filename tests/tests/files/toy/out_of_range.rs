@@ -125,7 +125,7 @@ fn nodes_and_weights_from_outside_that_leave_the_range_are_refused() {
     }
     for length in [1e300, 1e-300] {
         let rotation = DQuat::from_xyzw(0.0, 0.0, 0.0, length);
-        assert!(refused(nodes(Trs { rotation, ..authored })).contains("its rotation has no length"));
+        assert!(refused(nodes(Trs { rotation, ..authored })).contains("its rotation is no quaternion"));
     }
 }
 

@@ -147,6 +147,7 @@ pub(crate) fn alignment(input: &FrameInput, outline_px: Option<f64>) -> Alignmen
         size_ratio: 1.0,
         model_px: 0.0,
         is_of_model: true,
+        texture_correlation: None,
         spread_px: 0.0,
         stand: None,
     });
