@@ -128,7 +128,13 @@ impl<'a> Tour<'a> {
         self.desk.answer = Permission::Granted;
         self.shoot_nothing()?;
         self.press("Begin")?;
-        self.shoot_nothing()?;
+        // A device compiles while the person looks around.
+        for _ in 0..N_PATIENCE {
+            if self.button("Here").is_ok() {
+                break;
+            }
+            self.frame()?;
+        }
         self.press("Here")?;
         self.wait_for(Step::PlaceToy, "the place was photographed")?;
         let mut since = Instant::now();
