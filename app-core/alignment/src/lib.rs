@@ -63,7 +63,9 @@ pub(crate) mod report;
 mod rigid_motion;
 mod robust;
 mod shape;
+mod silhouette;
 mod softness;
+mod standing_search;
 mod things;
 mod toy_search;
 mod view;
@@ -98,6 +100,8 @@ pub use report::{
     LightDeviation, ModelAlignment, PlaneAlignment, PoseAlignment, PoseDeviation, RatioAlignment,
     RatioOutcome, Stand,
 };
+pub use silhouette::Silhouette;
+pub use standing_search::{Newcomer, StandingPose, StandingSearch};
 pub use toy_search::{FoundToy, ToySearch, ViewDirection, find_toy};
 pub use warning::AlignmentWarning;
 

@@ -110,6 +110,8 @@ impl Desk {
         while let Some(outcome) = self.worker.outcome() {
             match outcome {
                 Outcome::Tell(event) => self.tell(event),
+                // No platform here recognises anything.
+                Outcome::Scan(_) => {}
                 Outcome::Written(file) => println!("{}", file.display()),
                 Outcome::Share(files) => files.iter().for_each(|file| println!("{}", file.display())),
             }

@@ -143,6 +143,11 @@ impl Place {
         matches!(self.verdict, Some(Verdict::Found { .. })) || (1..N_MISSES).contains(&self.n_misses)
     }
 
+    /// The toy's transform, as it was found.
+    pub(super) fn world_from_object(&self) -> &DMat4 {
+        &self.world_from_object
+    }
+
     /// The number and the pose of the anchor that is to be held.
     pub(super) fn anchor(&self) -> (u64, DMat4) {
         (self.number, self.world_from_anchor)
