@@ -101,7 +101,7 @@ pub struct CameraAlignment {
     pub errors: [f64; 2],
 }
 
-/// The toy's pose, by its outline, and by its texture if its model has one.
+/// The toy's pose, estimated from its outline, and from its texture if its model has one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseAlignment {
     /// Whether the toy is shown in another place than given: at the estimate, which improves the
@@ -131,8 +131,9 @@ pub struct PoseAlignment {
     /// Whether that is within the usual error of camera pictures: if not, the model, before it was
     /// adapted, differs from this toy.
     pub is_of_model: bool,
-    /// Correlation of the texture of the toy's model with the picture's, between -1 and 1, where the toy was found; none if the toy has no
-    /// texture, or another one than its model, and the pose is by the outline alone.
+    /// Correlation of the model's texture with the picture's at the estimated pose, up to 1;
+    /// `None` without a texture or if the picture shows another one: the pose is then estimated
+    /// from the outline alone.
     pub texture_correlation: Option<f64>,
     /// Standard deviation of the spread that lens and focus give the outline, in pixels; 0 where it is sharp.
     pub spread_px: f64,

@@ -1,11 +1,11 @@
-//! The toy's own paint in the picture: the positions of its texture and its creases, which an
-//! outline does not show.
+//! Fits the toy's own texture, which an outline does not show.
 //!
-//! Points of the surface carry the logarithm of the shaded model, as soft as the picture, and its
-//! gradient. Each step moves the points until the logarithms of the picture under them equal the
-//! model's, except for one gain in each cell of the picture and in each channel: light that the
-//! model lacks varies slowly, a texture does not. Source: forward additive alignment with the
-//! template's own gradient, Baker and Matthews 2004, section 3.
+//! Points of the surface carry the logarithm of the shaded model, as soft as the picture, and the
+//! gradient of its paint alone: shading does not move with the surface. Each step moves the points
+//! until the logarithms of the picture under them are the model's, but for one gain in each cell
+//! of the picture and in each channel: light that the model does not have changes slowly, a
+//! texture does not. Source: Baker and Matthews 2004, section 3 (forward additive alignment), with
+//! the template's own gradient.
 
 use std::collections::BTreeMap;
 
@@ -18,112 +18,115 @@ use crate::raster::{Coverage, project};
 use crate::robust;
 use app_scene::scene::Intrinsics;
 
-/// Blurs of picture and model, in pixels, from the first round to the last: with a wide one, a
-/// texture is found from a distance of some pixels.
+/// Spreads of picture and model, in pixels, from the first round to the last: a wide one is met from some pixels away.
 const SPREADS_PX: [f64; 3] = [3.0, 1.5, 0.7];
-/// Rounds of each blur but the last.
+/// Rounds of each spread but the last.
 const N_ROUNDS: usize = 2;
-/// Round from which the last blur is used.
+/// Round from which the spread is the last.
 pub(super) const LAST_SPREAD: usize = N_ROUNDS * (SPREADS_PX.len() - 1);
-/// Margin of the picture around the model, in pixels: steps are no longer.
+/// The picture is known this far around the model, in pixels: steps are no longer.
 const MARGIN_PX: i32 = 24;
-/// Linear light below which logarithms consist of noise.
+/// Linear light below which logarithms are of noise.
 const FLOOR: f32 = 0.01;
 /// Linear light beyond which a channel is clipped.
 const BRIGHTEST: f32 = 0.95;
-/// Side of the cells that have one gain each, in pixels per pixel of blur, and its minimum; and the
-/// minimum number of points in a cell.
+/// Side of the cells that have one gain each, in pixels for each pixel of spread and at least; and the least number of points in one.
 const CELL_PX: i32 = 12;
 const LEAST_IN_CELL: usize = 6;
-/// Maximum number of points, above which they add nothing, and minimum number, below which they
-/// constrain nothing.
+/// More points than that add nothing; fewer than the second number determine nothing.
 const MOST_POINTS: usize = 3000;
 const LEAST_POINTS: usize = 60;
-/// Change of the model's logarithm within the blur below which it counts as untextured.
+/// The model's logarithm changes by less than that within the spread where it has no texture.
 const LEAST_CHANGE: f64 = 0.03;
-/// Scale of the robust weights, in standard deviations; and the smallest deviation of a logarithm,
-/// since models are painted from other photographs.
+/// Scale of the robust weights, in deviations; and the least deviation of a logarithm: models are painted from other photographs.
 const ROBUST: f64 = 3.0;
 const LEAST_DEVIATION: f64 = 0.01;
 /// Scale of the robust loss, as a logarithm.
 const LOSS_SCALE: f64 = 0.1;
-/// Area of the picture whose errors are correlated, in square pixels: it counts as one piece of
-/// evidence.
-const ALIKE_PX2: f64 = 200.0;
-/// Correlation of model and picture within the cells from which the model's paint counts as the
-/// toy's.
+/// Area of points whose values err alike, in square pixels, which counts as one piece of evidence: points lie along the edges of the
+/// texture, three pixels wide, and an outline counts once for 20 px.
+const ALIKE_PX2: f64 = 60.0;
+/// Correlation of model and picture within the cells, from which the model's paint is the toy's.
 const LEAST_CORRELATION: f64 = 0.5;
 /// Rounds of gains and weights.
 const N_GAINS: usize = 3;
-/// Ratio of a normal distribution's standard deviation to its median absolute deviation.
+/// A normal deviation over the median of what is away.
 const DEVIATION_OF_MEDIAN: f64 = 1.4826;
 
-/// The model's paint for the picture, from the widest to the narrowest blur.
+/// The model's paint over the picture, from the widest to the narrowest spread.
 pub(super) struct Texture {
     layers: Vec<Layer>,
 }
 
-/// The texture at one blur.
+/// At one spread.
 struct Layer {
     points: Vec<Point>,
     n_cells: usize,
-    /// Area of the picture that each point represents, in square pixels.
+    /// Area of the picture that each point stands for, in square pixels.
     area_px2: f64,
     /// Logarithms of the picture, from that corner on.
     picture: Picture,
     origin_px: IVec2,
 }
 
-/// A point of the toy's surface.
+/// A place on the toy.
 struct Point {
-    /// Position in camera space, in the given pose.
+    /// In camera space, as the toy was given.
     given: DVec3,
     cell: usize,
     /// Logarithms of the shaded model.
     shown: Color,
-    /// Their gradients over the picture, in 1/px.
+    /// Logarithms of its paint.
+    paint: Color,
+    /// Gradients of these over the picture, in 1/px.
     gradients: [DVec2; 3],
 }
 
-/// One equation: a value of the picture should equal the model's.
+/// One number of the picture that should be that of the model.
 pub(super) struct Row {
     pub(super) at_px: DVec2,
-    /// Derivatives by the unknowns.
+    /// How much each unknown changes.
     pub(super) row: Unknowns,
-    /// Residual.
+    /// How much is left to change.
     pub(super) residual: f64,
     pub(super) weight: f64,
 }
 
-/// Agreement of a model's paint with a picture.
+/// How well a model's paint fits a picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Likeness {
     /// Mean robust loss of the logarithms.
     loss: f64,
     area_px2: f64,
-    /// Correlation of model and picture within the cells.
+    /// Of model and picture within the cells.
     pub(super) correlation: f64,
 }
 
 impl Likeness {
-    /// Logarithm of the likelihood ratio of this placement to another one.
+    /// Logarithm of how much likelier the picture is with this placement than with another one.
     pub(super) fn likelier_than(&self, other: &Self) -> f64 {
         let least = LEAST_DEVIATION * LEAST_DEVIATION;
         let n = self.area_px2.min(other.area_px2) / ALIKE_PX2;
         0.5 * n * (other.loss.max(least) / self.loss.max(least)).ln()
     }
 
-    /// Whether the picture shows the model's paint.
+    /// Whether the model's paint is what the picture shows.
     pub(super) fn is_of_model(&self) -> bool {
         self.correlation > LEAST_CORRELATION
     }
 }
 
 impl Texture {
-    /// The texture of a toy near its pose; `None` if it has none there.
+    /// Of a toy about where it is; none if it has no texture there.
     pub(super) fn new(shaded: &Shaded<'_>, level: &Level, coverage: &Coverage) -> Option<Self> {
-        let model = coverage.pixels().map(|at| shaded.at(at).unwrap_or(UNKNOWN));
-        let model = Picture::of(coverage.size_px, model.collect());
+        let of_toy = |color: &dyn Fn(IVec2) -> Option<Color>| {
+            let pixels = coverage.pixels().map(|at| color(at).unwrap_or(UNKNOWN));
+            Picture::of(coverage.size_px, pixels.collect())
+        };
+        let model = Template {
+            shown: of_toy(&|at| shaded.at(at)),
+            paint: of_toy(&|at| shaded.color(at)),
+        };
         let origin_px = coverage.origin_px - MARGIN_PX;
         let around = places(coverage.size_px + 2 * MARGIN_PX).map(|place| level.frame.get(origin_px + place));
         let unclipped = around.map(|color| {
@@ -133,9 +136,13 @@ impl Texture {
         });
         let frame = Picture::of(coverage.size_px + 2 * MARGIN_PX, unclipped.collect());
         let layer = |spread_px: &f64| {
-            let logs = |picture: &Picture| picture.spread(*spread_px).map(logarithms);
-            Layer::new(*spread_px, (logs(&model), shaded), coverage.origin_px).map(|points| Layer {
-                picture: logs(&frame),
+            Layer::new(
+                *spread_px,
+                (&model.logarithms(*spread_px), shaded),
+                coverage.origin_px,
+            )
+            .map(|points| Layer {
+                picture: logarithms(&frame, *spread_px),
                 origin_px,
                 ..points
             })
@@ -144,29 +151,45 @@ impl Texture {
         (!layers.is_empty()).then_some(Self { layers })
     }
 
-    /// The equations for a placement, with the blur of a round.
+    /// How far the picture is from the model at a placement, as sharp as a round has it.
     pub(super) fn rows(&self, round: usize, placement: &Placement, k: &Intrinsics) -> Vec<Row> {
         let layer = &self.layers[(round / N_ROUNDS).min(self.layers.len() - 1)];
         Compared::new(layer, placement, k).rows(placement, k)
     }
 
-    /// Agreement at the narrowest blur; `None` if too little of the texture is visible.
+    /// How well the narrowest spread fits; none if too little of it is seen.
     pub(super) fn likeness(&self, placement: &Placement, k: &Intrinsics) -> Option<Likeness> {
         Compared::new(self.layers.last()?, placement, k).likeness()
     }
 }
 
-fn logarithms(color: Color) -> Color {
-    color.map(|value| (value.max(0.0) + FLOOR).ln())
+/// The model over the toy's pixels.
+struct Template {
+    shown: Picture,
+    paint: Picture,
+}
+
+impl Template {
+    fn logarithms(&self, spread_px: f64) -> Self {
+        Self {
+            shown: logarithms(&self.shown, spread_px),
+            paint: logarithms(&self.paint, spread_px),
+        }
+    }
+}
+
+fn logarithms(picture: &Picture, spread_px: f64) -> Picture {
+    let logarithm = |color: Color| color.map(|value| (value.max(0.0) + FLOOR).ln());
+    picture.spread(spread_px).map(logarithm)
 }
 
 impl Layer {
-    /// Points with texture, without a picture yet; `None` if there are too few.
-    fn new(spread_px: f64, (model, shaded): (Picture, &Shaded<'_>), corner_px: IVec2) -> Option<Self> {
+    /// Points with texture, and no picture yet; none if they are too few.
+    fn new(spread_px: f64, (model, shaded): (&Template, &Shaded<'_>), corner_px: IVec2) -> Option<Self> {
         #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
         let cell_px = (f64::from(CELL_PX) * spread_px.max(1.0)) as i32;
-        let mut points: Vec<(IVec2, Point)> = places(model.size_px)
-            .filter_map(|place| Some((place, point(&model, place, spread_px, shaded, corner_px)?)))
+        let mut points: Vec<(IVec2, Point)> = places(model.shown.size_px)
+            .filter_map(|place| Some((place, point(model, place, spread_px, shaded, corner_px)?)))
             .collect();
         let stride = points.len().div_ceil(MOST_POINTS).max(1);
         points = points.into_iter().step_by(stride).collect();
@@ -196,17 +219,17 @@ impl Layer {
     }
 }
 
-/// The point of the toy at a pixel of the model; `None` if it has no texture there.
+/// The point of the toy that a pixel of the model shows; none where it has no texture.
 fn point(
-    model: &Picture,
+    model: &Template,
     place: IVec2,
     spread_px: f64,
     shaded: &Shaded<'_>,
     corner_px: IVec2,
 ) -> Option<Point> {
-    let shown = model.get(place)?;
+    let (shown, paint) = (model.shown.get(place)?, model.paint.get(place)?);
     let [left, right, above, below] =
-        [IVec2::NEG_X, IVec2::X, IVec2::NEG_Y, IVec2::Y].map(|step| model.get(place + step));
+        [IVec2::NEG_X, IVec2::X, IVec2::NEG_Y, IVec2::Y].map(|step| model.paint.get(place + step));
     let (left, right, above, below) = (left?, right?, above?, below?);
     let gradients = [0, 1, 2].map(|channel| {
         let across = right[channel] - left[channel];
@@ -222,17 +245,17 @@ fn point(
         given: shaded.given(corner_px + place)?,
         cell: 0,
         shown,
+        paint,
         gradients,
     })
 }
 
-/// Points compared with the picture at a placement.
+/// Points against the picture where a placement has them.
 struct Compared<'a> {
     layer: &'a Layer,
-    /// Logarithm of the ratio of picture to model, less the gain of the cell; `None` where the
-    /// picture is unknown.
+    /// Of the picture over the model, as a logarithm, less the gain of the cell; none where the picture is not known.
     excess: Vec<Option<[f64; 3]>>,
-    /// Positions of the points in the picture.
+    /// Where the points are in the picture.
     at_px: Vec<DVec2>,
     weights: Vec<[f64; 3]>,
     variance: f64,
@@ -261,7 +284,7 @@ impl<'a> Compared<'a> {
         compared
     }
 
-    /// Subtracts the mean of each cell from the excess.
+    /// Takes the mean of each cell out of the excess.
     fn take_gains(&mut self) {
         let means = self.means(|index, channel| self.excess[index].map_or(0.0, |excess| excess[channel]));
         for (excess, point) in self.excess.iter_mut().zip(&self.layer.points) {
@@ -273,7 +296,7 @@ impl<'a> Compared<'a> {
         }
     }
 
-    /// Weighted mean of a value over each cell and channel.
+    /// Mean over each cell and channel, by the weights, of what each point has.
     fn means<T>(&self, of: impl Fn(usize, usize) -> T) -> Vec<[T; 3]>
     where
         T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T> + Default,
@@ -299,7 +322,7 @@ impl<'a> Compared<'a> {
         sums.into_iter().map(|cell| cell.map(mean)).collect()
     }
 
-    /// Computes the weights from the distance of each value to most others.
+    /// Weights by how far each value is from most.
     fn weigh(&mut self) {
         let mut away: Vec<f64> = self
             .excess
@@ -350,7 +373,7 @@ impl<'a> Compared<'a> {
     }
 
     fn likeness(&self) -> Option<Likeness> {
-        let means_shown = self.means(|index, channel| f64::from(self.layer.points[index].shown[channel]));
+        let means = self.means(|index, channel| f64::from(self.layer.points[index].paint[channel]));
         let (mut loss, mut n) = (0.0, 0.0);
         let (mut of_both, mut of_model, mut of_picture) = (0.0, 0.0, 0.0);
         for (index, point) in self.layer.points.iter().enumerate() {
@@ -359,7 +382,7 @@ impl<'a> Compared<'a> {
             };
             for channel in 0..3 {
                 let weight = self.weights[index][channel];
-                let model = f64::from(point.shown[channel]) - means_shown[point.cell][channel];
+                let model = f64::from(point.paint[channel]) - means[point.cell][channel];
                 let picture = model + excess[channel];
                 loss += robust::loss(excess[channel].powi(2), LOSS_SCALE * LOSS_SCALE);
                 n += 1.0;
@@ -377,8 +400,7 @@ impl<'a> Compared<'a> {
     }
 }
 
-/// Derivatives by the unknowns of the model's logarithm at a fixed position of the picture, if the
-/// toy's point moves over a gradient.
+/// How much the logarithm of the paint changes at a fixed place of the picture for each unknown, if the toy's point moves over a gradient.
 fn change(placement: &Placement, given: DVec3, gradient: DVec2, k: &Intrinsics) -> Unknowns {
     let now = placement.apply(given);
     let depth_m = -now.z;
