@@ -66,7 +66,9 @@
 
 pub use app_pipeline::{Core, CoreError, governor, ledger, preset, profile, wgpu};
 pub use app_scene::glam;
-pub use app_scene::{camera_frame, card, grain, lens, scene, shadow_style, sharpness, things, toy};
+pub use app_scene::{
+    camera_frame, card, gloss, grain, lens, reflection, scene, shadow_style, sharpness, things, toy,
+};
 
 /// The one object that an app holds.
 pub mod core {
@@ -120,3 +122,8 @@ document!(architecture, "../doc/architecture.md");
 document!(glossary, "../doc/glossary.md");
 document!(passes, "../doc/passes.md");
 document!(spaces, "../doc/spaces.md");
+
+/// The program in the document on embedding is compiled with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../doc/embedding.md")]
+mod embedding {}

@@ -1,4 +1,4 @@
-//! Compares a picture or a map with the one that was expected, texel by texel, all four channels.
+//! Compares a picture or a map with the expected one, texel by texel, all four channels.
 //!
 //! Pictures differ in 8-bit codes, maps in their own unit.
 
@@ -6,7 +6,7 @@ use app_core::scene::Image;
 use app_pipeline::readback::FloatMap;
 use thiserror::Error;
 
-/// Something made of texels with four channels, rows from the top.
+/// An array of texels with four channels, rows from the top.
 pub trait Texels {
     /// Width and height.
     fn size(&self) -> [u32; 2];
@@ -47,30 +47,30 @@ impl Texels for FloatMap {
 /// The two sides of a comparison, by name.
 #[derive(Debug)]
 pub struct Pair<'a, T> {
-    /// What should have been made.
+    /// The expected side.
     pub expected: &'a T,
-    /// What was made; not the same object.
+    /// The actual side; not the same object.
     pub actual: &'a T,
 }
 
-/// One demand on a [`Difference`]. A NaN anywhere fails whatever is demanded.
+/// A condition on a [`Difference`]. A NaN anywhere fails every condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Check {
     /// No channel of any texel differs by more.
     MaxAbs(f64),
     /// Few texels have a channel that differs by more than `tolerance`.
     Outliers {
-        /// Difference from which on a texel is an outlier.
+        /// Difference from which a texel is an outlier.
         tolerance: f64,
         /// Largest share of outliers among all texels, 0 to 1.
         max_share: f64,
     },
 }
 
-/// Why two sides are not taken for equal.
+/// The reason why two sides count as different.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum CompareError {
-    /// Nothing was demanded.
+    /// No condition is given.
     #[error("the list of checks is empty")]
     NoChecks,
     /// A comparison that could never fail.
@@ -84,7 +84,7 @@ pub enum CompareError {
         /// Width and height on the actual side.
         actual: [u32; 2],
     },
-    /// A side does not hold what its size promises, or holds nothing.
+    /// A side's length contradicts its size, or is zero.
     #[error("{side} has {n_texels} texels instead of width times height, or none")]
     WrongLength {
         /// Which side.
@@ -92,41 +92,41 @@ pub enum CompareError {
         /// Texels that it holds.
         n_texels: usize,
     },
-    /// There are texels that are no numbers.
+    /// Some texels are NaN.
     #[error("{n_nan} texels hold a NaN")]
     NaN {
-        /// How many, on either side.
+        /// Number of such texels, on either side.
         n_nan: usize,
     },
-    /// A demand is not met.
+    /// A condition is not met.
     #[error(
         "{check:?} is not met: the largest difference is {max_abs}, the share of outliers {outlier_share}"
     )]
     NotMet {
-        /// The demand.
+        /// The condition.
         check: Check,
         /// Largest difference of a channel.
         max_abs: f64,
-        /// Share of texels beyond the demand's tolerance.
+        /// Share of texels above the condition's tolerance.
         outlier_share: f64,
     },
 }
 
-/// How two sides of one size differ.
+/// The difference of two sides of one size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// Width and height of both sides.
     pub size: [u32; 2],
-    /// Largest difference of a channel, texels with a NaN left out.
+    /// Largest difference of a channel, without NaN texels.
     pub max_abs: f64,
-    /// Texels that hold a NaN on either side.
+    /// Number of texels with a NaN on either side.
     pub n_nan: usize,
-    /// Largest difference over the channels of each texel; NaN where either side holds one.
+    /// Largest difference over the channels of each texel; NaN if either side has one.
     pub per_texel: Vec<f64>,
 }
 
 impl<T: Texels> Pair<'_, T> {
-    /// How the two sides differ.
+    /// The difference of the two sides.
     ///
     /// # Errors
     /// When they cannot be compared texel by texel.
@@ -144,7 +144,7 @@ impl<T: Texels> Pair<'_, T> {
         let per_texel: Vec<f64> = (0..self.expected.n_texels()).map(texel).collect();
         Ok(Difference {
             size: expected,
-            // `max` passes over NaN.
+            // `max` skips NaN.
             max_abs: per_texel.iter().copied().fold(0.0, f64::max),
             n_nan: per_texel.iter().filter(|d| d.is_nan()).count(),
             per_texel,
@@ -199,7 +199,7 @@ impl Difference {
         }
     }
 
-    /// The differences as a picture to look at: black where there is none, red at `full` and beyond, white for NaN.
+    /// The differences as a picture: black for none, red at `full` and above, white for NaN.
     #[must_use]
     pub fn picture(&self, full: f64) -> Image {
         let rgba8 = self.per_texel.iter().flat_map(|&difference| {
@@ -209,7 +209,7 @@ impl Difference {
             if difference == 0.0 {
                 return [0, 0, 0, 255];
             }
-            // Even the smallest difference is to be seen.
+            // Even the smallest difference must be visible.
             let share = (difference / full).clamp(0.0, 1.0);
             #[expect(clippy::cast_possible_truncation, reason = "64 to 255")]
             let red = (64.0 + 191.0 * share) as u8;
@@ -248,7 +248,7 @@ fn texel_difference(expected: [f64; 4], actual: [f64; 4]) -> f64 {
         if expected.is_nan() || actual.is_nan() || largest.is_nan() {
             f64::NAN
         } else if expected == actual {
-            // Two infinities differ by nothing, though their difference is no number.
+            // Two infinities are equal, although their difference is NaN.
             largest
         } else {
             largest.max((expected - actual).abs())

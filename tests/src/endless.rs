@@ -1,4 +1,4 @@
-//! A recording that is written without end, by a process that is killed, and what must be left of it.
+//! A recording that a process writes until it is killed, and the check of the rest.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -19,7 +19,7 @@ use desk::stored::Stored;
 
 /// Time between two frames.
 const FRAME_NS: u64 = 40_000_000;
-/// An attached file, as the toy is.
+/// An attached file, like the toy.
 const FILE: &str = "toy.glb";
 
 #[derive(Deserialize)]
@@ -33,14 +33,14 @@ struct Entry {
     image: String,
 }
 
-/// Index of the session but its frames.
+/// Index of the session without its frames.
 #[must_use]
 pub fn session() -> Value {
     json!({ "format": "shadow-capture", "version": 1, "name": "endless", "width": 640, "height": 480,
         "intrinsics": { "fx": 576.0, "fy": 576.0, "cx": 320.0, "cy": 240.0 } })
 }
 
-/// What stands for the picture of a frame: bytes by chance, the same for the same frame. Some frames have large ones.
+/// The picture of a frame: random bytes, the same for the same frame. Some frames have large ones.
 #[must_use]
 pub fn picture(frame: u32) -> Vec<u8> {
     let n_bytes = if frame % 50 == 49 {
@@ -58,7 +58,7 @@ pub fn picture(frame: u32) -> Vec<u8> {
     b"\xff\xd8\xff".iter().copied().chain(bytes).collect()
 }
 
-/// A frame's entry. Its numbers are those that shortest decimals are hardest for.
+/// A frame's entry, with numbers that are hard for shortest decimals.
 #[must_use]
 pub fn entry(frame: u32) -> Value {
     let at = f64::from(frame) / 30.0;
@@ -66,7 +66,7 @@ pub fn entry(frame: u32) -> Value {
         "world_from_camera": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, at.sin(), 0.1 + at, 0.3, 1] })
 }
 
-/// When a frame was taken.
+/// Time of a frame.
 #[must_use]
 pub fn time_ns(frame: u32) -> u64 {
     u64::from(frame) * FRAME_NS
@@ -82,7 +82,8 @@ pub fn add<W: Write>(writer: &mut Writer<W>, frame: u32) -> anyhow::Result<()> {
     Ok(writer.note(time_ns, Topic::Light, r#"{"lux":300}"#)?)
 }
 
-/// Writes as fast as it can until the process is killed, and says on `acknowledge`, a line each, how many frames outlive it.
+/// Writes as fast as it can until the process is killed, and reports on `acknowledge`, a line each,
+/// the number of frames that would survive.
 ///
 /// # Errors
 /// When the system refuses.
@@ -103,27 +104,28 @@ pub fn write(out: &Path, mut acknowledge: impl Write) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What became of one that was killed.
+/// The result of a killed process.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Killed {
-    /// Frames that it said outlive it.
+    /// Number of acknowledged frames.
     pub n_acknowledged: u32,
-    /// Frames that were read.
+    /// Number of readable frames.
     pub n_read: u32,
 }
 
 impl Killed {
-    /// Frames that should be there and are not.
+    /// Number of acknowledged frames that are missing.
     #[must_use]
     pub fn n_lost(&self) -> u32 {
         self.n_acknowledged.saturating_sub(self.n_read)
     }
 }
 
-/// Starts `program`, which writes to `out`, kills it after its first acknowledgement and `delay`, and reads what is left.
+/// Starts `program`, which writes to `out`, kills it after its first acknowledgement and `delay`,
+/// and reads the rest.
 ///
 /// # Errors
-/// When the system refuses, or what is left cannot be read or is not what was written.
+/// When the system refuses, or the rest cannot be read or differs from the written data.
 pub fn kill(program: &Path, out: &Path, delay: Duration) -> anyhow::Result<Killed> {
     let mut child = Command::new(program)
         .arg(out)
@@ -150,10 +152,11 @@ pub fn kill(program: &Path, out: &Path, delay: Duration) -> anyhow::Result<Kille
     })
 }
 
-/// Frames of what is left.
+/// Number of frames of the rest.
 ///
 /// # Errors
-/// When it cannot be read, or a frame, its picture or the attached file is not what was written.
+/// When it cannot be read, or a frame, its picture or the attached file differs from the written
+/// data.
 pub fn read(out: &Path) -> anyhow::Result<u32> {
     let Stored::Recording(recording) = Stored::open(out)? else {
         anyhow::bail!("not a file");
@@ -168,10 +171,10 @@ pub fn read(out: &Path) -> anyhow::Result<u32> {
     Ok(n_frames)
 }
 
-/// Numbers of the frames that are there.
+/// Numbers of the existing frames.
 ///
 /// # Errors
-/// When a frame or its picture is not what was written.
+/// When a frame or its picture differs from the written data.
 pub fn compare(recording: &Recording) -> anyhow::Result<Vec<u32>> {
     let index = recording.read("capture.json", u64::MAX)?;
     let index: Index = serde_json::from_slice(&index)?;
@@ -180,7 +183,7 @@ pub fn compare(recording: &Recording) -> anyhow::Result<Vec<u32>> {
         let named: Entry = serde_json::from_str(found.get())?;
         let path = named.image.as_str();
         let number = path.trim_matches(|c: char| !c.is_ascii_digit()).parse()?;
-        // As text: a parser may err in the last digit of a number.
+        // Compared as text, since a parser may err in the last digit of a number.
         let written = entry(number).to_string();
         ensure!(found.get() == written.as_str(), "frame {number}");
         ensure!(

@@ -1,6 +1,7 @@
-//! Bytes from outside to whatever reads them: nothing may panic, and what is accepted is finite.
+//! Untrusted bytes for every reader: nothing may panic, and accepted values are finite.
 //!
-//! Fuzzing (`tests/fuzz`) and property tests (`tests/tests/files/mutated.rs`) drive the same functions.
+//! Fuzzing (`tests/fuzz`) and property tests (`tests/tests/files/mutated.rs`) call the same
+//! functions.
 
 use std::sync::Arc;
 
@@ -25,7 +26,7 @@ pub const PICTURE: &[u8] = include_bytes!("../fuzz/seeds/picture/good.png");
 /// A recording of a session of these files, finished.
 pub const RECORDING: &[u8] = include_bytes!("../fuzz/seeds/recording/good.mcap");
 
-/// Pictures beside the texts that are imported.
+/// Pictures beside the imported texts.
 const IMPORTED: [&str; 8] = [
     "images/1.png",
     "rgb/000002.png",
@@ -37,22 +38,22 @@ const IMPORTED: [&str; 8] = [
     "rgb/000001.jpg",
 ];
 
-/// Frames of a session that are looked at.
+/// Number of a session's frames that are checked.
 const MAX_FRAMES: usize = 4;
-/// No file of a small session is larger.
+/// Limit for the size of a small session's file.
 const MAX_FILE_BYTES: u64 = 1 << 20;
 
 /// Reads a toy's file and poses it.
 ///
 /// # Panics
-/// Where a toy that is accepted has a pose that is accepted and not finite.
+/// When an accepted toy has an accepted pose that is not finite.
 pub fn toy(bytes: &[u8]) {
     if let Ok(toy) = Toy::from_glb("fuzzed.glb", bytes) {
         check_toy(&toy);
     }
 }
 
-/// The same for a file put together from its two chunks: two bytes of the first one's length, then both.
+/// The same for a file built from its two chunks: two bytes with the first one's length, then both.
 ///
 /// # Panics
 /// As [`toy`].
@@ -60,8 +61,8 @@ pub fn toy_chunks(bytes: &[u8]) {
     toy(&glb_from_chunks(bytes));
 }
 
-/// Packs a glTF of several files, of which this is the text, and reads the toy; returns whether it could be. Every neighbour has the
-/// bytes of [`TOY`].
+/// Packs a glTF with this text and external files, and reads the toy; returns whether that
+/// succeeded. Every external file has the bytes of [`TOY`].
 ///
 /// # Panics
 /// As [`toy`].
@@ -75,7 +76,7 @@ pub fn packed(bytes: &[u8]) -> bool {
     })
 }
 
-/// The text of [`TOY`] with its bytes and a picture beside it.
+/// The text of [`TOY`] with its bytes and a picture as external files.
 #[must_use]
 pub fn text_of_toy() -> Vec<u8> {
     let (mut json, _) = chunks(TOY);
@@ -84,10 +85,10 @@ pub fn text_of_toy() -> Vec<u8> {
     json.to_string().into_bytes()
 }
 
-/// Opens a session whose `capture.json` is these bytes, and reads its frames.
+/// Opens a session whose `capture.json` has these bytes, and reads its frames.
 ///
 /// # Panics
-/// Where a session that is accepted holds a number that is not finite.
+/// When an accepted session holds a number that is not finite.
 pub fn capture(bytes: &[u8]) {
     session(bytes, TOY, PICTURE);
 }
@@ -95,17 +96,18 @@ pub fn capture(bytes: &[u8]) {
 /// Decodes a picture and a mask of 2 x 2 pixels, and reads their tags.
 ///
 /// # Panics
-/// Where a picture that is accepted is of another size.
+/// When an accepted picture has another size.
 pub fn picture(bytes: &[u8]) {
     let _ = wrong_of_picture(bytes);
     session(INDEX, TOY, bytes);
 }
 
-/// Reads what another program tells of its frames: a byte for the format, the first file, and after a zero the second. Binary files of
-/// COLMAP are cut in the middle, since they have zeros themselves; a mesh is one file.
+/// Reads another program's recording: a byte for the format, the first file, and after a zero the
+/// second. Binary files of COLMAP are split in the middle, since they contain zeros; a mesh is one
+/// file.
 ///
 /// # Panics
-/// Where what is accepted is not finite.
+/// When accepted data is not finite.
 pub fn import(bytes: &[u8]) {
     const FORMATS: [Format; 5] = [
         Format::Nerfstudio,
@@ -143,17 +145,17 @@ pub fn import(bytes: &[u8]) {
     }
 }
 
-/// Opens a recording whose bytes these are, and the session in it; then once more without its checksums, which would
-/// hold up most of what is changed.
+/// Opens a recording of these bytes, and its session; then once more without its checksums, which
+/// would reject most changes.
 ///
 /// # Panics
-/// Where a session that is accepted holds a number that is not finite.
+/// When an accepted session holds a number that is not finite.
 pub fn recording(bytes: &[u8]) {
     recorded(bytes.to_vec());
     recorded(without_checksums(bytes));
 }
 
-/// Whether a recording can be opened, nothing of it is lost, and every frame of its session can be read.
+/// Whether a recording can be opened without losses, and every frame of its session can be read.
 #[must_use]
 pub fn opens_recording(bytes: &[u8]) -> bool {
     let is_whole = |recording: &Recording| recording.losses().is_empty();
@@ -175,7 +177,7 @@ fn recorded(bytes: Vec<u8>) {
     }
 }
 
-/// A recording whose chunks and attached files have the checksum nought, which stands for none.
+/// A recording whose chunks and attached files have the checksum zero, which means none.
 #[must_use]
 pub fn without_checksums(bytes: &[u8]) -> Vec<u8> {
     const CHUNK: u8 = 6;
@@ -243,10 +245,10 @@ fn check_capture(capture: &Capture) {
     }
 }
 
-/// Poses a toy as authored and at moments of each clip, and bounds it.
+/// Poses a toy as authored and at moments of each clip, and computes its bounds.
 ///
 /// # Panics
-/// Where a pose that is accepted is not finite.
+/// When an accepted pose is not finite.
 pub fn check_toy(toy: &Toy) {
     let _ = toy.bounds_of_pose(&Pose::Authored);
     pose(toy, &Pose::Authored, &DMat4::IDENTITY);
@@ -269,10 +271,10 @@ pub fn check_toy(toy: &Toy) {
     }
 }
 
-/// Poses a toy; returns whether it could be.
+/// Poses a toy; returns whether that succeeded.
 ///
 /// # Panics
-/// Where the pose is accepted and not finite, or has a normal of another length than 1.
+/// When an accepted pose is not finite, or has a normal of another length than 1.
 pub fn pose(toy: &Toy, pose: &Pose, anchor_from_object: &DMat4) -> bool {
     let mut posed = PosedMesh::default();
     if toy.pose(pose, anchor_from_object, &mut posed).is_err() {
@@ -289,10 +291,10 @@ pub fn pose(toy: &Toy, pose: &Pose, anchor_from_object: &DMat4) -> bool {
     true
 }
 
-/// Whether all positions are numbers.
+/// Checks that all positions are finite.
 ///
 /// # Panics
-/// Where one is not.
+/// When one is not.
 pub fn check_finite(positions: &[Vec3]) {
     assert!(positions.iter().all(|position| position.is_finite()));
 }

@@ -1,7 +1,8 @@
-//! Golden pictures: what the presets make of the bundled session, kept in the repository and compared with.
+//! Golden pictures: the presets' pictures of the bundled session, kept in the repository for
+//! comparison.
 //!
-//! A test only reads them. They are written by the program `bless`, which never ends in success, so that no picture
-//! comes to be expected without someone having looked at it.
+//! A test only reads them. The program `bless` writes them and never ends in success, so that no
+//! picture becomes a golden without someone having looked at it.
 
 use std::path::{Path, PathBuf};
 
@@ -18,25 +19,26 @@ use desk::files::{BUNDLED_SESSION, Folder, FolderError};
 use desk::metrics::{Scores, SizeError, score};
 use desk::output::{WriteError, make_folder, write_png};
 
-/// What makes or remakes a golden.
+/// The command that makes goldens.
 pub const BLESS_COMMAND: &str = "cargo xtask bless";
-/// Part of the name of the adapter that goldens come from.
+/// Part of the name of the goldens' adapter.
 pub const SOFTWARE_ADAPTER: &str = "llvmpipe";
 /// Frame of the bundled session whose shadow has moved far, over wood grain and over the real one.
 const FRAME: usize = 2;
-/// Part of that frame that holds toy, real shadow and moved shadow.
+/// Part of that frame with toy, real shadow and moved shadow.
 const CROP: Crop = Crop {
     origin_px: [168, 16],
     size_px: [344, 288],
 };
-/// Difference, in codes, that a picture of differences shows in full red.
+/// Difference, in codes, that is full red in a picture of differences.
 const FULL_RED_CODES: f64 = 16.0;
 
-/// Demands on the adapter that the goldens come from, a processor that plays at being a graphics card.
+/// Conditions on the goldens' own adapter, a software renderer.
 ///
-/// From run to run its picture does not change at all. Another processor contracts and rounds differently: kept to
-/// SSE 4.1 (`GALLIUM_OVERRIDE_CPU_CAPS=sse4.1`) instead of AVX2, 0.046 % of the pixels change, 0.019 % by more than two
-/// codes, the worst, a sample that falls to the other side of an edge, by 25.
+/// Its picture does not vary between runs. Another processor contracts and rounds differently:
+/// restricted to SSE 4.1 (`GALLIUM_OVERRIDE_CPU_CAPS=sse4.1`) instead of AVX2, 0.046 % of the
+/// pixels change, 0.019 % by more than two codes, the worst, a sample on the other side of an edge,
+/// by 25.
 pub const ON_SOFTWARE: &[Check] = &[
     Check::Outliers {
         tolerance: 2.0,
@@ -44,7 +46,8 @@ pub const ON_SOFTWARE: &[Check] = &[
     },
     Check::MaxAbs(64.0),
 ];
-/// Demands on any other adapter, whose rasteriser may sample edges elsewhere and whose filters have 8 bit of fraction.
+/// Conditions on any other adapter, whose rasteriser may sample edges at other places and whose
+/// filters have 8 bit of fraction.
 ///
 /// Estimated, not yet measured: the edges of toy and shadow are about 2 % of the picture.
 pub const ON_HARDWARE: &[Check] = &[
@@ -55,22 +58,22 @@ pub const ON_HARDWARE: &[Check] = &[
     Check::MaxAbs(160.0),
 ];
 
-/// A picture that was not found to be as expected.
+/// A picture that does not match its golden.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GoldenError {
     /// There is no golden.
     #[error("{}: there is no golden; make it with `{BLESS_COMMAND}` and look at it", path.display())]
     Missing {
-        /// Where it should be.
+        /// Its expected path.
         path: PathBuf,
     },
-    /// The golden is no picture.
+    /// The golden cannot be decoded.
     #[error("{}: {reason}", path.display())]
     Unreadable {
-        /// Where it is.
+        /// Its path.
         path: PathBuf,
-        /// What the decoder said.
+        /// The decoder's error.
         reason: String,
     },
     /// The picture differs.
@@ -78,9 +81,9 @@ pub enum GoldenError {
     Differs {
         /// Name of the golden.
         name: String,
-        /// How it differs.
+        /// The difference.
         reason: CompareError,
-        /// Folder with pictures to look at.
+        /// Folder with pictures to view.
         failures: PathBuf,
     },
     /// A picture cannot be written.
@@ -92,7 +95,7 @@ pub enum GoldenError {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// The bundled session is not there.
+    /// The bundled session is missing.
     #[error(transparent)]
     Folder(#[from] FolderError),
     /// The bundled session cannot be read.
@@ -101,7 +104,7 @@ pub enum RenderError {
     /// The bundled session has lost its truth.
     #[error("the frame has no truth")]
     NoTruth,
-    /// The truth is of another size.
+    /// The truth has another size.
     #[error(transparent)]
     Size(#[from] SizeError),
     /// The core cannot make the picture.
@@ -109,7 +112,7 @@ pub enum RenderError {
     Core(#[from] CoreError),
 }
 
-/// A folder of goldens, and where to put what does not match.
+/// A folder of goldens, and the destination of mismatches.
 #[derive(Clone, Debug)]
 pub struct Goldens {
     folder: PathBuf,
@@ -117,7 +120,8 @@ pub struct Goldens {
 }
 
 impl Goldens {
-    /// Goldens in `folder`; pictures of what does not match go to `failures`, which is made where it is missing.
+    /// Goldens in `folder`; pictures of mismatches go to `failures`, which is made if it is
+    /// missing.
     #[must_use]
     pub fn in_folder(folder: &Path, failures: &Path) -> Self {
         Self {
@@ -126,14 +130,14 @@ impl Goldens {
         }
     }
 
-    /// The project's own.
+    /// The project's own goldens.
     #[must_use]
     pub fn of_project() -> Self {
         let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
         Self::in_folder(&tests.join("goldens"), &tests.join("../target/goldens"))
     }
 
-    /// Where the golden `name` is, or would be.
+    /// Path of the golden `name`, whether it exists or not.
     #[must_use]
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.join(format!("{name}.png"))
@@ -159,7 +163,7 @@ impl Goldens {
         })
     }
 
-    /// Makes `picture` the golden `name`. For `bless` alone.
+    /// Writes `picture` as the golden `name`. For `bless` alone.
     ///
     /// # Errors
     /// When the system refuses.
@@ -176,7 +180,7 @@ impl Goldens {
         write("actual", pair.actual)?;
         match pair.difference() {
             Ok(difference) => write("difference", &difference.picture(FULL_RED_CODES)),
-            // Of different sizes: there is no picture of that.
+            // For different sizes there is no picture of differences.
             Err(_) => Ok(()),
         }
     }
@@ -188,16 +192,16 @@ pub fn name_of(preset: Preset) -> String {
     format!("llama_{preset}")
 }
 
-/// What a preset makes of a frame of the bundled session.
+/// A preset's picture of a frame of the bundled session.
 #[derive(Debug)]
 pub struct Rendered {
-    /// The part of the picture that the preset's golden shows.
+    /// The part of the picture in the preset's golden.
     pub golden: Image,
     /// Errors of the whole picture against the photograph of the moved toy.
     pub scores: Scores,
 }
 
-/// Makes the picture that a preset's golden shows.
+/// Makes the picture of a preset's golden.
 ///
 /// # Errors
 /// When the bundled session cannot be read, or the core fails.
@@ -221,7 +225,7 @@ struct Crop {
 }
 
 impl Crop {
-    /// The pixels of `image` within, fewer where it is smaller.
+    /// The pixels of `image` within, fewer if it is smaller.
     fn of(&self, image: &Image) -> Image {
         let ([x, y], [width, height]) = (self.origin_px, self.size_px);
         let rows = image

@@ -1,4 +1,5 @@
-//! What tests alone use: goldens and their comparison, fuzzing's functions, a recording without end.
+//! Helpers for tests alone: goldens and their comparison, the fuzzing functions, an endless
+//! recording.
 
 pub mod compare;
 pub mod endless;
@@ -13,10 +14,10 @@ use app_core::session::Capture;
 use app_core::wgpu;
 use desk::files::{BUNDLED_SESSION, Folder};
 
-/// The session that comes with the project.
+/// The bundled session.
 ///
 /// # Panics
-/// Where it cannot be read.
+/// When it cannot be read.
 #[must_use]
 pub fn bundled_session() -> Capture {
     let folder = Folder::open(BUNDLED_SESSION).expect("the session comes with the project");
@@ -26,7 +27,7 @@ pub fn bundled_session() -> Capture {
 /// A core without any scene, on the fastest adapter.
 ///
 /// # Panics
-/// Where there is no adapter, with what the core says.
+/// When there is no adapter, with the core's error.
 #[must_use]
 pub fn open_core() -> Core {
     let instance = wgpu::Instance::default();

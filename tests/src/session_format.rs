@@ -1,30 +1,31 @@
-//! The format of sessions: its schema as it is kept in the repository, and its document, whose tables are made of that.
+//! The format of sessions: the committed schema, and the document whose tables are generated from
+//! it.
 
 use app_core::session::schema;
 use serde_json::Value;
 
-/// Where the schema is kept, beside the document.
+/// Path of the schema, beside the document.
 pub const SCHEMA_FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../app-core/doc/session.schema.json");
-/// Where the document is kept.
+/// Path of the document.
 pub const DOCUMENT_FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../app-core/doc/session.md");
-/// The document as it is kept.
+/// The committed document.
 pub const DOCUMENT: &str = include_str!("../../app-core/doc/session.md");
-/// The index itself, where other objects have their path in it.
+/// Path of the index itself, while other objects have their path in it.
 pub const WHOLE: &str = "capture.json";
 
-/// Lines before and after a table that is made.
+/// Lines before and after a generated table.
 const BEGIN: &str = "<!-- keys -->\n";
 const END: &str = "<!-- end of keys -->\n";
 const HEAD: &str =
     "\n| key | type | range | needed | meaning | example |\n| --- | --- | --- | --- | --- | --- |\n";
 
-/// The schema from the types that the reader has now.
+/// The schema of the reader's present types.
 #[must_use]
 pub fn schema_text() -> String {
     format!("{:#}\n", schema())
 }
 
-/// The document with the tables that the schema has now.
+/// The document with tables of the present schema.
 #[must_use]
 pub fn document_text() -> String {
     let schema = schema();
@@ -48,22 +49,22 @@ pub fn document_text() -> String {
     text
 }
 
-/// The `capture.json` that the document gives as an example; none where it has lost it.
+/// The example of `capture.json` in the document; `None` if it is missing.
 #[must_use]
 pub fn example() -> Option<&'static str> {
     let (_, from) = DOCUMENT.split_once("```json\n")?;
     from.split_once("```").map(|(example, _)| example)
 }
 
-/// What stands between backticks: in a heading, the paths of the objects whose keys are below it.
+/// Texts between backticks: in a heading, the paths of the objects whose keys are below it.
 #[must_use]
 pub fn quoted(text: &str) -> Vec<&str> {
     text.split('`').skip(1).step_by(2).collect()
 }
 
-/// What is at a path as `frames[].animation`.
+/// The value at a path such as `frames[].animation`.
 ///
-/// Only the first of a list's entries that has something there tells of it.
+/// For a list, the first entry with a value there counts.
 fn value_at<'a>(value: &'a Value, path: &[&str]) -> Option<&'a Value> {
     match (path, value) {
         ([], value) => Some(value).filter(|value| !value.is_null()),
@@ -86,7 +87,7 @@ fn object_at<'a>(schema: &'a Value, path: &str) -> &'a Value {
     })
 }
 
-/// The keys of the objects at `paths`, which are alike: needed ones first.
+/// The keys of the objects at `paths`, which are equal: required ones first.
 fn table(schema: &Value, example: &Value, paths: &[&str]) -> String {
     let object = object_at(schema, paths.first().unwrap_or(&WHOLE));
     let needs = needs(object);
@@ -114,7 +115,7 @@ fn texts(list: &Value) -> impl Iterator<Item = &str> {
     list.as_array().into_iter().flatten().filter_map(Value::as_str)
 }
 
-/// Keys that an object needs, and whether it always does, or of which kind it must be.
+/// Keys that an object requires, and whether always or for which kind.
 fn needs(object: &Value) -> Vec<(&str, String)> {
     let always = texts(&object["required"]).map(|key| (key, "yes".to_owned()));
     let kinds = object["anyOf"].as_array().into_iter().flatten();
@@ -125,7 +126,7 @@ fn needs(object: &Value) -> Vec<(&str, String)> {
     always.chain(of_kinds).collect()
 }
 
-/// Values that a key may have, each with its description.
+/// Possible values of a key, each with its description.
 fn choices(schema: &Value) -> impl Iterator<Item = (&str, &str)> {
     let values = schema["oneOf"].as_array().into_iter().flatten();
     values.filter_map(|value| Some((value["const"].as_str()?, value["description"].as_str()?)))
@@ -136,7 +137,7 @@ fn type_of(schema: &Value) -> String {
     if !choices.is_empty() {
         return choices.join(" or ");
     }
-    // One that may be missing is null besides.
+    // An optional key may also be null.
     let of_type = match &schema["type"] {
         Value::Array(types) => types.iter().find(|of_type| *of_type != "null"),
         of_type => Some(of_type),
@@ -181,7 +182,7 @@ fn meaning_of(schema: &Value) -> String {
     })
 }
 
-/// Objects have tables of their own.
+/// Objects have their own tables.
 fn shown_as(value: &Value) -> String {
     match value {
         Value::Object(_) => String::new(),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::{env, fs, process};
 
-/// A new and empty folder, which goes with this.
+/// A new and empty folder, which is removed when this is dropped.
 #[derive(Debug)]
 pub struct Temporary(pub PathBuf);
 
@@ -12,7 +12,7 @@ impl Temporary {
     /// A folder with `name` in its own.
     ///
     /// # Panics
-    /// Where it cannot be made.
+    /// When it cannot be made.
     #[must_use]
     pub fn new(name: &str) -> Self {
         static N_MADE: AtomicU32 = AtomicU32::new(0);
@@ -26,7 +26,7 @@ impl Temporary {
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // What cannot be removed does no harm there.
+        // A remnant does no harm there.
         let _ = fs::remove_dir_all(&self.0);
     }
 }

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-/// Characters of a command that are shown; a list of files may take many more.
+/// Number of shown characters of a command; a list of files may have many more.
 const N_SHOWN: usize = 160;
 
 /// A command as one would type it, without most of a long list.
@@ -20,7 +20,7 @@ pub(crate) fn line(command: &Command) -> String {
     }
 }
 
-/// Runs a command, its output shown.
+/// Runs a command with its output shown.
 pub(crate) fn run(command: &mut Command) -> Result<()> {
     let status = command.status().with_context(|| line(command))?;
     if !status.success() {
@@ -29,7 +29,7 @@ pub(crate) fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// What a command prints, or nothing where it cannot be run or fails.
+/// The output of a command, or `None` if it cannot be run or fails.
 pub(crate) fn output(program: &str, args: &[&str]) -> Option<String> {
     let output = Command::new(program).args(args).output().ok()?;
     output
@@ -38,7 +38,7 @@ pub(crate) fn output(program: &str, args: &[&str]) -> Option<String> {
         .then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Where a program lies on the search path.
+/// Path of a program on the search path.
 pub(crate) fn find(program: &str) -> Option<PathBuf> {
     let file = format!("{program}{}", env::consts::EXE_SUFFIX);
     env::split_paths(&env::var_os("PATH")?)

@@ -1,4 +1,4 @@
-//! Packages of Debian and Ubuntu, installed where that is allowed.
+//! Installs packages of Debian and Ubuntu, if that is permitted.
 
 use std::io::{self, IsTerminal, Write};
 use std::process::Command;
@@ -7,7 +7,8 @@ use anyhow::{Result, bail};
 
 use crate::command;
 
-/// Installs `packages` as root, asks first where `sudo` is needed, and otherwise says which line to run.
+/// Installs `packages` as root, after a question if `sudo` is needed, or else prints the line to
+/// run.
 pub(crate) fn install(reason: &str, packages: &[&str]) -> Result<()> {
     let line = format!("apt-get update && apt-get install --yes {}", packages.join(" "));
     let is_root = command::output("id", &["-u"]).is_some_and(|id| id.trim() == "0");
@@ -41,7 +42,7 @@ fn install_as(prefix: &[&str], packages: &[&str]) -> Result<()> {
     )
 }
 
-/// Asks whether `line` may be run as root. Where no one can answer, no one agreed.
+/// Asks whether `line` may be run as root. Without a terminal the answer is no.
 fn agreed(line: &str) -> bool {
     if !io::stdin().is_terminal() {
         return false;

@@ -1,4 +1,5 @@
-//! Formatting: of every source file, also of modules that a macro declares, which `cargo fmt` does not find.
+//! Formatting of every source file, including modules that a macro declares, which `cargo fmt` does
+//! not find.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,7 +11,7 @@ use crate::toolchain::Toolchain;
 /// Folders of the workspace's members.
 const FOLDERS: [&str; 5] = ["app-core", "app-ios", "app-android", "tests", "xtask"];
 
-/// Rewrites every source file, or with `--check` only says which it would.
+/// Rewrites every source file, or with `--check` only lists those that it would.
 pub(crate) fn rustfmt(toolchain: &Toolchain, args: &[&str]) -> Result<Command> {
     let mut rustfmt = toolchain.command("rustfmt");
     rustfmt.args(["--edition", toolchain.edition.as_str()]).args(args);
@@ -20,10 +21,10 @@ pub(crate) fn rustfmt(toolchain: &Toolchain, args: &[&str]) -> Result<Command> {
     Ok(rustfmt)
 }
 
-/// What a build leaves, such as that of the fuzz targets, is no source.
+/// Build outputs, such as those of the fuzz targets, are no sources.
 const BUILD: &str = "target";
 
-/// All files of Rust in a folder and those below it, in an order that stays.
+/// All Rust files in a folder and those below it, in a stable order.
 fn sources(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for entry in folder.read_dir().with_context(|| folder.display().to_string())? {

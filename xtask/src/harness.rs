@@ -1,4 +1,4 @@
-//! The programs of the harness, and the demo on top of them.
+//! The programs of the workspace, and the demo that uses them.
 
 use std::env;
 use std::ffi::{OsStr, OsString};
@@ -12,7 +12,7 @@ use crate::toolchain::Toolchain;
 use crate::vulkan;
 use crate::{Program, REPLAY};
 
-/// Replays the bundled session and names what to look at.
+/// Replays the bundled session and names the files to look at.
 pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
     let out = toolchain.root.join("target/demo");
     let code = run(
@@ -31,7 +31,7 @@ pub(crate) fn demo(toolchain: &Toolchain) -> Result<ExitCode> {
     Ok(code)
 }
 
-/// Runs a program with `args` and hands on its exit code.
+/// Runs a program with `args` and returns its exit code.
 pub(crate) fn run(toolchain: &Toolchain, program: &Program, args: &[OsString]) -> Result<ExitCode> {
     let mut cargo = command_of(toolchain, program, args)?;
     let status = cargo.status().with_context(|| line(&cargo))?;
@@ -39,8 +39,8 @@ pub(crate) fn run(toolchain: &Toolchain, program: &Program, args: &[OsString]) -
     Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
 }
 
-/// Becomes the program, so that a signal to this process ends it, and none is left behind; if a system has no such thing, the
-/// same as [`run`].
+/// Replaces this process by the program, so that a signal ends it and no child stays behind; the
+/// same as [`run`] on systems without `exec`.
 pub(crate) fn become_program(
     toolchain: &Toolchain,
     program: &Program,
@@ -50,7 +50,7 @@ pub(crate) fn become_program(
     {
         use std::os::unix::process::CommandExt;
         let mut cargo = command_of(toolchain, program, args)?;
-        // Cargo, too, becomes what it runs. This returns only if there is no cargo.
+        // Cargo also replaces itself by the program. This returns only if there is no cargo.
         let error = cargo.exec();
         Err(error).with_context(|| line(&cargo))
     }
@@ -76,7 +76,7 @@ fn asks_only(args: &[OsString]) -> bool {
     args.iter().any(|arg| arg == "--help" || arg == "-h")
 }
 
-/// A path as seen from where the command was called.
+/// A path relative to the caller's folder.
 fn from_here(path: &Path) -> &Path {
     let here = env::current_dir().ok();
     here.and_then(|here| path.strip_prefix(here).ok()).unwrap_or(path)

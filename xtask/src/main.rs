@@ -1,5 +1,5 @@
-//! The project's commands, as `cargo xtask <command>`. Each checks what it needs before it starts, fetches what it may,
-//! and names what is missing.
+//! The project's commands, as `cargo xtask <command>`. Each checks its requirements before it
+//! starts, fetches them if permitted, and names missing ones.
 
 mod command;
 mod debian;
@@ -21,44 +21,44 @@ use lexopt::{Parser, ValueExt};
 use crate::phone::{ANDROID, Action, Arcore, IOS, IphoneApp, Phone, Profile};
 use crate::toolchain::Toolchain;
 
-/// What the demo runs.
+/// The program of the demo.
 const REPLAY: Program =
     Program::new("replay", "desk", "Replay a session: pictures, times, errors").on_device();
 
-/// Programs that are run with whatever stands after their name.
+/// Programs that receive all arguments after their name.
 #[rustfmt::skip] // One program a line.
 const PROGRAMS: [Program; 16] = [
     REPLAY,
-    Program::new("check", "desk", "Say what is wrong with a session, and draw what it predicts over its first frame"),
+    Program::new("check", "desk", "Report all mistakes of a session, and draw its predictions over its first frame"),
     Program::new("align", "desk", "Write a session anew with cameras, pose and lights aligned by its pictures"),
-    Program::new("convert", "desk", "Make a recording of a session's folder, or a folder of a recording"),
-    Program::new("import", "desk", "Make a session of a recording of nerfstudio, Record3D or Stray Scanner, of a model of COLMAP or of a scene of BOP"),
-    Program::new("new", "film", "Make a session of photographs, found by the toy that they show"),
+    Program::new("convert", "desk", "Convert a session's folder to a recording, or a recording to a folder"),
+    Program::new("import", "desk", "Make a session from a recording of nerfstudio, Record3D or Stray Scanner, a model of COLMAP or a scene of BOP"),
+    Program::new("new", "film", "Make a session from photographs, with the toy as the marker"),
     Program::new("clips", "film", "List the clips of a toy, with thumbnails"),
-    Program::new("animate", "film", "Make a film of a photograph: clips of the toy become numbered pictures").on_device(),
+    Program::new("animate", "film", "Make a film from a photograph: clips of the toy become numbered pictures").on_device(),
     Program::new("inbetween", "film", "Make the frames between key poses that were printed and photographed one by one").on_device(),
     Program::new("card", "desk", "Write a card to print and to lay beside the toy"),
     Program::new("bench", "measure", "Measure presets over sessions: time against error").on_device(),
-    Program::new("ledger", "measure", "What frames of a session must cost on any device, without one"),
+    Program::new("ledger", "measure", "The cost of a session's frames on any device, counted without one"),
     Program::new("profile", "measure", "A trace for Perfetto and a table of tasks, of a session or of a phone's profile").on_device(),
     Program::new("stability", "measure", "Measure numerical stability on hard cases against bounds").on_device(),
     Program::new("view", "view", "Run the app on a desktop, with a session as its camera").on_device(),
     Program::new("bless", "tests", "Rewrite the golden pictures, the schema of sessions and its tables in the document").on_device(),
 ];
 
-/// Commands of this program's own, and what they do.
+/// This program's own commands, with their descriptions.
 #[rustfmt::skip] // One command a line.
 const COMMANDS: [(&str, &str); 7] = [
     ("demo", "Replay the bundled session into target/demo"),
-    ("test", "Check everything that must hold before a change is taken"),
+    ("test", "Run all checks that a change must pass"),
     ("fmt", "Format every source file"),
-    ("size [--record]", "Package both shells and hold their sizes against the budgets; or take the sizes anew, within them"),
-    ("calls", "Write the table of what the shells call of their platforms"),
+    ("size [--record]", "Package both shells and compare their sizes with the budgets; or record new sizes, within them"),
+    ("calls", "Write the table of the shells' calls of their platforms"),
     ("ios check|build|package|log [--first-phone] [--device NAME] [--bundle ID]", "The iPhone shell: lints, the library, an app (on a Mac; elsewhere one that shows that it links), for engineers with --first-phone; or what a phone has written"),
     ("android check|build|package|log [--first-phone] [--arcore AAR --sha256 HEX]", "The Android shell: lints, the library (by the NDK), a package (with NDK, SDK and ARCore's archive, com.google.ar:core, whose SHA-256 is HEX, one to install), for engineers with --first-phone; or what a phone has written"),
 ];
 
-/// What is left to do once all arguments are read.
+/// The work that follows after all arguments are parsed.
 type Work = Box<dyn FnOnce(&Toolchain) -> Result<ExitCode>>;
 
 /// A program of the workspace.
@@ -80,7 +80,7 @@ impl Program {
         }
     }
 
-    /// One that draws.
+    /// A program that draws.
     const fn on_device(self) -> Self {
         Self {
             needs_device: true,
@@ -134,7 +134,7 @@ fn run(mut args: Parser) -> Result<ExitCode> {
     }
 }
 
-/// What a command of this program's own does, once all of its arguments are read.
+/// The work of one of this program's own commands, after all of its arguments are parsed.
 fn parsed(command: &str, args: &mut Parser) -> Result<Work> {
     type Step = fn(&Toolchain) -> Result<()>;
     let step: Step = match command {
@@ -209,7 +209,7 @@ fn size(toolchain: &Toolchain, record: bool) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Refuses what stands after the last argument.
+/// Refuses further arguments.
 fn end(args: &mut Parser) -> Result<()> {
     args.next()?.map_or(Ok(()), |arg| Err(arg.unexpected().into()))
 }
@@ -226,8 +226,8 @@ fn help() -> String {
     format!("The project's commands.\n\nUsage: cargo xtask <command>\n\nCommands:\n{lines}")
 }
 
-/// Rewrites the goldens of the bundled session, the schema of sessions and, unless some of those are named, the goldens
-/// of the scenes that only tests know.
+/// Rewrites the goldens of the bundled session, the schema of sessions and, unless some of those
+/// are named, the goldens of the tests' own scenes.
 fn bless(toolchain: &Toolchain, program: &Program, args: &[OsString]) -> Result<ExitCode> {
     if args.is_empty() {
         let mut test = toolchain.cargo("test");

@@ -1,4 +1,4 @@
-//! Everything that must hold before a change is taken, cheap things first.
+//! All checks that a change must pass, the cheap ones first.
 
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -11,7 +11,7 @@ use crate::phone::{ANDROID, IOS};
 use crate::toolchain::Toolchain;
 use crate::vulkan;
 
-/// Runs all steps; the first that fails ends it.
+/// Runs all steps until the first failure.
 pub(crate) fn run(toolchain: &Toolchain) -> Result<()> {
     vulkan::ensure()?;
     for phone in [&IOS, &ANDROID] {

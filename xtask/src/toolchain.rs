@@ -1,4 +1,4 @@
-//! The one toolchain of the project: fetched where it is missing, used for every command.
+//! The project's toolchain: fetched if it is missing, and used for every command.
 
 use std::env;
 use std::fs;
@@ -12,18 +12,18 @@ use crate::command;
 /// Parts of the toolchain that commands need besides the compiler.
 const COMPONENTS: [&str; 2] = ["clippy", "rustfmt"];
 
-/// The pinned toolchain, or the one at hand.
+/// The pinned toolchain, or an installed one.
 pub(crate) struct Toolchain {
     /// Top of the repository.
     pub(crate) root: PathBuf,
-    /// Of the language, as the workspace has it.
+    /// Edition of the language, from the workspace.
     pub(crate) edition: String,
-    /// The pinned version; none without rustup, which alone can switch.
+    /// The pinned version; `None` without rustup, which alone can switch.
     version: Option<String>,
 }
 
 impl Toolchain {
-    /// Fetches the pinned toolchain where it is missing.
+    /// Fetches the pinned toolchain if it is missing.
     pub(crate) fn pinned() -> Result<Self> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"))
             .parent()
@@ -59,7 +59,7 @@ impl Toolchain {
         })
     }
 
-    /// Fetches the standard library for `target` where it is missing.
+    /// Fetches the standard library for `target` if it is missing.
     pub(crate) fn ensure_target(&self, target: &str) -> Result<()> {
         let Some(version) = &self.version else {
             return Ok(());
@@ -80,24 +80,24 @@ impl Toolchain {
         command
     }
 
-    /// `cargo SUBCOMMAND` for this workspace, wherever the caller stands.
+    /// `cargo SUBCOMMAND` for this workspace, from any folder of the caller.
     pub(crate) fn cargo(&self, subcommand: &str) -> Command {
         let mut cargo = self.command("cargo");
         cargo
             .arg(subcommand)
             .arg("--manifest-path")
             .arg(self.root.join("Cargo.toml"));
-        // What the cargo that runs us says about itself must not reach another version.
+        // Environment variables of the calling cargo must not reach another version.
         cargo.env_remove("CARGO");
         if env::var_os("XDG_RUNTIME_DIR").is_none_or(|folder| !Path::new(&folder).is_dir()) {
-            // Without a desktop, Mesa's choice among its devices only prints an error of its own.
+            // Without a desktop, Mesa's device selection only prints an error.
             cargo.env("NODEVICE_SELECT", "1");
         }
         cargo
     }
 }
 
-/// Whether a list of rustup has `name`, which may be followed by a dash and the host.
+/// Whether a list of rustup has `name`, which a dash and the host may follow.
 fn lists(list: &str, name: &str) -> bool {
     list.lines().any(|line| {
         line.trim()
@@ -106,7 +106,7 @@ fn lists(list: &str, name: &str) -> bool {
     })
 }
 
-/// What the workspace's manifest says of `key`.
+/// The workspace manifest's value of `key`.
 fn pinned(manifest: &Path, key: &str) -> Result<String> {
     let text = fs::read_to_string(manifest).with_context(|| manifest.display().to_string())?;
     let value = text

@@ -1,4 +1,4 @@
-//! A Vulkan driver for replay and tests: looked for, and where the system allows it, installed.
+//! A Vulkan driver for replay and tests: searched, and installed if the system permits.
 
 use std::env;
 use std::fs;
@@ -11,14 +11,14 @@ use crate::debian;
 
 /// A software driver and the loader, by the package names of Debian and Ubuntu.
 const APT_PACKAGES: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
-/// The same elsewhere: package manager and the line to run.
+/// The same for other systems: package manager and the line to run.
 const OTHER_SYSTEMS: [(&str, &str); 3] = [
     ("dnf", "sudo dnf install mesa-vulkan-drivers vulkan-loader"),
     ("pacman", "sudo pacman -S vulkan-swrast vulkan-icd-loader"),
     ("zypper", "sudo zypper install libvulkan_lvp libvulkan1"),
 ];
 
-/// Makes sure that there is a Vulkan driver. Systems other than Linux bring their graphics along.
+/// Makes sure that there is a Vulkan driver. Systems other than Linux have their own.
 pub(crate) fn ensure() -> Result<()> {
     if !cfg!(target_os = "linux") || is_there() {
         return Ok(());
@@ -50,7 +50,7 @@ fn is_there() -> bool {
 
 fn has_loader() -> bool {
     const LOADER: &str = "libvulkan.so.1";
-    // Outside root's search path on Debian.
+    // Not on root's search path on Debian.
     let known = ["ldconfig", "/sbin/ldconfig"]
         .iter()
         .find_map(|program| command::output(program, &["-p"]));
@@ -59,7 +59,7 @@ fn has_loader() -> bool {
         || env::split_paths(&chosen).any(|folder| folder.join(LOADER).exists())
 }
 
-/// A driver that the user chose for the loader.
+/// Whether the user chose a driver for the loader.
 fn has_chosen_driver() -> bool {
     let lists = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_ADD_DRIVER_FILES"].map(env::var_os);
     lists

@@ -1,4 +1,4 @@
-//! The toy's model, adapted to the toy that a photograph shows.
+//! Adapts the toy's model to the real toy of a photograph.
 
 use std::sync::Arc;
 
@@ -12,21 +12,23 @@ use super::shape::Shape;
 use app_scene::scene::Scene;
 use app_scene::toy::{Toy, ToyError};
 
-/// Points that are displaced by less, over the most that any is, count as not displaced.
+/// Displacements below this fraction of the largest count as zero.
 const TOLD: f64 = 0.01;
 
-/// A toy whose outline is farther from that of its model, in pixels, is somewhere else or another one: no model is adapted to it. Of those
-/// that were displaced by 1 mm, or have a fifth of the triangles, outlines came to 1.3.
+/// Largest distance, in pixels, between the outlines of toy and model for which the model is
+/// adapted; beyond, the toy is at another place or another one. Models displaced by 1 mm, or with a
+/// fifth of the triangles, came to 1.3.
 pub(super) const MOST_ADAPTED_PX: f64 = 1.6;
 
-/// A model that was adapted.
+/// An adapted model.
 pub(super) struct AdaptedModel {
     pub(super) toy: Arc<Toy>,
     pub(super) report: ModelAlignment,
 }
 
 impl Photograph {
-    /// The model of a toy in its place with the shape that its outline shows; none where the picture does not speak for another one.
+    /// The model of a toy in its place, with the shape that its outline shows; `None` if the
+    /// picture does not support another shape.
     pub(super) fn adapted(
         &self,
         scene: &Scene,
@@ -54,10 +56,11 @@ impl Photograph {
     }
 }
 
-/// A toy whose points are displaced.
+/// A toy with displaced points.
 struct Adapting<'a> {
     scene: &'a Scene,
-    /// Of each of the toy's vertices, its place among the points of its shape; none where no triangle has it.
+    /// For each of the toy's vertices, the index of its point in the shape; `None` for an unused
+    /// vertex.
     points: Vec<Option<usize>>,
     object_from_camera: DMat4,
 }
@@ -79,14 +82,15 @@ impl Adapting<'_> {
     }
 }
 
-/// Of each vertex, its place among the points of the toy's shape.
+/// For each vertex, the index of its point in the toy's shape.
 fn points(toy: &Toy) -> Vec<Option<usize>> {
     let used = Shape::vertices(toy);
     let place = |first: &u32| used.binary_search(first).ok();
     toy.first_alike().iter().map(place).collect()
 }
 
-/// Of each point of a toy's shape the mean of its triangles' normals, by their areas, outwards; zero where it has no outside.
+/// For each point of a toy's shape the mean outward normal of its triangles, weighted by area; zero
+/// if it has no outside.
 fn normals(toy: &Toy, shape: &Shape) -> Vec<DVec3> {
     let used = Shape::vertices(toy);
     let mut normals = vec![DVec3::ZERO; shape.points.len()];
@@ -106,7 +110,7 @@ impl ModelAlignment {
             .displacements_m
             .iter()
             .fold(0.0, |most: f64, one| most.max(one.length()));
-        // Where no outline tells anything, nothing is displaced.
+        // Points that the outline does not constrain are not displaced.
         let told = found
             .displacements_m
             .iter()

@@ -1,4 +1,4 @@
-//! What a light in each direction would explain of the shadows in a picture, to be drawn.
+//! Scores of directions for a light, for drawing.
 
 use glam::DVec3;
 
@@ -9,19 +9,20 @@ use super::receivers::up;
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 
-/// The first step of the search for lights that nobody lists: point lights all over the hemisphere above the receiver that is nearest to
-/// the toy.
+/// The first step of the search for unlisted lights: point lights all over the hemisphere above the
+/// receiver nearest to the toy.
 #[derive(Clone, Debug)]
 pub struct LightSearch {
     /// Normal of that receiver.
     pub up_in_world: DVec3,
-    /// Unit vectors in the world, evenly spread, and the part of what surroundings alone leave unexplained that a light there explains: 0
-    /// to 1.
+    /// Unit vectors in the world, evenly spread, and the fraction of the loss with ambient light
+    /// alone that a light there explains: 0 to 1.
     pub explained: Vec<(DVec3, f64)>,
 }
 
 impl LightSearch {
-    /// By the toy where the input has it; none where too little of the receivers is seen.
+    /// The scores for the toy in the input's place; `None` if too little of the receivers is
+    /// visible.
     ///
     /// # Errors
     /// As [`Aligner::align`](super::Aligner::align).

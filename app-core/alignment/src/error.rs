@@ -7,11 +7,11 @@ use app_scene::frame::FrameInput;
 use app_scene::scene::{InputError, Scene};
 use app_scene::toy::ToyError;
 
-/// Why a frame cannot be aligned.
+/// The reason why a frame cannot be aligned.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AlignError {
-    /// A value that cannot be.
+    /// An invalid value.
     #[error(transparent)]
     Input(#[from] InputError),
     /// The toy cannot be posed.
@@ -20,10 +20,10 @@ pub enum AlignError {
     /// A picture of the probe cannot be read.
     #[error(transparent)]
     Probe(#[from] ProbeError),
-    /// A picture is not of the scene's size.
+    /// The size of a picture differs from the scene's.
     #[error("the {what} is not {} x {} pixels with 4 bytes each, as the scene is", size_px[0], size_px[1])]
     Size {
-        /// Which.
+        /// Name of the picture.
         what: &'static str,
         /// The scene's size.
         size_px: [u32; 2],

@@ -1,38 +1,42 @@
-//! The turn between two photographs of one place that were taken from the hand: corners of the one are found in the other by their
-//! surroundings, and most of them agree on one rotation.
+//! The rotation between two hand-held photographs of one place: corners of one are matched in the
+//! other by their neighbourhoods, and most of them agree on one rotation.
 //!
-//! Some centimetres between the cameras move the picture by parallax, too, which the direct alignment of the table corrects afterwards.
+//! Some centimetres between the cameras also cause parallax, which the direct alignment of the
+//! table corrects afterwards.
 //!
-//! Source: corners by Shi and Tomasi 1994, normalized cross-correlation, consensus by Fischler and Bolles 1981.
+//! Source: corners by Shi and Tomasi 1994, normalized cross-correlation, consensus by Fischler and
+//! Bolles 1981.
 
 use glam::{DMat3, DQuat, DVec2, DVec3, IVec2};
 
 use crate::picture::{Level, index_in, places};
 use app_scene::scene::Intrinsics;
 
-/// Pixels between the cells in each of which one corner is taken.
+/// Side of the cells with one corner each, in pixels.
 const CELL_PX: i32 = 16;
-/// Half the side of a corner's surroundings, in pixels.
+/// Half the side of a corner's neighbourhood, in pixels.
 const HALF_PX: i32 = 6;
-/// How far a corner is looked for, over the picture's width.
+/// Search range of a corner, over the picture's width.
 const REACH: f64 = 0.14;
-/// A corner is found if its surroundings correlate by that much.
+/// Correlation of a match.
 const LEAST_CORRELATION: f32 = 0.75;
-/// Tiles look like their neighbours: so many places are kept of a corner, no two nearer than that, in pixels.
+/// Number of places kept for each corner, since tiles look like their neighbours, and the least
+/// distance between two, in pixels.
 const N_PLACES: usize = 4;
 const APART_PX: i32 = 4;
-/// Corners agree with a rotation if they are no farther from where it has them, over the picture's width: parallax moves them by as much.
+/// Largest deviation of a corner from a rotation it agrees with, over the picture's width: parallax
+/// causes as much.
 const AGREE: f64 = 0.012;
-/// Corners that have to agree, and their part of all that are found.
+/// Required number of agreeing corners, and their fraction of all matches.
 const LEAST_AGREEING: usize = 12;
 const LEAST_PART: f64 = 0.3;
-/// Two corners of the plate are as far apart as those of the photograph, but for that part.
+/// Largest relative difference between the distances of two corners in plate and photograph.
 const MOST_STRETCH: f64 = 0.1;
-/// No hand turns a camera by more between two photographs of one view, in radians.
+/// Largest rotation by hand between two photographs of one view, in radians.
 const MOST_TURN_RAD: f64 = 0.2;
-/// Rotations with which that part of the most corners agree are as good.
+/// Rotations with this fraction of the largest number of agreeing corners count as equally good.
 const SAME: f64 = 0.95;
-/// No turn explains that part of what the best one does: the camera stood still.
+/// If no rotation explains this fraction of the best one's corners, the camera stood still.
 const STOOD: f64 = 0.9;
 
 /// Brightness of a picture, rows from the top.
@@ -41,13 +45,15 @@ struct Gray {
     values: Vec<f32>,
 }
 
-/// A corner of the photograph, and places of the plate that look like it, the likest first; as directions in the cameras' spaces.
+/// A corner of the photograph, and its matches in the plate, the best first; as directions in the
+/// cameras' spaces.
 struct Match {
     of_photograph: DVec3,
     of_plate: Vec<DVec3>,
 }
 
-/// Rotation from the plate's camera to the photograph's; none if it is none, or the pictures do not say it.
+/// Rotation from the plate's camera to the photograph's; `None` if it is zero, or the pictures do
+/// not constrain it.
 pub(crate) fn photograph_from_plate(level: &Level) -> Option<DQuat> {
     let plate = level.plate.as_ref()?;
     let [photograph, plate] = [&level.frame, plate].map(|picture| Gray {
@@ -85,7 +91,7 @@ pub(crate) fn photograph_from_plate(level: &Level) -> Option<DQuat> {
     let rotations: Vec<(usize, DQuat)> = rotations.collect();
     let n_best = rotations.iter().map(|(n, _)| *n).max()?;
     let is_best = |n: usize| n as f64 >= SAME * n_best as f64;
-    // On a pattern that repeats the least turn is the likeliest.
+    // On a repeating pattern the smallest rotation is the most likely.
     let best = rotations.into_iter().filter(|(n, _)| is_best(*n));
     let (_, best) = best.min_by(|(_, a), (_, b)| angle(a).total_cmp(&angle(b)))?;
     let is_clear = n_best >= LEAST_AGREEING && n_best as f64 >= LEAST_PART * matches.len() as f64;
@@ -97,12 +103,12 @@ fn angle(rotation: &DQuat) -> f64 {
     rotation.to_scaled_axis().length()
 }
 
-/// Rotations that two corners have in common, for each corner with some others.
+/// Rotations from pairs of corners, for each corner with some others.
 fn hypotheses(matches: &[Match]) -> Vec<DQuat> {
     let n = matches.len();
     let mut rotations = Vec::new();
     for a in 0..n {
-        // Far along the list, and so far away in the picture.
+        // Distant in the list, and so distant in the picture.
         for b in [1, 3, 5].map(|part| (a + part * n / 7) % n) {
             for of_a in &matches[a].of_plate {
                 for of_b in &matches[b].of_plate {
@@ -121,8 +127,8 @@ fn ray(k: &Intrinsics, at: IVec2) -> DVec3 {
     DVec3::new((at.x - k.cx_px) / k.fx_px, -(at.y - k.cy_px) / k.fy_px, -1.0).normalize()
 }
 
-/// The rotation from the second pair of directions to the first; none if those of a pair are too near to one another, or pairs are not as
-/// far apart.
+/// The rotation from the second pair of directions to the first; `None` if the directions of a pair
+/// are too close to one another, or the pairs' angles differ.
 fn rotation_of(photograph: [DVec3; 2], plate: [DVec3; 2]) -> Option<DQuat> {
     let [apart, of_plate] = [photograph, plate].map(|[a, b]| a.angle_between(b));
     if (apart - of_plate).abs() > MOST_STRETCH * apart {
@@ -143,7 +149,7 @@ impl Gray {
         index_in(self.size_px, at).map_or(f32::NAN, |index| self.values[index])
     }
 
-    /// The clearest corner of each cell.
+    /// The strongest corner of each cell.
     fn corners(&self) -> Vec<IVec2> {
         let cells = places(self.size_px / CELL_PX);
         let corners = cells.filter_map(|cell| {
@@ -157,7 +163,7 @@ impl Gray {
         corners.collect()
     }
 
-    /// The lesser eigenvalue of the gradients' covariance around a place; not a number near the border.
+    /// The smaller eigenvalue of the gradients' covariance around a place; NaN near the border.
     fn cornerness(&self, at: IVec2) -> f32 {
         let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
         for step in places(IVec2::splat(HALF_PX)) {
@@ -169,7 +175,7 @@ impl Gray {
         0.5 * (xx + yy - ((xx - yy).powi(2) + 4.0 * xy * xy).sqrt())
     }
 
-    /// Where this picture shows the surroundings of a place of another one, the likest first.
+    /// Matches of another picture's neighbourhood of a place in this picture, the best first.
     fn find(&self, other: &Self, place: IVec2) -> Vec<IVec2> {
         let Some(template) = other.patch(place) else {
             return Vec::new();
@@ -198,7 +204,8 @@ impl Gray {
         found
     }
 
-    /// Every other pixel around a place, less the mean and of unit length; none near the border, or where nothing changes.
+    /// Every other pixel around a place, minus the mean and of unit length; `None` near the border,
+    /// or without contrast.
     fn patch(&self, place: IVec2) -> Option<[f32; 49]> {
         let mut patch = [0.0; 49];
         for (value, step) in patch.iter_mut().zip(places(IVec2::splat(HALF_PX + 1))) {

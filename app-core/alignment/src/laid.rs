@@ -1,7 +1,8 @@
-//! Receivers of which nobody knows where they are, laid under a toy that stands.
+//! Receivers of unknown place, fitted under a toy that stands.
 //!
-//! A photograph without a tracker tells where the toy is against the camera to a tenth of a millimetre, and next to nothing of the
-//! table. But the toy stands on it: the plane of the toy's feet is that of the table.
+//! A photograph without a tracker constrains the toy's place relative to the camera to a tenth of a
+//! millimetre, and the table hardly at all. But the toy stands on it: the plane of the toy's feet
+//! is the table's.
 
 use glam::{DMat4, DQuat, DVec3};
 
@@ -10,7 +11,8 @@ use crate::shape::Shape;
 use app_scene::scene::{Receiver, Scene};
 use app_scene::toy::ToyError;
 
-/// All receivers of a scene, moved as one so that the toy stands on the most level of them; none if the toy has no three feet that bear it.
+/// All receivers of a scene, moved as one so that the toy stands on the most level of them; `None`
+/// if the toy has no three feet that support it.
 pub(super) fn laid(scene: &Scene, world_from_object: &DMat4) -> Result<Option<Vec<Receiver>>, ToyError> {
     let shape = Shape::new(scene, world_from_object)?;
     let planes = scene.receivers.iter().map(plane_of);
@@ -22,7 +24,7 @@ pub(super) fn laid(scene: &Scene, world_from_object: &DMat4) -> Result<Option<Ve
         let up = across.normalize_or(plane.normal);
         let up = if up.dot(plane.normal) < 0.0 { -up } else { up };
         let middle = (a + b + c) / 3.0;
-        // Turned about the place below the feet's middle, then lifted to it.
+        // Rotated about the point below the centre of the feet, then lifted to it.
         let below = middle - plane.height_m(middle) * plane.normal;
         let turn = DQuat::from_rotation_arc(plane.normal, up);
         let motion =
@@ -36,11 +38,12 @@ pub(super) fn laid(scene: &Scene, world_from_object: &DMat4) -> Result<Option<Ve
     }))
 }
 
-/// Feet that lean less from the model's own ground, in radians, are modelled no better: it stands upright.
+/// Smaller inclinations of the feet's plane, in radians, are errors of the model: the toy stands
+/// upright.
 const LEAST_LEAN_RAD: f64 = 0.012;
 
-/// Planes that an upright toy may stand on; +Y is the normal. The first is level, below its lowest point; the second is that of its feet, if
-/// these clearly lean.
+/// Possible ground planes of an upright toy; +Y is the normal. The first is level, below its lowest
+/// point; the second is the plane of its feet, if that is clearly inclined.
 pub(super) fn planes_under(
     scene: &Scene,
     world_from_object: &DMat4,

@@ -1,30 +1,35 @@
-//! Alignment: camera, toy and lights, corrected by what the photograph shows.
+//! Alignment: camera, toy and lights, corrected by the photograph.
 //!
-//! No tracker knows where a toy is to a tenth of a pixel, and no person where a lamp is to a tenth of a degree; both show in
-//! the picture at once. The **table** beside the toy gives the camera (`camera`), since plates say what it looks like. Frame against
-//! plate is the best segmentation there is: the **outline** of the toy gives its pose, and its feet stand on the table (`pose`); the
-//! outline of its **shadow**, a second view of the toy from the light, gives the light (`lights`). Where the outline shows that the toy
-//! is not quite its **model**, the model is displaced to have the toy's (`adapted`).
-//! Both papers name misregistration as their largest error and leave it there.
+//! No tracker knows where a toy is to a tenth of a pixel, and no person where a lamp is to a tenth of a degree; both
+//! show in the picture at once. The **table** beside the toy gives the camera (`camera`), since plates show its
+//! texture. Frame against plate is the best segmentation there is: the **outline** of the toy gives its pose, and its
+//! feet stand on the table (`pose`); the outline of its **shadow**, a second view of the toy from the light, gives the
+//! light (`lights`). Where the outline shows that the toy is not quite its **model**, the model is displaced to have
+//! the toy's (`adapted`). Both papers name misregistration as their largest error and leave it there.
 //!
 //! ```text
 //! frame, plates ─► camera ─► pyramid ─┐
 //! physical pose ─► shape ─────────────┴► pose ─► model ─► lights ─► things ─► Alignment
 //! ```
 //!
-//! How soft the photograph is, beside its plate and at the toy's outline, is measured on the way (`softness`).
+//! Where the receiver that the toy stands on reflects the toy, that is found as well, once a session, and shadows are read without it
+//! (`lights/reflection`).
 //!
-//! Where one of them is asked for, the **focal length** or the **scale** of the world is found first, by toy and shadow together (`ratio`);
-//! before all else the distortion of the **lens** ([`Aligner::lens`]), of which photographs are freed.
+//! The softness of the photograph, relative to its plate and at the toy's outline, is measured as well (`softness`).
 //!
-//! What is held fixed, since pictures do not tell it from the rest: the first plate's camera, to which all others are relative, the
-//! principal point, and the receivers.
-//! All is solved in camera space, from numbers of 32 bits: wherever the world's origin is, the same correction comes out, but for
-//! the last of them. A correction is applied only where it explains the picture better by more than noise does ([`Aligner::align`]).
+//! On request, the **focal length** or the **scale** of the world is estimated first, from toy and shadow together
+//! (`ratio`), and before all else the distortion of the **lens** ([`Aligner::lens`]), which is removed from
+//! photographs.
 //!
-//! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.5 to 1.3 s for a pose, once a view, and 1 to 7 s for the
-//! lights, once a session: more the more triangles and lights there are. A camera takes about as long as a pose, once a view and
-//! once for each of the first 32 plates; lights that nobody lists 1 to 5 s, and a focal length 2 to 12 s more, once a session.
+//! Some quantities are fixed, since pictures do not constrain them separately: the first plate's camera, to which all
+//! others are relative, the principal point, and the receivers. All is solved in camera space, from numbers of 32 bits:
+//! the correction does not depend on the world's origin, except for the last bits. A correction is applied only if it
+//! explains the picture better by more than noise ([`Aligner::align`]).
+//!
+//! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.5 to 1.3 s for a pose, once a view, and 1 to 7
+//! s for the lights, once a session, growing with the number of triangles and lights. A camera takes about as long as a
+//! pose, once a view and once for each of the first 32 plates; unlisted lights 1 to 5 s, and a focal length 2 to 12 s
+//! more, once a session.
 
 #![forbid(unsafe_code)]
 
@@ -32,9 +37,12 @@ mod adapted;
 mod camera;
 mod directions;
 mod error;
+mod gloss;
+mod found;
 mod found_planes;
 mod hand;
 mod kept_lights;
+mod kept_reflection;
 mod laid;
 mod light_search;
 mod lights;
@@ -55,7 +63,9 @@ pub(crate) mod report;
 mod rigid_motion;
 mod robust;
 mod shape;
+mod silhouette;
 mod softness;
+mod standing_search;
 mod things;
 mod toy_search;
 mod view;
@@ -69,18 +79,19 @@ use glam::DMat4;
 use crate::probe::ProbeReport;
 use adapted::MOST_ADAPTED_PX;
 use app_scene::frame::FrameInput;
+use app_scene::gloss::Gloss;
 use app_scene::scene::{Camera, Light, Plate, Scene};
-use app_scene::sharpness::Sharpness;
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 use kept_lights::KeptLights;
+use kept_reflection::KeptReflection;
 use photograph::{MOST_OUTLINE_PX, Photograph};
-use picture::Mask;
 use ratio::{Ratio, Unknown};
 use view::{AlignedView, Seen};
 
 pub use directions::LightSearch;
 pub use error::AlignError;
+pub use found::Alignment;
 pub use no_light::NoLight;
 pub use observer::Observer;
 pub use outlines::Outlines;
@@ -89,110 +100,64 @@ pub use report::{
     LightDeviation, ModelAlignment, PlaneAlignment, PoseAlignment, PoseDeviation, RatioAlignment,
     RatioOutcome, Stand,
 };
+pub use silhouette::Silhouette;
+pub use standing_search::{Newcomer, StandingPose, StandingSearch};
 pub use toy_search::{FoundToy, ToySearch, ViewDirection, find_toy};
 pub use warning::AlignmentWarning;
 
-/// A model is adapted in one of the first views that it does not fit, or never: each try takes about a second.
+/// A model is adapted in one of the first views that it does not fit, or never: each attempt takes about a second.
 const MOST_ADAPTATIONS: usize = 2;
 
-/// Each plate takes as long as a frame; more than so many stay as they are given.
+/// Number of plates whose cameras are aligned; each takes as long as a frame.
 const MOST_ALIGNED_PLATES: usize = 32;
 
-/// How far around shadows nothing is read where they are withheld, over the picture's width: by the camera, for which that of a
-/// tracker is not yet corrected, and by the pose.
+/// Width of the unread margin around withheld shadows, over the picture's width: for the camera, whose pose is then
+/// still the tracker's, and for the pose.
 const CAMERA_GROWN: f64 = 0.05;
 const POSE_GROWN: f64 = 0.01;
 
-/// Where the toy and the lights of a frame are, by its picture.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Alignment {
-    /// The camera: as given, where it was not corrected.
-    pub camera: Camera,
-    /// Transform of the real toy, from object space to world: as given, where it was not corrected.
-    pub world_from_object: DMat4,
-    /// The lights; none where those that were given stay.
-    pub lights: Option<Arc<[Light]>>,
-    /// The scene that the core is to be given before this frame is shown: its plates' cameras were corrected, its plates are in another
-    /// light than before, its toy was adapted, or its receivers were laid under the toy. None if the core keeps the scene of the frame before, which for the
-    /// first frame is the one that the [`Aligner`] was made with.
-    pub scene: Option<Arc<Scene>>,
-    /// Things that stand in the picture beside the toy; none where nothing tells of any.
-    pub things: Option<Things>,
-    /// How soft the picture is.
-    pub sharpness: Sharpness,
-    /// What was found.
-    pub report: AlignmentReport,
-    /// What could not be aligned.
-    pub warnings: Vec<AlignmentWarning>,
-}
-
-impl Alignment {
-    /// An input as given, of which nothing was found.
-    #[must_use]
-    pub fn new(input: &FrameInput) -> Self {
-        Self {
-            camera: input.camera,
-            world_from_object: input.world_from_object,
-            lights: None,
-            scene: None,
-            things: input.things.clone(),
-            sharpness: input.sharpness,
-            report: AlignmentReport::default(),
-            warnings: Vec::new(),
-        }
-    }
-
-    /// The input that it was found for, corrected.
-    #[must_use]
-    pub fn applied_to(&self, input: &FrameInput) -> FrameInput {
-        input
-            .clone()
-            .with_camera(self.camera)
-            .with_world_from_object(self.world_from_object)
-            .with_lights(self.lights.clone().or_else(|| input.lights.clone()))
-            .with_things(self.things.clone())
-            .with_sharpness(self.sharpness)
-    }
-}
-
 /// Aligns the frames of one scene, one after the other.
 ///
-/// A frame with the same picture, camera, pose and lights as the one before costs nothing. The toy stands still in the world: its pose
-/// is kept as long as the picture shows it there, whatever a tracker says, and found anew where it was nudged. Lights are found in
-/// the first frame that shows their shadow, and kept while that is where they cast it. Where it is elsewhere, a lamp was moved or
-/// switched on: lights are found anew, and plates are taken as they would be in the new light. Where none are listed they are looked
-/// for around those that the scene's probe tells of, or without one all over the hemisphere. Lights that a probe tells stand as it
-/// tells them where no shadow does.
+/// A frame with the same picture, camera, pose and lights as the one before costs nothing. The toy is assumed static in
+/// the world: its pose is kept as long as the picture agrees, whatever a tracker reports, and is estimated anew after a
+/// nudge. Lights are estimated in the first frame that shows their shadow, and kept while the shadow stays. If it
+/// changes, a lamp was moved or switched on: lights are estimated anew, and plates are relit. If none are listed, they
+/// are searched around the estimates from the scene's probe, or without one all over the hemisphere. A probe's estimate
+/// stays if no shadow shows the light.
 #[derive(Debug)]
 pub struct Aligner {
     scene: Arc<Scene>,
-    /// The scene that the latest alignment was told with.
+    /// The scene that the latest alignment reported.
     told_scene: Arc<Scene>,
-    /// Looked for where it was asked for.
+    /// The ratio to estimate, on request.
     ratio: Ratio,
     are_plates_aligned: bool,
     cameras: camera::Finder,
     view: Option<AlignedView>,
-    /// The pose in the latest view that showed where the toy is.
+    /// The pose in the latest view that showed the toy's place.
     held: Option<DMat4>,
     lights: Option<KeptLights>,
-    /// In the latest view.
+    /// The things in the latest view.
     things: Option<Things>,
+    /// The reflection of the receiver under the toy, once it was searched.
+    reflection: KeptReflection,
+    /// Planes of things on the table.
     planes: found_planes::FoundPlanes,
-    /// Whether the scene's plates are in another light than they were taken in.
+    /// Whether the scene's plates were relit.
     is_relit: bool,
     are_shadows_withheld: bool,
-    /// Once it was adapted.
+    /// How glossy the toy is, by the first view that shows it in its place.
+    gloss: Option<Gloss>,
+    /// The adapted model, once there is one.
     model: Option<ModelAlignment>,
-    /// How often another model was looked for.
+    /// Number of attempts to adapt the model.
     n_adaptations: usize,
-    /// Once it was needed.
+    /// The probe's report, once it was needed.
     probe: Option<ProbeReport>,
 }
 
 impl Aligner {
-    /// Knows a scene, and none of its frames.
+    /// An aligner of a scene, without any frame yet.
     #[must_use]
     pub fn new(scene: impl Into<Arc<Scene>>) -> Self {
         let scene = scene.into();
@@ -206,6 +171,8 @@ impl Aligner {
             held: None,
             lights: None,
             things: None,
+            gloss: None,
+            reflection: KeptReflection::default(),
             planes: found_planes::FoundPlanes::default(),
             is_relit: false,
             are_shadows_withheld: false,
@@ -215,48 +182,51 @@ impl Aligner {
         }
     }
 
-    /// Reads no shadow but in the first view: lights are those of that view, and of later pictures nothing is read where these
-    /// lights cast a shadow, nor close beside. For measuring how well such shadows are predicted.
+    /// Reads shadows in the first view alone: later frames have the same lights, and pixels in or close to their
+    /// shadows are not read. For measuring the accuracy of predicted shadows.
     pub fn withhold_shadows(&mut self) {
         self.are_shadows_withheld = true;
     }
 
-    /// Looks for the focal length as well, in the first view that shows toy and shadows: up to 3 % off, the same for all frames and plates.
-    /// That takes several times as long as all else, and a toy or a receiver of another size or height can be taken for it.
+    /// Estimates the focal length as well, in the first view that shows toy and shadows: up to 3 % off, the same for
+    /// all frames and plates. That takes several times as long as all else, and is ambiguous with the size or height of
+    /// toy and receivers.
     #[must_use]
     pub fn with_unknown_focal_length(mut self) -> Self {
         self.ratio = Ratio::of(Unknown::FocalLength);
         self
     }
 
-    /// Looks for the scale of the world in place of the focal length, in the same way: lengths that are up to 3 % larger or smaller than the
-    /// toy's model says, such as those of a tracker whose metre is none. Poses of the toy are scaled, and all else stays as it is given.
+    /// Estimates the scale of the world instead of the focal length, in the same way: lengths up to 3 % larger or
+    /// smaller than by the toy's model, for a tracker whose scale is wrong. Poses of the toy are scaled, and all else
+    /// stays as given.
     #[must_use]
     pub fn with_unknown_world_scale(mut self) -> Self {
         self.ratio = Ratio::of(Unknown::WorldScale);
         self
     }
 
-    /// The scene, its plates' cameras corrected once a frame was aligned: what frames are to be shown with.
+    /// The scene to show frames with; its plates' cameras are corrected once a frame was aligned.
     #[must_use]
     pub fn scene(&self) -> &Arc<Scene> {
         &self.scene
     }
 
-    /// Finds the camera of a frame, the pose of the toy in it and the lights, and corrects each where the picture is explained
-    /// better by more than noise and the model's own errors do: the table must meet more of its plates, the more the farther it
-    /// moves; the picture of the outline must be e^6 times as likely, with neighbouring pixels counted once; the loss of the shadows must
-    /// fall by a twenty-fifth and to less than a tenth of what is there without lights, and a light move by enough to show. Where the
-    /// picture shows the toy nowhere near, it is where the input says.
+    /// Estimates the camera of a frame, the pose of the toy in it and the lights, and corrects each if the picture is
+    /// then explained better by more than noise and the model's own errors: the table must match more of its plates,
+    /// the more the camera moves; the picture of the outline must be e^6 times as likely, with neighbouring pixels
+    /// counted once; the loss of the shadows must fall by a twenty-fifth and to less than a tenth of the loss without
+    /// lights, and a light must move visibly. If the picture shows the toy nowhere near, the input's pose stays.
     ///
     /// # Errors
-    /// When a value of the scene or of the input cannot be, a picture is not of the scene's size, or the toy cannot be posed.
+    /// When a value of the scene or of the input is invalid, a picture is not of the scene's size,
+    /// or the toy cannot be posed.
     pub fn align(&mut self, input: &FrameInput) -> Result<Alignment, AlignError> {
         error::check(&self.scene, input)?;
         let given = input.lights_in(&self.scene);
         let input = &self.with_ratio(input, &given)?;
         let is_view_known = self.view.as_ref().is_some_and(|view| view.is_of(input));
-        // Lights that were found stay as long as no others are listed.
+        // Estimated lights stay as long as the list does not change.
         let kept = self.lights.take().filter(|lights| lights.given == given);
         if is_view_known && kept.is_some() {
             self.lights = kept;
@@ -283,8 +253,7 @@ impl Aligner {
         Ok(self.aligned(input))
     }
 
-    /// The view with the model adapted to the toy, in the first that shows that it is not quite this one. The pose stays where it was
-    /// found.
+    /// The view with the model adapted to the toy, in the first view that shows a difference. The pose stays.
     fn with_adapted_model(&mut self, mut seen: Seen) -> Result<Seen, ToyError> {
         let Some(pose) = &mut seen.view.report else {
             return Ok(seen);
@@ -309,7 +278,7 @@ impl Aligner {
         Ok(seen)
     }
 
-    /// The view with receivers under the toy, where it is a guess where they are and the picture shows the toy.
+    /// The view with receivers fitted under the toy, if their place is a guess and the picture shows the toy.
     fn on_laid_receivers(&mut self, seen: Seen, input: &FrameInput) -> Result<Seen, ToyError> {
         if !self.scene.uncertainty.are_receivers_guessed || !seen.view.is_trusted(MOST_OUTLINE_PX) {
             return Ok(seen);
@@ -323,7 +292,7 @@ impl Aligner {
         Ok(Seen::again(&self.scene, seen.view, input))
     }
 
-    /// The input with the focal length or the scale that was found; in a view that is not known it is looked for, until it was seen.
+    /// The input with the estimated focal length or scale; it is estimated in each new view until one shows it.
     fn with_ratio(&mut self, input: &FrameInput, given: &Arc<[Light]>) -> Result<FrameInput, AlignError> {
         let is_view_known = self.view.as_ref().is_some_and(|view| view.is_of(input));
         let is_withheld = self.are_shadows_withheld && self.lights.is_some();
@@ -342,8 +311,8 @@ impl Aligner {
             .with_world_from_object(self.ratio.pose(&input.world_from_object)))
     }
 
-    /// Looks for the distortion of the lens that a frame and the plates were taken with, as if they were of a pinhole: two radial terms.
-    /// All photographs are to be freed of it before they are aligned (`Capture::open_with_lens` of a session).
+    /// Estimates the distortion of the lens of a frame and its plates, as if they were a pinhole's: two radial terms.
+    /// Remove it from all photographs before aligning them (`Capture::open_with_lens` of a session).
     ///
     /// # Errors
     /// As [`Self::align`].
@@ -354,7 +323,7 @@ impl Aligner {
         Ok(ratio::find_lens(&self.scene, input, &lights))
     }
 
-    /// About where the lights are: as given, or as they are found with the focal length given.
+    /// Approximate lights: as given, or as estimated with the given focal length.
     fn about(&self, given: &Arc<[Light]>, input: &FrameInput) -> Result<Arc<[Light]>, AlignError> {
         if !given.is_empty() {
             return Ok(Arc::clone(given));
@@ -363,7 +332,7 @@ impl Aligner {
         Ok(found.lights.unwrap_or_default())
     }
 
-    /// Camera and pose in a view that is not known.
+    /// Camera and pose in a new view.
     fn see(&mut self, input: &FrameInput, kept: Option<&KeptLights>) -> Result<Seen, ToyError> {
         let withheld = self.withheld(input, (&input.camera, CAMERA_GROWN), kept)?;
         let Scene {
@@ -398,24 +367,7 @@ impl Aligner {
         })
     }
 
-    /// What of a view is not to be read.
-    fn withheld(
-        &self,
-        input: &FrameInput,
-        (camera, grown): (&Camera, f64),
-        lights: Option<&KeptLights>,
-    ) -> Result<Option<Mask>, ToyError> {
-        let Some(lights) = lights.filter(|_| self.are_shadows_withheld) else {
-            return Ok(None);
-        };
-        let placed = input
-            .clone()
-            .with_camera(*camera)
-            .with_world_from_object(self.held.unwrap_or(input.world_from_object));
-        withheld::shadows(&self.scene, &placed, lights.in_use(), grown).map(Some)
-    }
-
-    /// Corrects the cameras of the first plates, each against those before it, once.
+    /// Corrects the cameras of the first plates once, each relative to those before it.
     fn align_plates(&mut self) {
         if std::mem::replace(&mut self.are_plates_aligned, true) {
             return;
@@ -492,6 +444,8 @@ impl Aligner {
             scene: (!Arc::ptr_eq(&told, &self.scene)).then(|| Arc::clone(&self.scene)),
             things: self.things.clone(),
             sharpness: view.map_or(input.sharpness, |view| view.sharpness),
+            gloss: self.gloss.unwrap_or(input.gloss),
+            reflection: self.reflection.found.map(|found| found.reflection),
             report,
             warnings: warnings.collect(),
         }

@@ -1,4 +1,5 @@
-//! Which lights a view is shown with: those of a list, those found near it or anywhere, or one that is assumed.
+//! Selects the lights of a view: listed ones, estimates near the list or anywhere, or an assumed
+//! one.
 
 use std::sync::Arc;
 
@@ -12,9 +13,10 @@ use app_scene::scene::{Light, LightUncertainty, MAX_LIGHTS, Scene};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 
-/// Lights are looked for with a pose whose outline is no farther from the picture's, in pixels.
+/// Largest distance, in pixels, between the outlines of toy and picture for a search of lights.
 ///
-/// Exact poses came out at up to 1.2, where a shadow beside the toy hides a part of the outline; 2 is that of no toy at all.
+/// Exact poses came out at up to 1.2, if a shadow beside the toy hides a part of the outline; 2
+/// means another toy.
 const DISCOVERY_OUTLINE_PX: f64 = 1.5;
 
 /// What was seen beside the toy.
@@ -26,7 +28,7 @@ enum Looked {
 }
 
 impl Aligner {
-    /// The lights in a view, as far as it can tell.
+    /// The lights in a view, as far as it constrains them.
     pub(super) fn find_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
         if given.is_empty() {
             return self.discover_lights(given, seen);
@@ -39,7 +41,7 @@ impl Aligner {
         };
         let lights = KeptLights::listed(given, found);
         let watched = self.watch(&lights, seen)?;
-        // Where a list says how well its directions are known, nothing is looked for beyond.
+        // If a list states the uncertainty of its directions, nothing is searched beyond.
         let is_bounded = self.scene.uncertainty.lights.direction_rad.is_some();
         match watched {
             Some(left) if !is_bounded && KeptLights::leaves_too_much(left) => {
@@ -49,7 +51,8 @@ impl Aligner {
         }
     }
 
-    /// Lights anywhere, or a long one, where those near a list do not explain a view; the list, where others do not either.
+    /// Lights anywhere, or a long one, if those near a list do not explain a view; the list, if
+    /// others do not either.
     fn search_beyond_list(
         &self,
         (near, left): (KeptLights, Watched),
@@ -68,7 +71,8 @@ impl Aligner {
         Ok(list.seen(watched))
     }
 
-    /// A line of lights in place of one that leaves too much of a view; none where it does not explain that.
+    /// A line of lights in place of one that leaves too much of a view unexplained; `None` if it is
+    /// no better.
     fn line_for(
         &self,
         (round, left): (&KeptLights, Watched),
@@ -86,7 +90,7 @@ impl Aligner {
         Ok(stands_in.then(|| line.seen(watched)))
     }
 
-    /// Lights in a view that nobody lists, or that are not where they are listed.
+    /// Unlisted lights of a view, or lights that are not at their listed place.
     fn discover_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
         let lights = self.find_anywhere(given, seen)?;
         let has_none = matches!(lights.discovered, Some(Err(NoLight::NoneDominant)));
@@ -105,7 +109,7 @@ impl Aligner {
         Ok(lights.seen(watched))
     }
 
-    /// Lights all over the hemisphere, or around those that a probe tells.
+    /// Lights all over the hemisphere, or around a probe's estimates.
     fn find_anywhere(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
         let told = self.probe.as_ref().map_or(&[][..], |probe| &probe.lights);
         let found = match &seen.view.report {
@@ -118,10 +122,10 @@ impl Aligner {
         Ok(KeptLights::discovered(given, found, told))
     }
 
-    /// Lights of an earlier view, or those that a view shows instead: one was moved, or switched on.
+    /// Lights of an earlier view, or new ones if a lamp was moved or switched on.
     pub(super) fn watch_lights(&mut self, mut kept: KeptLights, seen: &Seen) -> Result<KeptLights, ToyError> {
         let now = self.watch(&kept, seen)?;
-        // What is assumed stays in a view that does not show the shadows.
+        // An assumed light stays in a view that does not show the shadows.
         let is_asked_for = match now {
             Some(now) => kept.watch(now),
             None => !kept.is_assumed(),
@@ -133,7 +137,7 @@ impl Aligner {
             return Ok(kept);
         };
         if kept.discovered.is_none() {
-            // One that was moved may be anywhere.
+            // A moved lamp may be anywhere.
             let lights = (kept.in_use(), &LightUncertainty::default());
             let found = seen.photograph.lights(&self.scene, &seen.input, lights)?;
             let moved = KeptLights::listed(Arc::clone(&kept.given), found);
@@ -149,7 +153,7 @@ impl Aligner {
         Ok(kept)
     }
 
-    /// The lights in a view, and things that stand there beside the toy, which tell nothing of them.
+    /// The lights in a view, and the other things in it, which must not count as shadows.
     pub(super) fn look_at_lights(
         &mut self,
         kept: Option<KeptLights>,
@@ -159,8 +163,13 @@ impl Aligner {
         let known: Arc<[Light]> = kept
             .as_ref()
             .map_or(Arc::clone(&given), |kept| kept.in_use().into());
-        // A toy that is not where it is thought to be shows the place, as if something stood before it.
+        // If the toy's pose is wrong, the picture shows the place behind it, as if a thing stood in
+        // front of the toy.
         let are_told = !self.are_shadows_withheld && seen.view.is_trusted(MOST_OUTLINE_PX);
+        let as_it_is = seen;
+        let is_looked_for = self.look_for_reflection(seen, &known)?;
+        let freed = self.freed_of_reflection(seen)?;
+        let seen = freed.as_ref().unwrap_or(seen);
         let things = if !are_told {
             None
         } else {
@@ -177,20 +186,29 @@ impl Aligner {
             Some(kept) => self.watch_lights(kept, looked_at)?,
             None => self.find_lights(Arc::clone(&given), looked_at)?,
         };
+        if is_looked_for && lights.in_use() != &*known {
+            self.look_again(as_it_is, lights.in_use())?;
+        }
         let things = if !are_told || lights.in_use() == &*known {
             things
         } else {
-            // Plates may be in another light now.
+            // Plates may have been relit.
             let is_same = Arc::ptr_eq(&before, &self.scene);
             let relit = (!is_same).then(|| Seen::again(&self.scene, seen.view.clone(), &seen.input));
-            match self.look_for_things(lights.in_use(), relit.as_ref().unwrap_or(seen))? {
+            let relit = relit.as_ref().unwrap_or(as_it_is);
+            let freed = self.freed_of_reflection(relit)?;
+            match self.look_for_things(lights.in_use(), freed.as_ref().unwrap_or(relit))? {
                 Looked::Things(things) => things,
                 Looked::Planes(again) => {
                     return self.look_at_lights(are_kept.then_some(lights), given, &again);
                 }
             }
         };
-        // The same marks stay the same ones, of which nothing is learned anew.
+        if are_told && self.gloss.is_none() {
+            let toy = &seen.input.world_from_object;
+            self.gloss = Some(looked_at.photograph.gloss(&self.scene, toy, lights.in_use())?);
+        }
+        // Equal marks stay identical, so that nothing is learned anew.
         let is_same = |known: &Things| things.as_ref().is_some_and(|things| things.is_like(known));
         if !self.things.as_ref().is_some_and(is_same) {
             self.things = things;
@@ -230,7 +248,7 @@ impl Aligner {
         Ok(now.map(|now| (others.in_place_of(kept, now), relit.scene)))
     }
 
-    /// What lights leave unexplained of a view; none where it does not tell.
+    /// The loss that lights leave in a view; `None` if the view does not constrain them.
     fn watch(&self, lights: &KeptLights, seen: &Seen) -> Result<Option<Watched>, ToyError> {
         if !self.can_tell_lights(lights.in_use()) || !seen.view.is_trusted(MOST_OUTLINE_PX) {
             return Ok(None);
@@ -238,7 +256,7 @@ impl Aligner {
         seen.photograph.watch(&self.scene, &seen.input, lights.in_use())
     }
 
-    /// Whether pictures can tell where so many lights are; without a plate those that nobody lists alone.
+    /// Whether pictures can constrain that number of lights; without a plate, only unlisted lights.
     fn can_tell_lights(&self, lights: &[Light]) -> bool {
         lights.len() <= MAX_LIGHTS && !self.scene.plates.is_empty()
     }

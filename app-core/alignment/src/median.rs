@@ -1,8 +1,9 @@
-//! The middle one of some numbers.
+//! The median.
 
 use std::cmp::Ordering;
 
-/// In an order that holds for all of them, such as [`f32::total_cmp`]; the larger of two in the middle, none of no numbers.
+/// The median of a list, with a total order such as [`f32::total_cmp`]; the larger of two central
+/// values, `None` for an empty list.
 pub(crate) fn median<T: Copy>(
     numbers: impl IntoIterator<Item = T>,
     order: fn(&T, &T) -> Ordering,

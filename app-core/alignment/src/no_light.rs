@@ -1,18 +1,19 @@
-//! Why a scene has no light.
+//! Reasons why a scene has no light.
 
 use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-/// Why no light was found.
+/// The reason why no light was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum NoLight {
     /// The toy's pose is not known well enough.
     PoseUnknown,
-    /// Too little of the receivers is seen beside the toy.
+    /// Too little of the receivers is visible beside the toy.
     ReceiversUnseen,
-    /// No light explains enough of the picture: it comes from all around, or too little of a shadow is seen.
+    /// No light explains enough of the picture: the light is ambient, or too little of a shadow is
+    /// visible.
     NoneDominant,
 }
 
@@ -20,8 +21,8 @@ impl fmt::Display for NoLight {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::PoseUnknown => "the toy's pose is not known well enough",
-            Self::ReceiversUnseen => "too little of the receivers is seen beside the toy",
-            Self::NoneDominant => "none stands out of the surroundings, or too little of its shadow is seen",
+            Self::ReceiversUnseen => "too little of the receivers is visible beside the toy",
+            Self::NoneDominant => "no light stands out, or too little of its shadow is visible",
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Outlines that a scene predicts in a frame, to be drawn over the photograph.
+//! Predicted outlines of a scene in a frame, to be drawn over the photograph.
 
 use glam::{DVec2, UVec2};
 
@@ -11,17 +11,18 @@ use super::shape::Shape;
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 
-/// Places on outlines, about a pixel apart, in pixels of the picture.
+/// Points on outlines, about a pixel apart, in pixels of the picture.
 #[derive(Clone, Debug)]
 pub struct Outlines {
-    /// Of the physical toy.
+    /// Outline of the physical toy.
     pub toy: Vec<DVec2>,
-    /// Of its hard shadow from the middle of each light, over all receivers; with parts that the toy itself hides.
+    /// Outlines of its hard shadow from the centre of each light, over all receivers, including
+    /// parts that the toy hides.
     pub shadows: Vec<Vec<DVec2>>,
 }
 
 impl Outlines {
-    /// What a frame's input predicts.
+    /// The outlines for a frame's input.
     ///
     /// # Errors
     /// As [`Aligner::align`](super::Aligner::align).

@@ -1,4 +1,4 @@
-//! A photograph with its plate, and what is made of a toy's pose and lights that are found in it.
+//! A photograph with its plate, and the estimates of a toy's pose and lights from it.
 
 mod conditions;
 
@@ -18,17 +18,17 @@ use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, LightUncertainty, Plate, PoseUncertainty, Scene, check};
 use app_scene::toy::ToyError;
 
-/// A pose whose outline stays farther from the picture's, in pixels, was not found.
+/// Largest distance between the outlines of pose and picture, in pixels, of a successful estimate.
 pub(super) const MOST_OUTLINE_PX: f64 = 1.0;
-/// A toy rests on a plane from which its lowest point is no farther, over its radius.
+/// Largest distance of the lowest point of a resting toy from its plane, over its radius.
 const RESTING: f64 = 0.05;
-/// Found lights are applied where the loss falls to less than this part of the given lights'.
+/// Estimated lights are applied if the loss falls to less than this fraction of the given lights'.
 const LIGHT_GAIN: f64 = 0.96;
 
-/// Of a bound, by which what lies on it may be beyond it for rounding.
+/// Rounding tolerance of a bound.
 const ROUNDING: f64 = 1e-6;
 
-/// A photograph with its plate, and where the receivers are in it.
+/// A photograph with its plate, and the receivers in its camera space.
 pub(super) struct Photograph {
     pyramid: Pyramid,
     receivers: Vec<SeenReceiver>,
@@ -36,7 +36,7 @@ pub(super) struct Photograph {
 }
 
 impl Photograph {
-    /// Of what is withheld nothing is read.
+    /// Withheld pixels are not read.
     pub(super) fn new(scene: &Scene, input: &FrameInput, withheld: Option<&Mask>) -> Self {
         let camera_from_world = input.camera.world_from_camera.inverse();
         let toy_in_world = input.world_from_object.w_axis.truncate();
@@ -50,7 +50,7 @@ impl Photograph {
         }
     }
 
-    /// With the plate as soft as a pose's search found the photograph; 0 leaves it as it was taken.
+    /// With the plate blurred as the pose estimate found the photograph; 0 for no blur.
     pub(super) fn with_plate_spread(mut self, deviation_px: f64) -> Self {
         if deviation_px > 0.0
             && let Some(pyramid) = self.pyramid.with_plate_spread(deviation_px)
@@ -64,13 +64,13 @@ impl Photograph {
         &self.pyramid
     }
 
-    /// Rounded to 32 bits, which are mostly the same wherever the world's origin is.
+    /// Rounded to 32 bits, which are mostly the same for any origin of the world.
     pub(super) fn camera_from_object(&self, world_from_object: &DMat4) -> DMat4 {
         (self.camera_from_world * *world_from_object).as_mat4().as_dmat4()
     }
 
-    /// Where the toy is, starting from where it was before and else from where it is given; the start stays where nothing better is
-    /// found.
+    /// The toy's pose, starting from its earlier or from its given one; the start stays if nothing
+    /// better is found.
     pub(super) fn pose(
         &self,
         scene: &Scene,
@@ -91,12 +91,12 @@ impl Photograph {
         if held.is_some() || found.is_seen() {
             return Ok(found);
         }
-        // The first view: a person may have put it there.
+        // In the first view, a person may have placed the toy.
         let resting = self.pose_resting(input, &start, uncertainty);
         Ok(resting.filter(FoundPose::is_seen).unwrap_or(found))
     }
 
-    /// A toy where its pose is looked for from.
+    /// A toy in the pose from which the search starts.
     fn start(&self, scene: &Scene, world_from_object: DMat4) -> Result<PoseStart, ToyError> {
         let shape = self.shape(scene, &world_from_object)?;
         Ok(PoseStart {
@@ -107,7 +107,8 @@ impl Photograph {
         })
     }
 
-    /// Where a toy is that rests on a receiver, as it does at the start; none where it does not.
+    /// The pose of a toy that rests on a receiver, as it does at the start; `None` if it does not
+    /// rest.
     fn pose_resting(
         &self,
         input: &FrameInput,
@@ -119,7 +120,7 @@ impl Photograph {
         Some(self.judged(input, start, found))
     }
 
-    /// What a toy may stand on; none if it floats.
+    /// The ground that a toy may stand on; `None` if it floats.
     fn ground_under(&self, scene: &Scene, shape: &Shape) -> Option<pose::Ground> {
         if scene.uncertainty.are_receivers_guessed {
             return None;
@@ -138,8 +139,8 @@ impl Photograph {
         })
     }
 
-    /// A pose that was found from a start, whatever the start is worth, with the distance of its outline in pixels of the largest level;
-    /// none where too little of it is seen.
+    /// The estimate from a start, of whatever quality, with the distance of its outline in pixels
+    /// of the largest level; `None` if too little of it is visible.
     pub(super) fn tried_pose(
         &self,
         scene: &Scene,
@@ -154,7 +155,7 @@ impl Photograph {
         }))
     }
 
-    /// The smallest level with as many pixels, or the largest.
+    /// The smallest level with at least that number of pixels, or the largest.
     pub(super) fn level_of(&self, n_pixels: i32) -> usize {
         let mut levels = (0..=Pyramid::SMALLEST).rev();
         let found = levels.find(|level| {
@@ -169,7 +170,7 @@ impl Photograph {
         Shape::new(scene, &self.camera_from_object(world_from_object))
     }
 
-    /// A toy's shape, and what it is seen in.
+    /// A toy's shape with receivers and pictures.
     pub(super) fn seen<'a>(&'a self, shape: &'a Shape) -> lights::View<'a> {
         lights::View {
             shape,
@@ -183,7 +184,7 @@ impl Photograph {
         self.judged(input, start, found)
     }
 
-    /// A pose that was found from a start, or the start where it is no better.
+    /// The estimate from a start, or the start if that is as good.
     fn judged(&self, input: &FrameInput, start: &PoseStart, found: Option<pose::Found>) -> FoundPose {
         let PoseStart {
             shape,
@@ -200,7 +201,7 @@ impl Photograph {
         };
         let corrected = input.camera.world_from_camera * found.motion * camera_from_object;
         let is_better = found.is_better()
-            && found.outlines_px[1] <= MOST_OUTLINE_PX
+            && found.is_met(MOST_OUTLINE_PX)
             && check::similarity(corrected.to_cols_array()).is_ok();
         let world_from_object = if is_better { corrected } else { *start };
         let middle = camera_from_object.inverse().transform_point3(shape.centre);
@@ -220,6 +221,7 @@ impl Photograph {
                 size_ratio: corrected.x_axis.length() / input.world_from_object.x_axis.length(),
                 model_px: picture_px * found.model_px,
                 is_of_model: found.is_of_model(),
+                texture_correlation: found.texture_correlation,
                 spread_px: picture_px * found.spread_px,
                 stand: found
                     .stands
@@ -228,7 +230,8 @@ impl Photograph {
         }
     }
 
-    /// Where the lights are, by the toy in its place; none where too little of their shadows is seen.
+    /// Estimates the lights, with the toy in its place; `None` if too little of their shadows is
+    /// visible.
     pub(super) fn lights(
         &self,
         scene: &Scene,
@@ -261,7 +264,8 @@ impl Photograph {
         }))
     }
 
-    /// What lights leave unexplained, by the toy in its place; none where too little of the receivers is seen.
+    /// The loss that lights leave, with the toy in its place; `None` if too little of the receivers
+    /// is visible.
     pub(super) fn watch(
         &self,
         scene: &Scene,
@@ -279,7 +283,7 @@ impl Photograph {
         ))
     }
 
-    /// The scene's plates in the light of this photograph; none without one.
+    /// The scene's plates relit like this photograph; `None` without a plate.
     pub(super) fn relit_plates(
         &self,
         scene: &Scene,
@@ -295,8 +299,8 @@ impl Photograph {
         }))
     }
 
-    /// Lights that nobody lists, by the toy in its place, which is known as well as `pose` says; around those that a probe tells of,
-    /// where there are any.
+    /// Unlisted lights, with the toy in its place of uncertainty `pose`; around a probe's
+    /// estimates, if there are any.
     pub(super) fn discover(
         &self,
         scene: &Scene,
@@ -337,7 +341,8 @@ impl Photograph {
         }))
     }
 
-    /// A wide light where none is found, by the toy in its place; none where light from all around explains the picture about as well.
+    /// A wide light if none is found, with the toy in its place; `None` if ambient light explains
+    /// the picture about as well.
     pub(super) fn assume_wide(
         &self,
         scene: &Scene,
@@ -349,7 +354,7 @@ impl Photograph {
         Ok(assumed.filter(|assumed| assumed.light.check("lights").is_ok()))
     }
 
-    /// A line of lights in place of one, by the toy in its place; none where that explains no more.
+    /// A line of lights in place of one, with the toy in its place; `None` if it explains no more.
     pub(super) fn line_of(
         &self,
         scene: &Scene,
@@ -364,7 +369,7 @@ impl Photograph {
     }
 }
 
-/// A toy where its pose is looked for from.
+/// A toy in the pose from which the search starts.
 struct PoseStart {
     world_from_object: DMat4,
     shape: Shape,
@@ -382,33 +387,34 @@ impl PoseStart {
     }
 }
 
-/// Between two poses: metres that a point of the object moves, and the angle in radians.
+/// Difference of two poses: metres that a point of the object moves, and the angle in radians.
 fn apart(a: &DMat4, b: &DMat4, point: DVec3) -> (f64, f64) {
     let moved_m = a.transform_point3(point).distance(b.transform_point3(point));
     let [a, b] = [a, b].map(|pose| pose.to_scale_rotation_translation().1);
     (moved_m, (b * a.inverse()).to_scaled_axis().length())
 }
 
-/// Lights of which nothing was known, or why there are none.
+/// Unlisted lights, or the reason why there are none.
 pub(super) type Discovered = Result<Vec<DiscoveredLight>, NoLight>;
 
-/// A pose, as given, as held or corrected.
+/// A pose: given, kept or corrected.
 pub(super) struct FoundPose {
-    /// From object space.
+    /// The pose, from object space.
     pub(super) world_from_object: DMat4,
-    /// That which makes the plate as soft as the photograph, in pixels of the largest level; 0 if it is so as it was taken.
+    /// The blur that makes the plate as soft as the photograph, in pixels of the largest level; 0
+    /// if they are equally soft.
     pub(super) plate_spread_px: f64,
-    /// None where too little of the outline is seen.
+    /// `None` if too little of the outline is visible.
     pub(super) report: Option<PoseAlignment>,
 }
 
 impl FoundPose {
-    /// Whether the outline is where the picture has it.
+    /// Whether the outline fits the picture's.
     pub(super) fn is_seen(&self) -> bool {
         self.report.is_some_and(|pose| pose.shown_px() <= MOST_OUTLINE_PX)
     }
 
-    /// Whether it is no farther from where it was given than that is uncertain.
+    /// Whether it is within the uncertainty of the given pose.
     fn is_within(&self, uncertainty: &PoseUncertainty) -> bool {
         let is_within =
             |away: f64, most: Option<f64>| most.is_none_or(|most| away <= (1.0 + ROUNDING) * most);
@@ -419,18 +425,18 @@ impl FoundPose {
     }
 }
 
-/// Lights that were looked for.
+/// Estimated lights.
 pub(super) struct FoundLights {
-    /// None where those that were given stay.
+    /// `None` if the given ones stay.
     pub(super) applied: Option<Arc<[Light]>>,
-    /// Of each.
+    /// The report of each.
     pub(super) report: Vec<LightAlignment>,
-    /// Mean losses with the given and with the found ones.
+    /// Mean losses with the given and with the estimated lights.
     pub(super) errors: [f64; 2],
 }
 
 impl DiscoveredLight {
-    /// Tells its direction, distance and size as seen from a place.
+    /// Adds their direction, distance and size as seen from a place.
     fn seen_from(&mut self, place_in_world: DVec3) {
         let direction = self.light.direction_from(place_in_world);
         self.direction_in_world = direction.unwrap_or(self.direction_in_world);

@@ -1,4 +1,4 @@
-//! Pictures in linear light, ever smaller copies of them, and marks on their pixels.
+//! Pictures in linear light, their pyramids, and masks.
 
 use glam::{DVec2, IVec2, UVec2};
 
@@ -6,7 +6,7 @@ use app_scene::geometry::color::{linear_of_codes, linear_per_srgb};
 use app_scene::scene::{Image, Intrinsics};
 use app_scene::things::Mark;
 
-/// Index of a place within a rectangle of a size; none outside it.
+/// Index of a place within a rectangle; `None` outside it.
 pub(super) fn index_in(size_px: IVec2, place: IVec2) -> Option<usize> {
     let is_inside = place.cmpge(IVec2::ZERO).all() && place.cmplt(size_px).all();
     is_inside.then_some((place.y * size_px.x + place.x) as usize)
@@ -20,7 +20,7 @@ pub(super) fn places(size_px: IVec2) -> impl Iterator<Item = IVec2> + Clone + us
 /// Linear red, green and blue.
 pub(super) type Color = [f32; 3];
 
-/// Marks a pixel of which nothing is known.
+/// Value of an unknown pixel.
 pub(super) const UNKNOWN: Color = [f32::NAN; 3];
 
 /// A picture in linear light, rows from the top.
@@ -32,7 +32,7 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    /// Decodes a picture of a size that was checked; nothing is known of what is withheld.
+    /// Decodes a picture of checked size; withheld pixels are unknown.
     pub(super) fn without(image: &Image, withheld: Option<&Mask>) -> Self {
         let mut picture = Self::decode(image);
         if let Some(withheld) = withheld {
@@ -45,7 +45,7 @@ impl Picture {
         picture
     }
 
-    /// Decodes a picture of a size that was checked.
+    /// Decodes a picture of checked size.
     pub(super) fn decode(image: &Image) -> Self {
         let table = linear_of_codes();
         let texels = image.rgba8.chunks_exact(4);
@@ -62,13 +62,14 @@ impl Picture {
         Self { size_px, pixels }
     }
 
-    /// A pixel; none outside the picture, nor where nothing is known.
+    /// A pixel; `None` outside the picture, or if it is unknown.
     pub(super) fn get(&self, at: IVec2) -> Option<Color> {
         let pixel = self.pixels.get(index_in(self.size_px, at)?);
         pixel.copied().filter(|color| !color[0].is_nan())
     }
 
-    /// The value at a place in pixels, bilinear between the centres of four; none where one of them is unknown.
+    /// The value at a place in pixels, bilinear between four centres; `None` if one of them is
+    /// unknown.
     pub(super) fn sample(&self, at_px: DVec2) -> Option<Color> {
         let is_inside = at_px.cmpge(DVec2::ZERO).all() && at_px.cmple(self.size_px.as_dvec2()).all();
         let four = is_inside.then(|| bilinear(at_px - 0.5))?;
@@ -80,8 +81,19 @@ impl Picture {
         Some(sum)
     }
 
+    /// Adds light to a pixel that is known; nothing becomes darker than black.
+    pub(super) fn add(&mut self, at: IVec2, light: Color) {
+        if let Some(pixel) = index_in(self.size_px, at).and_then(|index| self.pixels.get_mut(index)) {
+            for (channel, light) in pixel.iter_mut().zip(light) {
+                // What is unknown stays so.
+                let sum = *channel + light;
+                *channel = if sum < 0.0 { 0.0 } else { sum };
+            }
+        }
+    }
+
     /// Spread by a Gaussian, whose deviation is in pixels; what is near to the border, or to what is unknown, is unknown.
-    fn spread(&self, deviation_px: f64) -> Self {
+    pub(super) fn spread(&self, deviation_px: f64) -> Self {
         let weights = gaussian(deviation_px);
         let along = |from: &Self, axis: IVec2| {
             let pixel = |at: IVec2| {
@@ -97,6 +109,16 @@ impl Picture {
             Self::of(from.size_px, places(from.size_px).map(pixel).collect())
         };
         along(&along(self, IVec2::X), IVec2::Y)
+    }
+
+    /// Each pixel that is known, changed.
+    pub(super) fn map(mut self, of: impl Fn(Color) -> Color) -> Self {
+        for pixel in &mut self.pixels {
+            if !pixel[0].is_nan() {
+                *pixel = of(*pixel);
+            }
+        }
+        self
     }
 
     /// Half as large, each pixel the mean of four; an odd last row or column is left out.
@@ -116,7 +138,7 @@ impl Picture {
     }
 }
 
-/// The four points of whole numbers around a point, and their weights.
+/// The four integer points around a point, and their weights.
 pub(super) fn bilinear(at: DVec2) -> [(IVec2, f32); 4] {
     let corner = at.floor();
     let [right, down] = (at - corner).as_vec2().to_array();
@@ -129,7 +151,7 @@ pub(super) fn bilinear(at: DVec2) -> [(IVec2, f32); 4] {
     ]
 }
 
-/// Steps within three deviations, and their weights; the sum of these is 1.
+/// Steps within three standard deviations, and their weights, which add up to 1.
 pub(super) fn gaussian(deviation_px: f64) -> Vec<(i32, f32)> {
     #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
     let reach_px = (3.0 * deviation_px).ceil() as i32;
@@ -140,14 +162,14 @@ pub(super) fn gaussian(deviation_px: f64) -> Vec<(i32, f32)> {
     weights.collect()
 }
 
-/// The photograph and its plate, as large as they were taken or smaller.
+/// The photograph and its plate at one level of the pyramid.
 #[derive(Clone, Debug)]
 pub(super) struct Level {
     /// Projection, in pixels of this level.
     pub(super) intrinsics: Intrinsics,
     /// The photograph.
     pub(super) frame: Picture,
-    /// The plate from the same view, where there is one.
+    /// The plate from the same view, if there is one.
     pub(super) plate: Option<Picture>,
 }
 
@@ -159,9 +181,10 @@ pub(super) struct Pyramid {
 }
 
 impl Pyramid {
-    /// The last of the levels.
+    /// Index of the smallest level.
     pub(super) const SMALLEST: usize = 3;
-    /// Larger photographs are halved first: what is lost is less than a phone's lens resolves.
+    /// Limit for the largest level; larger photographs are halved first: the loss is below the
+    /// resolution of a phone's lens.
     const MOST_PIXELS: i32 = 4096 * 3072 / 4;
 
     /// All levels, from the largest.
@@ -183,7 +206,8 @@ impl Pyramid {
         Self { levels, picture_px }
     }
 
-    /// With the plate spread by a Gaussian, whose deviation is in pixels of the largest level; none if there is no plate.
+    /// With the plate blurred by a Gaussian, with its standard deviation in pixels of the largest
+    /// level; `None` without a plate.
     pub(super) fn with_plate_spread(&self, deviation_px: f64) -> Option<Self> {
         let mut levels = vec![self.levels[0].with_plate_spread(deviation_px)?];
         for above in 0..Self::SMALLEST {
@@ -192,7 +216,7 @@ impl Pyramid {
         Some(Self { levels, ..*self })
     }
 
-    /// Without what is known of marked pixels of the largest level, in whichever picture.
+    /// With unknown pixels at marks of the largest level, in either picture.
     pub(super) fn clear_of(&self, marks: &[Mark]) -> Self {
         let mut level = self.levels[0].clone();
         for (pixel, mark) in level.frame.pixels.iter_mut().zip(marks) {
@@ -207,12 +231,21 @@ impl Pyramid {
         Self { levels, ..*self }
     }
 
-    /// Pixels of the photograph in one of the largest level.
+    /// With another largest level, of the same size.
+    pub(super) fn with_largest(&self, level: Level) -> Self {
+        let mut levels = vec![level];
+        for above in 0..Self::SMALLEST {
+            levels.push(levels[above].halved());
+        }
+        Self { levels, ..*self }
+    }
+
+    /// Pixels of the photograph per pixel of the largest level.
     pub(super) fn picture_px(&self) -> f64 {
         self.picture_px
     }
 
-    /// The smallest level that shows shadows well enough to tell lights by.
+    /// The smallest level that shows shadows well enough for an estimate of lights.
     ///
     /// In 9,000 pixels a toy of a third of the picture's width is some 50 pixels wide.
     pub(super) fn smallest_for_shadows(&self) -> usize {
@@ -221,7 +254,7 @@ impl Pyramid {
         self.levels.iter().rposition(is_enough).unwrap_or(0)
     }
 
-    /// The largest level of so many pixels at most, or a smaller copy of the smallest.
+    /// The largest level of at most that many pixels, or a smaller copy of the smallest.
     pub(super) fn at_most(&self, n_pixels: i32) -> Level {
         let is_small = |level: &Level| level.frame.size_px.x * level.frame.size_px.y <= n_pixels;
         if let Some(level) = self.levels.iter().find(|level| is_small(level)) {
@@ -241,7 +274,8 @@ impl Pyramid {
 }
 
 impl Level {
-    /// With the plate spread by a Gaussian, whose deviation is in pixels; none if there is no plate.
+    /// With the plate blurred by a Gaussian, with its standard deviation in pixels; `None` without
+    /// a plate.
     pub(super) fn with_plate_spread(&self, deviation_px: f64) -> Option<Self> {
         let plate = self.plate.as_ref()?.spread(deviation_px);
         Some(Self {
@@ -263,7 +297,7 @@ impl Level {
 /// Noise of a photograph, in 8-bit sRGB codes.
 pub(super) const NOISE_CODES: f32 = 2.0;
 
-/// Standard deviation that a photograph's noise has in linear light.
+/// Standard deviation of a photograph's noise in linear light.
 pub(super) fn noise_deviation(linear: f32) -> f32 {
     NOISE_CODES / 255.0 * linear_per_srgb(linear)
 }
@@ -276,7 +310,7 @@ pub(super) struct Mask {
 }
 
 impl Mask {
-    /// Of a picture of a size, with no mark.
+    /// A mask of a size, without marks.
     pub(super) fn new(size_px: IVec2) -> Self {
         Self {
             size_px,
@@ -284,19 +318,19 @@ impl Mask {
         }
     }
 
-    /// Whether a pixel is marked; none is outside the picture.
+    /// Whether a pixel is marked; false outside the picture.
     pub(super) fn has(&self, at: IVec2) -> bool {
         index_in(self.size_px, at).is_some_and(|index| self.pixels[index])
     }
 
-    /// Marks a pixel; none outside the picture.
+    /// Marks a pixel; no effect outside the picture.
     pub(super) fn mark(&mut self, at: IVec2) {
         if let Some(index) = index_in(self.size_px, at) {
             self.pixels[index] = true;
         }
     }
 
-    /// With all pixels within a square around each that is marked.
+    /// The mask with a square around each mark.
     pub(super) fn grown(&self, reach_px: i32) -> Self {
         self.grown_along(IVec2::X, reach_px)
             .grown_along(IVec2::Y, reach_px)
@@ -305,7 +339,7 @@ impl Mask {
     fn grown_along(&self, axis: IVec2, reach_px: i32) -> Self {
         let mut grown = self.clone();
         for at in places(self.size_px).filter(|at| self.has(*at)) {
-            // What lies between two that are marked is so already.
+            // Pixels between two marks are marked already.
             let before = if self.has(at - axis) { 0 } else { reach_px };
             let behind = if self.has(at + axis) { 0 } else { reach_px };
             for step in -before..=behind {

@@ -1,29 +1,30 @@
-//! A pose that stands still, drifts slowly and sometimes jumps, freed of its tracker's noise.
+//! Filters the noise of a tracker from a pose that is static, drifts slowly and sometimes jumps.
 
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
 use app_scene::scene::check;
 
-/// What the pose itself does in a second: standard deviation of its random walk along each axis, in metres.
+/// Random walk of the pose itself: standard deviation per second along each axis, in metres.
 const DRIFT_M: f64 = 5e-4;
 /// The same about each axis, in radians.
 const DRIFT_RAD: f64 = 1e-3;
-/// Sum of the squares of six deviations, each over its standard deviation, that chance exceeds once in ten thousand
-/// times (chi squared).
+/// Sum of six squared standardised deviations that chance exceeds once in ten thousand times (chi
+/// squared).
 const UNLIKELY: f64 = 27.9;
 /// The same, once in ten million times.
 const IMPOSSIBLE: f64 = 43.0;
-/// Measurements in a row that may tell of a jump; two are the least.
+/// Largest number of successive measurements that can indicate a jump; two are the smallest.
 const N_LATEST: usize = 5;
-/// Bounds of the noise that is found, over the one that was stated.
+/// Bounds of the estimated noise, over the stated one.
 const NOISE_RATIO: [f64; 2] = [0.1, 10.0];
-/// Differences that the stated noise counts for at first.
+/// Initial weight of the stated noise, in differences.
 const N_STATED: f64 = 20.0;
-/// Differences over which the noise is averaged: some ten seconds.
+/// Number of differences over which the noise is averaged: some ten seconds.
 const N_AVERAGED: f64 = 200.0;
-/// A squared difference counts for no more than so many times what is expected, since that of a jump tells no noise.
+/// Largest ratio of a squared difference to its expectation, since a jump's says nothing about
+/// noise.
 const MAX_SURPRISE: f64 = 4.0;
-/// Noise that can be stated, in metres and in radians.
+/// Range of stated noise, in metres and in radians.
 const STATED: [f64; 2] = [1e-6, 1.0];
 
 /// Standard deviation of one measurement along and about each axis.
@@ -36,7 +37,7 @@ pub struct PoseNoise {
 }
 
 impl Default for PoseNoise {
-    /// Of a phone's tracker: 1 mm and .2 degrees.
+    /// The noise of a phone's tracker: 1 mm and .2 degrees.
     fn default() -> Self {
         Self {
             position_m: 1e-3,
@@ -45,32 +46,34 @@ impl Default for PoseNoise {
     }
 }
 
-/// What a frame told of the pose.
+/// The result for a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PoseStep {
-    /// It was measured for the first time.
+    /// The first measurement.
     Began,
-    /// The measurement went into it.
+    /// The measurement was used.
     Followed,
-    /// The measurement was too far off to belong to it, and is of no effect unless the next ones agree with it.
+    /// The measurement was too far off, and is ignored unless the next ones agree with it.
     Doubted,
-    /// Several measurements in a row agreed on another pose, from which it goes on.
+    /// Several successive measurements agreed on another pose, from which the filter continues.
     Jumped,
-    /// Nothing was measured, or nothing that is a pose: it stays.
+    /// There was no measurement, or no valid one: the pose stays.
     Held,
 }
 
-/// Follows a pose, such as the toy's in the world, by measurements of it that are noisy or missing.
+/// Filters a pose, for example the toy's in the world, from measurements that are noisy or missing.
 ///
-/// A Kalman filter whose state walks at random, with a gate: a measurement that is too far off waits until others agree
-/// with it. Two to five in a row that do are a jump, and the pose goes on from their mean as if it had just begun, so that
-/// it is never drawn on the way between two places. The noise need not be known well: it is learned from differences
-/// between one frame and the next, within a tenth and ten times of what was stated.
+/// A Kalman filter whose state walks at random, with a gate: a measurement that is too far off
+/// waits until others agree with it. Two to five in a row that do are a jump, and the filter
+/// restarts from their mean, so that no pose between two places is shown. The noise need not be
+/// known well: it is estimated from differences between frames, within a tenth and ten times of the
+/// stated noise.
 ///
-/// Measured by `tests/tests/estimates/pose_filter.rs`, frames 17, 33 and 50 ms apart by chance, under white noise of 1 mm and .2
-/// degrees along and about each axis. Lag is that behind a pose that goes 1 mm in a second; a jump of 10 mm and 1 degree has
-/// settled once the pose stays within 2 mm; the last row has a drift of 2 mm in half a minute, jumps every few seconds,
-/// dropouts of .1 to 2 s and one measurement in a hundred 20 mm astray:
+/// Measured by `tests/tests/estimates/pose_filter.rs`, frames 17, 33 and 50 ms apart by chance,
+/// under white noise of 1 mm and .2 degrees along and about each axis. Lag is that behind a pose
+/// that goes 1 mm in a second; a jump of 10 mm and 1 degree has settled once the pose stays within
+/// 2 mm; the last row has a drift of 2 mm in half a minute, jumps every few seconds, dropouts of .1
+/// to 2 s and one measurement in a hundred 20 mm astray:
 ///
 /// | | as measured | exponential, .2 s | One Euro, .2 Hz | this |
 /// | --- | --- | --- | --- | --- |
@@ -79,31 +82,33 @@ pub enum PoseStep {
 /// | settled after a jump: median, 19 of 20 | never | 301, 382 ms | 150, 200 ms | 50, 150 ms |
 /// | distance from the truth: median, 19 of 20 | 1.54, 2.87 mm | .61, 3.76 mm | .55, 3.85 mm | .48, 1.02 mm |
 ///
-/// With a fifth of the noise, as alignment leaves, it is .15 mm, .02 deg, 67 ms, 50 and 50 ms, .16 and .31 mm. With three
-/// times of it .65 mm, .10 deg and 1.06 s: there a jump of 10 mm takes 267 ms in the median and 1.5 s in one of twenty.
+/// With a fifth of the noise, as alignment leaves, it is .15 mm, .02 deg, 67 ms, 50 and 50 ms, .16
+/// and .31 mm. With three times of it .65 mm, .10 deg and 1.06 s: there a jump of 10 mm takes 267
+/// ms in the median and 1.5 s in one of twenty.
 ///
 /// Source: Kalman 1960; the gate as Bar-Shalom and Fortmann 1988.
 #[derive(Clone, Debug)]
 pub struct PoseFilter {
     stated: Variance,
-    /// As found.
+    /// The estimated noise.
     noise: Variance,
     n_differences: f64,
     pivot: DVec3,
     estimate: Option<Estimate>,
-    /// Measured one after the other without a gap, the last one last.
+    /// Successive measurements without a gap, the last one last.
     latest: Vec<Pose>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Pose {
-    /// Of the pivot.
+    /// Position of the pivot.
     position: DVec3,
     rotation: DQuat,
     scale: f64,
 }
 
-/// Of a pose or of a measurement, along and about each axis; squares of metres and of radians.
+/// Variance of a pose or of a measurement, along and about each axis; squares of metres and of
+/// radians.
 #[derive(Clone, Copy, Debug)]
 struct Variance {
     position: f64,
@@ -117,12 +122,13 @@ struct Estimate {
 }
 
 impl PoseFilter {
-    /// For measurements with about so much noise. The pivot is the point, in the space that the pose leads from, whose
-    /// place matters: the origin for that of a toy, the toy's place for a correction of the tracker's whole world.
+    /// A filter for measurements with about the given noise. The pivot is the relevant point in the
+    /// space that the pose leads from: the origin for a toy's pose, the toy's place for a
+    /// correction of the tracker's whole world.
     #[must_use]
     pub fn new(noise: PoseNoise, pivot: DVec3) -> Self {
         let [position, rotation] = [noise.position_m, noise.rotation_rad].map(|stated| {
-            // Not a number is less than nothing, here.
+            // NaN fails the comparison, too.
             let stated = if stated > STATED[0] {
                 stated.min(STATED[1])
             } else {
@@ -141,8 +147,8 @@ impl PoseFilter {
         }
     }
 
-    /// Goes on by a frame, `elapsed_s` seconds after the last one: with the pose as measured, a rotation, a translation and
-    /// a scale, or with none where it was not. The scale is taken as it is.
+    /// Advances by a frame, `elapsed_s` seconds after the last one: with the measured pose, a
+    /// rotation, a translation and a scale, or without a measurement. The scale is not filtered.
     pub fn step(&mut self, elapsed_s: f64, measured: Option<DMat4>) -> PoseStep {
         if let Some(estimate) = &mut self.estimate
             && elapsed_s > 0.0
@@ -190,7 +196,7 @@ impl PoseFilter {
         PoseStep::Followed
     }
 
-    /// The pose, once it was measured.
+    /// The pose, after the first measurement.
     #[must_use]
     pub fn pose(&self) -> Option<DMat4> {
         let Pose {
@@ -205,7 +211,7 @@ impl PoseFilter {
         ))
     }
 
-    /// Forgets the pose, such as when the tracker begins a new world, but not the noise.
+    /// Forgets the pose, for example when the tracker begins a new world, but not the noise.
     pub fn forget(&mut self) {
         self.estimate = None;
         self.latest.clear();
@@ -242,7 +248,7 @@ impl PoseFilter {
         })
     }
 
-    /// Another pose that the latest measurements agree on, by as few of them as tell it.
+    /// Another pose on which the latest measurements agree, using as few of them as possible.
     fn elsewhere(&self, estimate: &Estimate) -> Option<Estimate> {
         let (last, before) = self.latest.split_last()?;
         let mut mean = *last;
@@ -284,13 +290,13 @@ fn deviation(one: &Pose, other: &Pose, expected: &Variance) -> f64 {
         + turned.length_squared() / expected.rotation
 }
 
-/// The shorter way from one rotation to another: axis times angle, in radians.
+/// The shorter rotation from one to another: axis times angle, in radians.
 fn turn(from: DQuat, to: DQuat) -> DVec3 {
     let turn = from.inverse() * to;
     (if turn.w < 0.0 { -turn } else { turn }).to_scaled_axis()
 }
 
-/// From one pose to another by a part of the way, in position and in rotation.
+/// Interpolates position and rotation by the given fractions.
 fn blended(from: &Pose, to: &Pose, [moved, turned]: [f64; 2]) -> Pose {
     let turn = DQuat::from_scaled_axis(turned * turn(from.rotation, to.rotation));
     Pose {

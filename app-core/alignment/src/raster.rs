@@ -1,4 +1,4 @@
-//! How much of each pixel a mesh covers, and how far away it is there.
+//! Rasterises meshes: the covered fraction of each pixel, and the depth there.
 
 use std::ops::Range;
 
@@ -8,10 +8,10 @@ use super::picture::{index_in, places};
 use app_scene::geometry::edges::Faces;
 use app_scene::scene::Intrinsics;
 
-/// Samples of each pixel: 8 rows of 16.
+/// Number of sub-rows of a pixel; each has 16 samples.
 const N_SUB_ROWS: i32 = 8;
 const N_SUB_COLUMNS: i32 = 16;
-/// Where the samples of each sub-row lie within a column; together they are spread evenly.
+/// Offsets of the samples of each sub-row within a column; together they are evenly spread.
 const SHIFTS: [f64; N_SUB_ROWS as usize] = [0.0625, 0.5625, 0.3125, 0.8125, 0.1875, 0.6875, 0.4375, 0.9375];
 
 /// Coverage of pixels by a mesh, over a rectangle of the picture.
@@ -23,7 +23,8 @@ pub(super) struct Coverage {
     pub(super) size_px: IVec2,
     /// 0 to 1 for each pixel, rows from the top.
     values: Vec<f32>,
-    /// Depth in metres at the centre of each pixel, infinite where there is no mesh; empty where nobody asked.
+    /// Depth in metres at the centre of each pixel, infinite without a mesh; empty if not
+    /// requested.
     depths_m: Vec<f32>,
 }
 
@@ -34,7 +35,7 @@ impl Coverage {
         value.copied().unwrap_or(0.0)
     }
 
-    /// Whether it covers a part of a pixel in a square around one, of so many pixels to each side.
+    /// Whether any pixel in a square around one, `reach_px` to each side, is covered.
     pub(super) fn is_near(&self, at: IVec2, reach_px: i32) -> bool {
         let reach = -reach_px..=reach_px;
         let mut around = reach
@@ -43,13 +44,13 @@ impl Coverage {
         around.any(|step| self.at(at + step) > 0.0)
     }
 
-    /// Depth at a pixel's centre, in metres; infinite where there is no mesh.
+    /// Depth at a pixel's centre, in metres; infinite without a mesh.
     pub(super) fn depth_m(&self, at: IVec2) -> f32 {
         let depth = self.index(at).and_then(|index| self.depths_m.get(index));
         depth.copied().unwrap_or(f32::INFINITY)
     }
 
-    /// First pixel of each row of the rectangle, and the column before which it ends.
+    /// First pixel of each row of the rectangle, and the column after its last.
     pub(super) fn rows(&self) -> impl Iterator<Item = (IVec2, i32)> + use<> {
         let (origin, size) = (self.origin_px, self.size_px);
         (0..size.y).map(move |row| (origin + IVec2::new(0, row), origin.x + size.x))
@@ -84,27 +85,29 @@ pub(super) fn project(points: impl IntoIterator<Item = DVec3>, k: &Intrinsics) -
 pub(super) struct Rasterizer {
     /// Whether each triangle faces the eye, and one more that does not.
     facing: Vec<bool>,
-    /// Where the outline crosses the sub-rows, and the end of each sub-row among them.
+    /// Intersections of the outline with the sub-rows, and the end of each sub-row among them.
     crossings: Vec<Crossing>,
     ends: Vec<u32>,
     sorted: Vec<u32>,
-    /// How many more samples each pixel of a row has than the one before it.
+    /// Difference of samples between each pixel of a row and the one before.
     more: Vec<i32>,
 }
 
-/// Where an edge of the outline crosses a sub-row.
+/// An intersection of the outline with a sub-row.
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
     line: u32,
-    /// Twice the first column of samples beyond it, and one more where the mesh ends there.
+    /// Twice the first column of samples after it, plus one if the mesh ends there.
     place: u32,
 }
 
 impl Rasterizer {
-    /// Coverage by the union of the triangles that face the eye, of projected `corners`, in a picture of `size_px`.
+    /// Coverage by the union of the triangles that face the eye, of projected `corners`, in a
+    /// picture of `size_px`.
     ///
-    /// Triangles that reach behind the camera are left out. Of all edges the outline alone is drawn, which is where a triangle that
-    /// faces the eye meets one that does not: how often the mesh lies over a sample is how often its outline goes round it.
+    /// Triangles that reach behind the camera are skipped. Only edges of the outline are drawn,
+    /// between a triangle that faces the eye and one that does not: the winding number of the
+    /// outline around a sample is the number of the mesh's layers there.
     pub(super) fn coverage(&mut self, corners: &[DVec3], faces: &Faces, size_px: IVec2) -> Coverage {
         let Some(mut out) = rectangle(corners, size_px) else {
             return Coverage::default();
@@ -153,7 +156,8 @@ impl Rasterizer {
         self.fill(out);
     }
 
-    /// Adds an edge; `is_left`: whether the triangle that has its ends in this order is the one that faces the eye.
+    /// Adds an edge; `is_left` is true if the front face is the triangle that has its ends in this
+    /// order.
     fn cross(&mut self, [from, to]: [DVec2; 2], is_left: bool, size_px: IVec2) {
         let is_down = from.y < to.y;
         let [a, b] = if is_down { [from, to] } else { [to, from] };
@@ -165,12 +169,14 @@ impl Rasterizer {
             return;
         }
         let slope = (b.x - a.x) / (b.y - a.y);
-        // Triangles that face the eye turn to the left, and rows go down: edges that go down have them on their right.
+        // Triangles that face the eye turn to the left, and rows go down: edges that go down have
+        // them on their right.
         let is_end = u32::from(is_down != is_left);
         for line in first..end {
             let y = (line as f64 + 0.5) / rows;
             let x = a.x + (y - a.y) * slope;
-            // Sub-rows have their samples in different places within a column: upright edges are as exact as slanted ones.
+            // Sub-rows have different sample offsets within a column: axis-parallel edges are as
+            // accurate as slanted ones.
             let shift = SHIFTS[line % SHIFTS.len()];
             let column = round_up((x * f64::from(N_SUB_COLUMNS) - shift).min(n_columns));
             #[allow(clippy::cast_possible_truncation, reason = "samples of a picture's side")]
@@ -208,7 +214,7 @@ impl Rasterizer {
         }
     }
 
-    /// Turns runs of samples into coverage.
+    /// Converts runs of samples to coverage.
     fn fill(&mut self, out: &mut Coverage) {
         const OF_SAMPLE: f32 = 1.0 / (N_SUB_ROWS * N_SUB_COLUMNS) as f32;
         let width = out.size_px.x as usize;
@@ -238,15 +244,15 @@ impl Rasterizer {
     }
 }
 
-/// Whether a projected triangle faces the eye and lies before it.
+/// Whether a projected triangle faces the eye and lies in front of it.
 fn is_facing([a, b, c]: [DVec3; 3]) -> bool {
     // Rows go down: triangles that face the eye turn to the left.
     let turns_left = (b - a).truncate().perp_dot((c - a).truncate()) < 0.0;
-    // Every second one does: no branch that would be guessed wrong as often.
+    // Without a branch, which would be mispredicted half of the time.
     turns_left & (a.z.min(b.z).min(c.z) > 0.0)
 }
 
-/// All samples of a sub-row from a column on: one more of each, or one less.
+/// Adds one sample at all columns of a sub-row from the given one on, or removes it.
 fn add_run(more: &mut [i32], column: u32, sign: i32) {
     const OF_PIXEL: u32 = N_SUB_COLUMNS as u32;
     let pixel = (column / OF_PIXEL) as usize;
@@ -255,7 +261,7 @@ fn add_run(more: &mut [i32], column: u32, sign: i32) {
     more[pixel + 1] += sign * passed;
 }
 
-/// An empty coverage of the pixels that a mesh can reach; none where it is out of the picture.
+/// An empty coverage of the pixels that a mesh can reach; `None` if it is out of the picture.
 fn rectangle(corners: &[DVec3], size_px: IVec2) -> Option<Coverage> {
     let seen = corners.iter().filter(|corner| corner.z > 0.0);
     let (low, high) = seen.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), corner| {
@@ -272,7 +278,7 @@ fn rectangle(corners: &[DVec3], size_px: IVec2) -> Option<Coverage> {
     })
 }
 
-/// The least whole number that is not below a value of a picture's size; 0 for a negative one.
+/// The smallest integer not below a value of a picture's size; 0 for a negative one.
 #[allow(
     clippy::cast_possible_truncation,
     reason = "bounded by the callers; the library's own rounding is a call, here in the innermost loop"
@@ -288,7 +294,7 @@ fn add_depths([a, b, c]: [DVec3; 3], out: &mut Coverage) {
     let (ab, ac) = ((b - a).truncate(), (c - a).truncate());
     let area = ab.perp_dot(ac);
     let (at_a, to_b, to_c) = (1.0 / a.z, 1.0 / b.z - 1.0 / a.z, 1.0 / c.z - 1.0 / a.z);
-    // Of a sliver, rounding would go beyond its corners.
+    // For a sliver, rounding would exceed its corners' depths.
     let nearest = at_a + to_b.max(to_c).max(0.0);
     let farthest = at_a + to_b.min(to_c).min(0.0);
     let slope = DVec2::new(to_b * ac.y - to_c * ab.y, to_c * ab.x - to_b * ac.x) / area;
@@ -304,7 +310,7 @@ fn add_depths([a, b, c]: [DVec3; 3], out: &mut Coverage) {
     }
 }
 
-/// The rows of a picture with the columns in which a projected triangle covers the pixels' centres.
+/// The rows of a picture with the columns of pixels whose centres a projected triangle covers.
 pub(super) fn centres(corners: [DVec3; 3], size_px: IVec2) -> impl Iterator<Item = (usize, Range<usize>)> {
     let [a, b, c] = corners.map(|corner| corner.y);
     let [width, height] = size_px.as_dvec2().to_array();
@@ -317,7 +323,7 @@ pub(super) fn centres(corners: [DVec3; 3], size_px: IVec2) -> impl Iterator<Item
     })
 }
 
-/// Where the line at `y` enters and leaves a triangle.
+/// The range of a triangle on the line at `y`.
 fn crossing(corners: [DVec3; 3], y: f64) -> Option<[f64; 2]> {
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
     for (from, to) in [(0, 1), (1, 2), (2, 0)] {

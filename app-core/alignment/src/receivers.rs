@@ -1,4 +1,4 @@
-//! Receivers as the camera sees them, and the plate as it would have taken it.
+//! Receivers in camera space, and the plate transferred to the camera.
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
@@ -7,10 +7,10 @@ use super::pose::Plane;
 use app_scene::geometry::nearest_receivers::nearest_receivers;
 use app_scene::scene::{Camera, Intrinsics, MAX_RECEIVERS, Plate, Receiver, Surface};
 
-/// Cameras whose matrices differ by less are one.
+/// Tolerance for equal cameras' matrices.
 pub(super) const SAME_CAMERA: f64 = 1e-9;
 
-/// A receiver, seen from the camera.
+/// A receiver in camera space.
 #[derive(Clone, Debug)]
 pub(super) struct SeenReceiver {
     /// Rigid.
@@ -19,7 +19,7 @@ pub(super) struct SeenReceiver {
 }
 
 impl SeenReceiver {
-    /// The receivers nearest to the toy, no more than shadows are moved on.
+    /// The receivers nearest to the toy, up to the number on which shadows are retargeted.
     pub(super) fn near(receivers: &[Receiver], toy_in_world: DVec3, camera_from_world: &DMat4) -> Vec<Self> {
         let nearest = nearest_receivers(receivers, &[toy_in_world]);
         let seen = nearest.into_iter().take(MAX_RECEIVERS);
@@ -66,7 +66,7 @@ impl SeenReceiver {
             .map(|point| self.plane_from_camera.transform_point3(*point).y);
         let lowest_m = heights_m.fold(f64::INFINITY, f64::min);
         let normal = self.plane_from_camera.inverse().y_axis.truncate().normalize();
-        // Below the toy, where 32 bits are enough wherever the plane's origin is.
+        // Below the toy, where 32 bits are enough for any origin of the plane.
         let above = *points.first()?;
         let point = above - self.plane_from_camera.transform_point3(above).y * normal;
         (lowest_m.abs() <= most_m).then(|| Plane {
@@ -75,11 +75,12 @@ impl SeenReceiver {
         })
     }
 
-    /// Depth in metres at which a ray of depth 1 from the camera meets its front; none where it does not.
+    /// Depth in metres at which a ray of depth 1 from the camera meets its front; `None` if it does
+    /// not.
     fn depth_m(&self, ray: DVec3) -> Option<f64> {
         let eye = self.plane_from_camera.w_axis.truncate();
         let along = self.plane_from_camera.transform_vector3(ray);
-        // Towards the plane from its front, so that the division is of a positive by a positive number.
+        // Towards the plane from its front, so that a positive number is divided by a positive one.
         if eye.y <= 0.0 || along.y >= 0.0 {
             return None;
         }
@@ -116,7 +117,8 @@ pub(super) fn receiver_at(receivers: &[SeenReceiver], k: &Intrinsics, at: IVec2)
     nearest.map(|(index, depth_m)| (index, depth_m * ray))
 }
 
-/// Plates, from the one taken nearest to a camera: metres away, and less the more it looks the same way.
+/// Plates sorted by their cameras' distance from a camera in metres, which similar directions
+/// reduce.
 pub(super) fn nearest<'a>(plates: &'a [Plate], camera: &Camera) -> Vec<&'a Plate> {
     let distance = |plate: &Plate| {
         let (there, here) = (&plate.camera.world_from_camera, &camera.world_from_camera);
@@ -128,8 +130,8 @@ pub(super) fn nearest<'a>(plates: &'a [Plate], camera: &Camera) -> Vec<&'a Plate
     plates
 }
 
-/// The plate taken nearest to the camera, carried over by the receivers' planes where it is from elsewhere; none where there is
-/// no plate.
+/// The plate with the camera nearest to the given one, transferred by the receivers' planes if it
+/// is from another place; `None` without plates.
 pub(super) fn plate_for(plates: &[Plate], receivers: &[SeenReceiver], camera: &Camera) -> Option<Picture> {
     let plate = nearest(plates, camera).into_iter().next()?;
     let picture = Picture::decode(&plate.image);

@@ -1,4 +1,4 @@
-//! Small rigid motions of points in camera space, and steps of them by six numbers.
+//! Small rigid motions of points in camera space, and their steps of six numbers.
 
 use glam::{DMat4, DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
@@ -14,7 +14,8 @@ pub(super) type Matrix6 = SMatrix<f64, 6, 6>;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RigidMotion {
     pivot: DVec3,
-    /// Turns the first three numbers of a step into radians: 1, or a length in metres for steps of six lengths.
+    /// Conversion of a step's first three numbers to radians: 1, or a length in metres for steps of
+    /// six lengths.
     lever: f64,
     rotation: DQuat,
     /// In metres.
@@ -22,7 +23,7 @@ pub(super) struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// No motion of what is around `pivot`.
+    /// The identity, for points around `pivot`.
     pub(super) fn none(pivot: DVec3, lever: f64) -> Self {
         Self {
             pivot,
@@ -32,7 +33,7 @@ impl RigidMotion {
         }
     }
 
-    /// A turn about the camera, by a rotation vector in radians; so are its steps.
+    /// A turn about the camera, by a rotation vector in radians; its steps are in radians, too.
     pub(super) fn about_camera(turn: DVec3) -> Self {
         Self {
             rotation: DQuat::from_scaled_axis(turn),
@@ -40,7 +41,7 @@ impl RigidMotion {
         }
     }
 
-    /// As a matrix, camera space to camera space.
+    /// The matrix from camera space to camera space.
     pub(super) fn matrix(&self) -> DMat4 {
         DMat4::from_translation(self.centre())
             * DMat4::from_quat(self.rotation)
@@ -67,12 +68,12 @@ impl RigidMotion {
         self.rotation * (point - self.pivot) + self.centre()
     }
 
-    /// Where the pivot is now.
+    /// The present place of the pivot.
     pub(super) fn centre(&self) -> DVec3 {
         self.pivot + self.translation
     }
 
-    /// Followed by a step whose turn is about where the pivot is now.
+    /// Followed by a step whose turn is about the present pivot.
     pub(super) fn then(&self, step: &Vector6) -> Self {
         self.turned(self.turn(step), self.translation + shift(step))
     }
@@ -83,7 +84,7 @@ impl RigidMotion {
         self.turned(turn, turn * self.centre() + shift(step) - self.pivot)
     }
 
-    /// The nearest motion that goes no farther than a pose is uncertain.
+    /// The nearest motion within a pose's uncertainty.
     pub(super) fn within(self, uncertainty: &PoseUncertainty) -> Self {
         let mut within = self;
         if let Some(most_m) = uncertainty.position_m {
@@ -104,7 +105,8 @@ impl RigidMotion {
         step_of(self.lever * self.rotation.to_scaled_axis(), self.translation)
     }
 
-    /// What each number of a step counts at a point that far from the centre of its turn, if a metre along each axis counts `per_m`.
+    /// The derivative by each number of a step at a point at that distance from the centre of its
+    /// turn, if a metre along each axis counts `per_m`.
     pub(super) fn row(&self, from_centre: DVec3, per_m: DVec3) -> Vector6 {
         step_of(from_centre.cross(per_m) / self.lever, per_m)
     }
@@ -122,7 +124,7 @@ impl RigidMotion {
     }
 }
 
-/// By its first and its last three numbers.
+/// From its first and its last three numbers.
 pub(super) fn step_of(turn: DVec3, shift: DVec3) -> Vector6 {
     Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z)
 }

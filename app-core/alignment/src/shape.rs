@@ -10,21 +10,21 @@ use app_scene::geometry::edges::Faces;
 use app_scene::scene::Scene;
 use app_scene::toy::{PosedMesh, Toy, ToyError};
 
-/// Welded vertices, and triangles of which those that face an eye cover all that the toy covers.
+/// Welded vertices, and triangles of which those facing an eye cover the whole toy.
 #[derive(Clone, Debug)]
 pub(super) struct Shape {
-    /// In camera space.
+    /// Points in camera space.
     pub(super) points: Vec<DVec3>,
-    /// Corners are among the points.
+    /// Faces of these points.
     pub(super) faces: Faces,
-    /// Middle of the box around it.
+    /// Centre of the box around it.
     pub(super) centre: DVec3,
     /// Half of that box's diagonal, in metres.
     pub(super) radius_m: f64,
 }
 
 impl Shape {
-    /// The scene's physical pose.
+    /// The shape in the scene's physical pose.
     pub(super) fn new(scene: &Scene, camera_from_object: &DMat4) -> Result<Self, ToyError> {
         let toy = &scene.toy;
         let mut posed = PosedMesh::default();
@@ -53,7 +53,7 @@ impl Shape {
         })
     }
 
-    /// The toy's vertices that its points are, in their order.
+    /// The toy's vertex of each point, in the points' order.
     pub(super) fn vertices(toy: &Toy) -> Vec<u32> {
         let mut used = toy.shadow_indices().indices.clone();
         used.sort_unstable();
@@ -61,12 +61,13 @@ impl Shape {
         used
     }
 
-    /// The same shape, merged in cells of a side in pixels of a level, at the distance of its middle.
+    /// The shape merged in cells whose side is in pixels of a level, at the distance of its centre.
     pub(super) fn merged_in_px(&self, cell_px: f64, level: &Level) -> Self {
         self.merged(cell_px * self.centre.length() / level.intrinsics.fx_px)
     }
 
-    /// The same shape with the vertices within each cell of a side merged to their mean, and without triangles that collapse.
+    /// The shape with the vertices in each cell merged to their mean, and without collapsed
+    /// triangles.
     ///
     /// Source: Rossignac and Borrel 1993.
     pub(super) fn merged(&self, cell_m: f64) -> Self {
@@ -94,7 +95,7 @@ impl Shape {
             .triangles
             .iter()
             .map(|corners| corners.map(|corner| places[corner as usize]));
-        // Many come to lie on one another.
+        // Many become equal.
         let mut known = BTreeSet::new();
         let merged = merged.filter(|[a, b, c]| a != b && b != c && c != a);
         let merged = merged.filter(|[a, b, c]| {

@@ -1,8 +1,10 @@
-//! How much softer a photograph is than its plate, by the texture of what both show.
+//! Measures how much softer a photograph is than its plate, from their common texture.
 //!
-//! A Gaussian takes from a texture the more the finer it is: where a plate that is spread by the right one has as much of it left, along each of
-//! four directions, as the photograph shows. Four directions tell a covariance, and so a motion from a lens out of focus. Shadows, things and
-//! the toy itself are left out by their ratio to the plate. Noise, which photograph and plate do not share, falls out where both have as much.
+//! A Gaussian removes the more of a texture the finer it is: the right blur leaves as much of the
+//! plate's texture, along each of four directions, as the photograph has. Four directions determine
+//! a covariance, and so distinguish motion from defocus. Shadows, things and the toy itself are
+//! excluded by their ratio to the plate. Noise, which photograph and plate do not share, cancels if
+//! both have the same amount.
 
 use glam::{DVec2, IVec2};
 use nalgebra::{Matrix3, Vector3};
@@ -12,47 +14,52 @@ use super::picture::{Level, Mask, bilinear, gaussian, index_in, places};
 use super::raster::Coverage;
 use app_scene::sharpness::{Sharpness, Spread};
 
-/// Around the toy, in its own larger side, what is looked at.
+/// Margin around the toy, over its larger side.
 const AROUND: f64 = 0.75;
-/// And at most that many pixels along each side, which tell enough.
+/// Limit for the region's sides, in pixels.
 const MOST_SIDE_PX: i32 = 640;
-/// Fewer pixels tell nothing.
+/// Number of pixels that a measurement needs.
 const LEAST_PIXELS: usize = 4000;
-/// Both are first spread by as much, in pixels, so that noise from pixel to pixel counts little.
+/// Initial blur of both, in pixels, so that noise of single pixels counts little.
 const SMOOTHED_PX: f64 = 1.0;
-/// Ratios are compared of pictures that are spread by as much, in pixels.
+/// Blur of pictures whose ratio is taken, in pixels.
 const RATIO_PX: f64 = 3.0;
-/// Where the ratio is off its median by more, something else is seen than what the plate shows in the same light.
+/// Largest deviation of the ratio from its median; beyond it, the photograph shows something else
+/// than the plate in the same light.
 const SAME_LIGHT: f32 = 0.04;
-/// Square roots of light that are too dark to divide by, and too bright to be told from clipped ones.
+/// Range of square roots of light: too dark to divide by, and too bright to exclude clipping.
 const DARKEST: f32 = 0.1;
 const BRIGHTEST: f32 = 0.97;
-/// What is left out is grown by as much, in pixels: farther than derivatives of what is spread look; around the toy by more.
+/// Margin of excluded pixels: wider than the support of blurred derivatives; wider still around the
+/// toy.
 const GROWN_PX: i32 = 6;
 const TOY_GROWN_PX: i32 = 12;
-/// Squared correlation of photograph and plate below which a direction shows noise, and what all that are used must have in the end.
+/// Squared correlation of photograph and plate below which a direction shows noise, and which the
+/// used directions must reach together.
 const LEAST_CORRELATION: f64 = 0.5;
 const CORRELATION: f64 = 0.8;
-/// Weight of a round spread against what the directions say.
+/// Weight of an isotropic blur against the measurements.
 const ROUND: f64 = 0.02;
-/// A spread whose deviations differ by less, in pixels, is a round one.
+/// Difference of deviations, in pixels, below which a blur counts as isotropic.
 const ALIKE_PX: f64 = 0.3;
-/// Variance that one step changes at most, when it is the last one, and the most there is, in square pixels.
+/// Largest change of variance in one step, size of the last step, and largest variance, in square
+/// pixels.
 const MOST_STEP_PX2: f64 = 1.5;
 const LAST_STEP_PX2: f64 = 0.02;
 const MOST_PX2: f64 = 16.0;
 const N_STEPS: usize = 10;
-/// A smaller spread of the outline, in pixels, is that of a sharp lens: compression and the like make as much of it.
+/// A smaller blur of the outline, in pixels, is that of a sharp lens: compression and the like
+/// cause as much.
 const LEAST_OUTLINE_PX: f64 = 0.7;
 
-/// Directions in which derivatives are taken.
+/// Directions of the derivatives.
 const DIRECTIONS: [IVec2; 4] = [IVec2::X, IVec2::Y, IVec2::ONE, IVec2::new(1, -1)];
 
-/// How soft a photograph is, by its texture against the plate's and by the spread of its outline, in pixels of the level; the outline's is none
-/// where it was not seen.
+/// The softness of a photograph, from its texture relative to the plate's and from the blur of its
+/// outline, in pixels of the level; `None` for an outline that was not measured.
 pub(super) fn sharpness(level: &Level, coverage: &Coverage, outline_px: Option<f64>) -> Sharpness {
     let plate_spread = over_plate(level, coverage).unwrap_or(Spread::NONE);
-    // A photograph's own spread is that of its plate and what it has over that: no less than the latter.
+    // A photograph's own blur is at least its blur relative to the plate.
     let of_outline = outline_px.filter(|px| *px >= LEAST_OUTLINE_PX).unwrap_or(0.0);
     let over_plate_px2 = 0.5 * (plate_spread.xx_px2 + plate_spread.yy_px2);
     let of_plate_px2 = (of_outline * of_outline - over_plate_px2).max(0.0);
@@ -62,7 +69,8 @@ pub(super) fn sharpness(level: &Level, coverage: &Coverage, outline_px: Option<f
     }
 }
 
-/// What makes the plate as soft as the photograph; none where nothing tells, or where it is as soft already.
+/// The blur that makes the plate as soft as the photograph; none if it is unconstrained, or if the
+/// plate is as soft already.
 fn over_plate(level: &Level, coverage: &Coverage) -> Option<Spread> {
     let (frame, plate, unlike) = textures(level, coverage)?;
     let is_used: Vec<bool> = places(frame.size_px).map(|at| !unlike.has(at)).collect();
@@ -93,13 +101,13 @@ fn over_plate(level: &Level, coverage: &Coverage) -> Option<Spread> {
     is_met.then_some(spread)
 }
 
-/// What one direction says.
+/// The measurement in one direction.
 struct Told {
     /// Logarithm of the photograph's energy over the plate's.
     excess: f64,
-    /// How fast that of the plate falls with each of (xx, xy, yy).
+    /// Derivative of the plate's energy by each of (xx, xy, yy).
     falls: Vector3<f64>,
-    /// Squared.
+    /// Squared correlation.
     correlation: f64,
 }
 
@@ -111,13 +119,13 @@ fn told(frame: &Grey, plate: &Grey, is_used: &[bool]) -> [Told; DIRECTIONS.len()
         let used = is_used.iter().enumerate().filter(|(_, is_used)| **is_used);
         for (index, _) in used {
             let at = |grey: &Grey| f64::from(grey.values[index]);
-            // Differences are over two pixels.
+            // Differences over two pixels.
             let (f, b, x, y) = (at(&frame), at(&plate), 0.5 * at(&across), 0.5 * at(&down));
             let terms = [f * f, b * b, f * b, x * x, x * y, y * y];
             sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
         }
         let [ff, bb, fb, xx, xy, yy] = sums;
-        // A picture without any texture has no energy: it says nothing.
+        // A picture without any texture has no energy and no information.
         let (frame_energy, plate_energy) = (ff.max(f64::MIN_POSITIVE), bb.max(f64::MIN_POSITIVE));
         Told {
             excess: (frame_energy / plate_energy).ln(),
@@ -127,7 +135,8 @@ fn told(frame: &Grey, plate: &Grey, is_used: &[bool]) -> [Told; DIRECTIONS.len()
     })
 }
 
-/// Change of (xx, xy, yy) that brings the plate's energies to the photograph's; none where no direction says anything.
+/// Change of (xx, xy, yy) that makes the plate's energies equal to the photograph's; `None` if no
+/// direction has information.
 fn step(told: &[Told], spread: Spread) -> Option<Vector3<f64>> {
     let is_heard = |one: &&Told| one.correlation >= LEAST_CORRELATION;
     told.iter().find(is_heard)?;
@@ -149,7 +158,7 @@ fn step(told: &[Told], spread: Spread) -> Option<Vector3<f64>> {
     step.iter().all(|value| value.is_finite()).then_some(step)
 }
 
-/// A covariance that can be: none below nothing, and a round one where it nearly is.
+/// A valid covariance: positive semidefinite, and isotropic if it is nearly so.
 fn steadied(spread: Spread) -> Spread {
     let [wide, narrow] = spread
         .variances_px2()
@@ -166,7 +175,8 @@ fn steadied(spread: Spread) -> Spread {
     }
 }
 
-/// Square roots of light around the toy, of the photograph at the plate's exposure and of the plate; and marks where they show something else.
+/// Square roots of light around the toy, of the photograph at the plate's exposure and of the
+/// plate; and marks on excluded pixels.
 fn textures(level: &Level, coverage: &Coverage) -> Option<(Grey, Grey, Mask)> {
     let plate = level.plate.as_ref()?;
     let (origin_px, size_px) = window(coverage, level.frame.size_px)?;
@@ -217,7 +227,8 @@ fn is_at_border(at: IVec2, size_px: IVec2) -> bool {
     at.min_element() < TOY_GROWN_PX || (size_px - 1 - at).min_element() < TOY_GROWN_PX
 }
 
-/// Corner and size of what is looked at: around the toy, within the picture; none where the toy is not seen.
+/// Corner and size of the region around the toy, within the picture; `None` if the toy is not
+/// visible.
 fn window(coverage: &Coverage, picture_px: IVec2) -> Option<(IVec2, IVec2)> {
     if coverage.size_px.min_element() <= 0 {
         return None;
@@ -231,7 +242,7 @@ fn window(coverage: &Coverage, picture_px: IVec2) -> Option<(IVec2, IVec2)> {
     (size_px.min_element() > 0).then_some((low, size_px))
 }
 
-/// A picture of one number a pixel.
+/// A picture with one number per pixel.
 #[derive(Clone)]
 struct Grey {
     size_px: IVec2,
@@ -239,7 +250,7 @@ struct Grey {
 }
 
 impl Grey {
-    /// The nearest pixel's.
+    /// The nearest pixel's value.
     fn at(&self, at: IVec2) -> f32 {
         let inside = at.clamp(IVec2::ZERO, self.size_px - 1);
         index_in(self.size_px, inside).map_or(0.0, |index| self.values[index])
@@ -261,14 +272,15 @@ impl Grey {
         self.taking(&[(direction, 1.0), (-direction, -1.0)])
     }
 
-    /// Along one axis, then along the other.
+    /// Blurs along one axis, then along the other.
     fn spread(&self, spread: Spread) -> Self {
         let [first, second] = spread.axes_px().map(taps_along);
         self.taking(&first).taking(&second)
     }
 }
 
-/// Taps of a Gaussian along an axis as long as its deviation, a pixel apart and bilinear between pixels.
+/// Taps of a Gaussian along an axis as long as its deviation, one pixel apart and bilinear between
+/// pixels.
 fn taps_along(axis_px: DVec2) -> Vec<(IVec2, f32)> {
     const LEAST_PX: f64 = 0.01;
     let deviation_px = axis_px.length();

@@ -1,8 +1,11 @@
-//! Search for an upright toy of which only the model and the photograph are known.
+//! Searches an upright toy of which only the model and the photograph are known.
 //!
-//! For each direction from which it may be seen, its silhouette is laid over a tiny picture (`pose::guesses`). The best guesses are
-//! followed to the outline as given poses are, and what meets the outline is compared with the model's own colours: a toy that looks
-//! alike from two sides is told apart by its paint, or reported as ambiguous.
+//! For each viewing direction, its silhouette is laid over a tiny picture (`pose::guesses`). The
+//! best guesses are refined to the outline like given poses, and the matching ones are compared
+//! with the model's own colours: two similar sides of a toy are distinguished by their paint, or
+//! reported as ambiguous.
+
+use std::sync::Arc;
 
 use glam::{DMat4, DVec3, IVec2};
 
@@ -20,71 +23,75 @@ use app_scene::scene::{Camera, Plate, PoseUncertainty, Receiver, Scene};
 
 pub use crate::pose::ViewDirection;
 
-/// Guesses that are followed to the outline, at most.
+/// Largest number of guesses that are followed to the outline.
 const N_FOLLOWED: usize = 24;
-/// Poses that are refined to the end, at most.
+/// Largest number of poses that are fully refined.
 const N_REFINED: usize = 6;
-/// A pose whose outline is farther from the picture's, in pixels, is not refined.
+/// Largest distance of a pose's outline for refinement, in pixels.
 const MOST_REFINED_PX: f64 = 2.0;
-/// Guesses that must lead to a pose: a wrong pose is a chance that one of them meets.
+/// Number of guesses that must lead to a pose: a single one may match by chance.
 const LEAST_SUPPORT: usize = 2;
-/// One guess is enough beside a plate if it comes nearer to the outline than chance does, in pixels: wrong poses stayed above one beside a
-/// plate, and came to .46 without one.
+/// Distance of the outline, in pixels, below which one guess is enough beside a plate: wrong poses
+/// stayed above one beside a plate, and came to .46 without one.
 const ALONE_PX: f64 = 0.3;
-/// Poses are one if the toy's middle is nearer, over its radius, and they are turned by less, in radians.
+/// Poses are equal if the toy's centre differs by less, over its radius, and they are turned by
+/// less, in radians.
 const SAME_PLACE: f64 = 0.03;
 const SAME_TURN_RAD: f64 = 0.1;
 /// Side of the cells that points of a silhouette are merged in, over the toy's radius.
 const CELL: f64 = 0.02;
-/// Another pose is a rival if its outline is no farther than that many times the best one's, and as many pixels more.
+/// Another pose is a rival if its outline's distance is at most this multiple of the best one's,
+/// plus this many pixels.
 const RIVAL: f64 = 1.5;
 const RIVAL_PX: f64 = 0.1;
-/// A rival whose colours differ by no more than that many times what the best one's differ by cannot be told from it.
+/// A rival whose colour difference is at most this multiple of the best one's is ambiguous with it.
 const ALIKE: f64 = 1.1;
-/// Colours that differ by more, in natural logarithms, differ by that.
+/// Largest difference of colours, in natural logarithms.
 const MOST_DIFFERENT: f64 = 1.0;
-/// Linear light below which noise alone tells values apart.
+/// Linear light below which differences are noise.
 const DARK: f64 = 0.004;
-/// Pixels of the level in which colours are compared, at least.
+/// Least number of pixels of the level in which colours are compared.
 const COMPARED_PIXELS: i32 = 60_000;
-/// Pixels of the level in which plates from the hand are registered, at most.
+/// Largest number of pixels of the level in which hand-held plates are registered.
 const REGISTERED_PIXELS: i32 = 120_000;
-/// Pixels of the tiny level, at most.
-const TINY_PIXELS: i32 = 7000;
-/// How far the camera of a plate that was taken from the hand may be from that of the photograph.
+/// Largest distance of a hand-held plate's camera from the photograph's.
 const HAND_M: f64 = 0.1;
 const HAND_RAD: f64 = 0.11;
 
-/// A pose of the toy that meets the photograph's outline.
+/// A pose of the toy that fits the photograph's outline.
 #[derive(Clone, Debug)]
 pub struct FoundToy {
     /// From object space to world.
     pub world_from_object: DMat4,
     /// Root mean square distance of the outline, in pixels.
     pub outline_px: f64,
-    /// Mean difference of the toy's colours from those of the lit model, in natural logarithms: 1 at most.
+    /// Mean difference of the toy's colours from those of the lit model, in natural logarithms: 1
+    /// at most.
     pub color_difference: f64,
-    /// One deviation of the pose.
+    /// Standard deviation of the pose.
     pub deviation: PoseDeviation,
-    /// Planes that it may stand on, +Y up, the level one first; a second one if its three lowest feet lean from that.
+    /// Planes that it may stand on, +Y up, the level one first; a second one if its three lowest
+    /// feet are inclined against that.
     pub world_from_tables: Vec<DMat4>,
 }
 
 /// Result of a search for a toy.
 #[derive(Clone, Debug, Default)]
 pub struct ToySearch {
-    /// Poses that meet the outline and cannot be told apart, the likeliest first: one if the search succeeded.
+    /// Ambiguous poses that fit the outline, the likeliest first: one if the search succeeded.
     pub found: Vec<FoundToy>,
-    /// Distance of the nearest outline that was reached, in pixels; none if too little of any was seen. It is robust: an outline that is far off
-    /// comes to about two.
+    /// Distance of the nearest outline that was reached, in pixels; `None` if too little of any was
+    /// visible. It is robust: a distant outline comes to about two.
     pub nearest_px: Option<f64>,
-    /// The cameras of the plates: others than given if their pictures say so.
+    /// The cameras of the plates: corrected if their pictures require it.
     pub plate_cameras: Vec<Camera>,
 }
 
-/// Finds an upright toy. `input.world_from_object` has it upright in its size, wherever, and world's +Y is up for it; the camera stays.
+/// Searches an upright toy. `input.world_from_object` has it upright in its size at any place, with
+/// +Y up in the world; the camera stays.
 ///
-/// Plates may be taken from the hand: up to 10 cm and 6 degrees from the photograph. The first receiver is where the table is about.
+/// Plates may be hand-held: up to 10 cm and 6 degrees from the photograph. The first receiver is an
+/// approximate table.
 ///
 /// # Errors
 /// As [`Aligner::align`](crate::Aligner::align).
@@ -97,19 +104,21 @@ pub fn find_toy(
     let mut scene = Scene::clone(scene);
     scene.uncertainty.are_receivers_guessed = true;
     register_plates(&mut scene, input);
-    let search = Search::new(&scene, input)?;
+    let search = Search::new(Arc::new(scene.clone()), input.clone())?;
     let followed = search.followed(directions)?;
     let nearest_px = followed.first().map(|pose| pose.outline_px);
     let mut found = told_apart(search.refined(&followed)?);
     if let [one] = &mut found[..] {
-        // The plates were registered by a guess of the table's plane, which the toy now says.
+        // The plates were registered by a guess of the table's plane, which is now known from the
+        // toy.
         scene.receivers.truncate(1);
         for (receiver, world_from_table) in scene.receivers.iter_mut().zip(&one.world_from_tables) {
             receiver.world_from_plane = *world_from_table;
         }
         let before = scene.plates.clone();
         if register_plates(&mut scene, input) {
-            match Search::new(&scene, input)?.refine(&one.world_from_object)? {
+            let search = Search::new(Arc::new(scene.clone()), input.clone())?;
+            match search.refine(&one.world_from_object)? {
                 Some(refined) => *one = refined,
                 None => scene.plates = before,
             }
@@ -122,7 +131,8 @@ pub fn find_toy(
     })
 }
 
-/// Corrects the cameras of the plates, each against the photograph. Whether any is another then.
+/// Corrects the cameras of the plates, each relative to the photograph. Returns whether any
+/// changed.
 fn register_plates(scene: &mut Scene, input: &FrameInput) -> bool {
     let mut is_any_moved = false;
     for plate in &mut scene.plates {
@@ -133,7 +143,8 @@ fn register_plates(scene: &mut Scene, input: &FrameInput) -> bool {
     is_any_moved
 }
 
-/// The camera of a plate against the photograph: the best that is found near the given one, farther away, and by corners that both show.
+/// The camera of a plate relative to the photograph: the best estimate from the given one, from a
+/// wider search, and from common corners.
 fn registered(plate: &Plate, input: &FrameInput, receivers: &[Receiver]) -> Camera {
     let from_hand = PoseUncertainty {
         position_m: Some(HAND_M),
@@ -157,8 +168,8 @@ fn registered(plate: &Plate, input: &FrameInput, receivers: &[Receiver]) -> Came
     best.map_or(plate.camera, |(_, camera)| camera)
 }
 
-/// Moves the camera of a plate, which shows the table alone, until it meets the photograph; returns what is left. Twice, since the table is
-/// seen elsewhere in the plate once its camera is another one.
+/// Moves the camera of a plate, which shows the table alone, until it fits the photograph; returns
+/// the residual. Twice, since the table's place in the plate changes with its camera.
 fn follow(
     plate: &mut Plate,
     input: &FrameInput,
@@ -182,63 +193,76 @@ fn follow(
     loss
 }
 
-/// Photograph and plate as they were taken, small.
+/// Photograph and plate as they were taken, reduced.
 fn level_with(plate: &Plate, input: &FrameInput) -> Level {
     let [frame, plate] = [input.image.rgba(), &plate.image].map(|image| Picture::decode(image));
     let pyramid = Pyramid::new(frame, Some(plate), input.camera.intrinsics);
     pyramid.at_most(REGISTERED_PIXELS)
 }
 
-struct Search<'a> {
-    scene: &'a Scene,
-    input: &'a FrameInput,
+/// A toy in a photograph whose pose is searched for.
+pub(crate) struct Search {
+    scene: Arc<Scene>,
+    input: FrameInput,
     photograph: Photograph,
     /// In world space.
     upright: Shape,
 }
 
-/// A pose that was followed.
-#[derive(Clone, Copy)]
-struct Followed {
-    world_from_object: DMat4,
-    outline_px: f64,
+/// A followed pose.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Followed {
+    pub(crate) world_from_object: DMat4,
+    pub(crate) outline_px: f64,
 }
 
-impl<'a> Search<'a> {
-    fn new(scene: &'a Scene, input: &'a FrameInput) -> Result<Self, AlignError> {
+impl Search {
+    pub(crate) fn new(scene: Arc<Scene>, input: FrameInput) -> Result<Self, AlignError> {
         Ok(Self {
-            photograph: Photograph::new(scene, input, None),
-            upright: Shape::new(scene, &input.world_from_object)?,
+            photograph: Photograph::new(&scene, &input, None),
+            upright: Shape::new(&scene, &input.world_from_object)?,
             scene,
             input,
         })
     }
 
+    /// The toy as it is given, as coarse as guesses need it, and the tiny picture that they are made in.
+    pub(crate) fn tiny(&self) -> (Shape, Level) {
+        (
+            self.upright.merged(CELL * self.upright.radius_m),
+            self.photograph.pyramid().at_most(pose::TINY_PIXELS),
+        )
+    }
+
     /// The best guesses, followed by coarse and fine rounds, the nearest outline first.
     fn followed(&self, directions: &[ViewDirection]) -> Result<Vec<Followed>, AlignError> {
-        let silhouette = self.upright.merged(CELL * self.upright.radius_m);
-        let tiny = self.photograph.pyramid().at_most(TINY_PIXELS);
+        let (silhouette, tiny) = self.tiny();
         let mut followed = Vec::new();
         for guess in pose::guesses(&silhouette, &tiny, directions)
             .iter()
             .take(N_FOLLOWED)
         {
             let start = self.world_from_upright(&guess.camera_from_upright) * self.input.world_from_object;
-            let tried = self.photograph.tried_pose(self.scene, (&start, Start::Given))?;
-            followed.extend(tried.map(|(world_from_object, outline_px)| Followed {
-                world_from_object,
-                outline_px,
-            }));
+            followed.extend(self.follow(&start)?);
         }
         followed.sort_by(|a, b| a.outline_px.total_cmp(&b.outline_px));
         Ok(followed)
+    }
+
+    /// A pose, followed to the outline; none if too little of that is seen.
+    pub(crate) fn follow(&self, start: &DMat4) -> Result<Option<Followed>, AlignError> {
+        let tried = self.photograph.tried_pose(&self.scene, (start, Start::Given))?;
+        Ok(tried.map(|(world_from_object, outline_px)| Followed {
+            world_from_object,
+            outline_px,
+        }))
     }
 
     fn world_from_upright(&self, camera_from_upright: &DMat4) -> DMat4 {
         self.input.camera.world_from_camera * *camera_from_upright
     }
 
-    /// Different poses whose outline is met once they are refined, the nearest first.
+    /// Different refined poses with a matching outline, the nearest first.
     fn refined(&self, followed: &[Followed]) -> Result<Vec<FoundToy>, AlignError> {
         let mut found: Vec<FoundToy> = Vec::new();
         let mut most_px = MOST_REFINED_PX;
@@ -249,7 +273,7 @@ impl<'a> Search<'a> {
             let Some(refined) = self.refine(&pose.world_from_object)? else {
                 continue;
             };
-            // Before they are refined rivals are as near to the outline, too.
+            // Before refinement, rivals are also close to the outline.
             most_px = most_px.min(RIVAL * pose.outline_px + RIVAL_PX);
             let is_known =
                 |known: &FoundToy| self.are_one(&known.world_from_object, &refined.world_from_object);
@@ -284,14 +308,14 @@ impl<'a> Search<'a> {
         supported.map(|(pose, _)| pose).collect()
     }
 
-    /// The pose near one, if its outline is met.
-    fn refine(&self, world_from_object: &DMat4) -> Result<Option<FoundToy>, AlignError> {
+    /// The pose near the given one, if its outline matches.
+    pub(crate) fn refine(&self, world_from_object: &DMat4) -> Result<Option<FoundToy>, AlignError> {
         let given = self.input.clone().with_world_from_object(*world_from_object);
-        let pose = self.photograph.pose(self.scene, &given, None)?;
+        let pose = self.photograph.pose(&self.scene, &given, None)?;
         let Some(report) = pose.report.filter(|report| report.shown_px() <= MOST_OUTLINE_PX) else {
             return Ok(None);
         };
-        // The turn and shift from where it was given upright.
+        // Motion from its given upright place.
         let moved = pose.world_from_object * self.input.world_from_object.inverse();
         let up = moved.transform_vector3(DVec3::Y).normalize_or(DVec3::Y);
         Ok(Some(FoundToy {
@@ -299,11 +323,11 @@ impl<'a> Search<'a> {
             outline_px: report.shown_px(),
             color_difference: self.color_difference(&pose.world_from_object)?,
             deviation: report.deviation,
-            world_from_tables: planes_under(self.scene, &pose.world_from_object, up)?,
+            world_from_tables: planes_under(&self.scene, &pose.world_from_object, up)?,
         }))
     }
 
-    fn are_one(&self, a: &DMat4, b: &DMat4) -> bool {
+    pub(crate) fn are_one(&self, a: &DMat4, b: &DMat4) -> bool {
         let middle = self
             .input
             .world_from_object
@@ -315,11 +339,12 @@ impl<'a> Search<'a> {
         moved_m < SAME_PLACE * self.upright.radius_m && turned_rad < SAME_TURN_RAD
     }
 
-    /// Of the toy in the photograph from its model in the light that explains it best; the most if too little of it is seen.
+    /// Difference between the toy in the photograph and its model in the best light; the largest if
+    /// too little of it is visible.
     fn color_difference(&self, world_from_object: &DMat4) -> Result<f64, AlignError> {
-        let shape = self.photograph.shape(self.scene, world_from_object)?;
+        let shape = self.photograph.shape(&self.scene, world_from_object)?;
         let camera_from_object = self.photograph.camera_from_object(world_from_object);
-        let paint = Paint::new(self.scene, &camera_from_object)?;
+        let paint = Paint::new(&self.scene, &camera_from_object)?;
         let level = self
             .photograph
             .pyramid()
@@ -346,9 +371,9 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Of poses that are sorted by their outlines those that may be right: the best by its colours among those that meet the outline about as
-/// well, and what cannot be told from it.
-fn told_apart(found: Vec<FoundToy>) -> Vec<FoundToy> {
+/// The possible poses among those sorted by their outlines: the best one by its colours among
+/// similar outlines, and those that are ambiguous with it.
+pub(crate) fn told_apart(found: Vec<FoundToy>) -> Vec<FoundToy> {
     let Some(most_px) = found.first().map(|best| RIVAL * best.outline_px + RIVAL_PX) else {
         return found;
     };

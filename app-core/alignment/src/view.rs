@@ -1,7 +1,8 @@
-//! A view: one picture with its camera, and where the toy is in it.
+//! A view: one picture with its camera, and the pose of the toy in it.
 
 use glam::DMat4;
 
+use super::lights::FoundReflection;
 use super::photograph::Photograph;
 use super::report::{CameraAlignment, PoseAlignment};
 use app_scene::camera_frame::CameraImage;
@@ -9,12 +10,13 @@ use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Scene};
 use app_scene::sharpness::Sharpness;
 use app_scene::things::Things;
+use app_scene::toy::ToyError;
 
 /// A view with its photograph.
 pub(super) struct Seen {
     pub(super) view: AlignedView,
     pub(super) photograph: Photograph,
-    /// The frame's, with the camera and the pose that were found.
+    /// The frame's input, with the estimated camera and pose.
     pub(super) input: FrameInput,
 }
 
@@ -33,7 +35,7 @@ pub(super) struct AlignedView {
 }
 
 impl Seen {
-    /// A view that is known.
+    /// A view that was aligned before.
     pub(super) fn again(scene: &Scene, view: AlignedView, input: &FrameInput) -> Self {
         let input = input
             .clone()
@@ -48,7 +50,16 @@ impl Seen {
 }
 
 impl Seen {
-    /// The same view, of which nothing is known where things stand or the plate is wrong.
+    /// The same view, as if the receiver that the toy stands on were matt.
+    pub(super) fn freed_of(&self, scene: &Scene, found: &FoundReflection) -> Result<Self, ToyError> {
+        Ok(Self {
+            view: self.view.clone(),
+            photograph: self.photograph.freed_of(scene, &self.input, found)?,
+            input: self.input.clone(),
+        })
+    }
+
+    /// The same view, with unknown pixels at things and at wrong parts of the plate.
     pub(super) fn clear_of(&self, things: &Things) -> Self {
         Self {
             view: self.view.clone(),
@@ -65,7 +76,7 @@ impl AlignedView {
             && self.given == input.world_from_object
     }
 
-    /// Whether the outline is where the picture has it, within some pixels.
+    /// Whether the outline fits the picture's, within some pixels.
     pub(super) fn is_trusted(&self, most_px: f64) -> bool {
         self.report.is_some_and(|pose| pose.shown_px() <= most_px)
     }

@@ -1,4 +1,4 @@
-//! What could not be aligned, in words.
+//! Failures of the alignment, in words.
 
 use std::fmt;
 
@@ -6,52 +6,55 @@ use serde::{Serialize, Serializer};
 
 use crate::no_light::NoLight;
 
-/// A part of the frame that stays as it is given, for a reason.
+/// A part of the frame that stays as given, for a reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum AlignmentWarning {
-    /// The toy's outline is not where the picture has it, and no pose was found that brings it there.
+    /// The toy's outline does not fit the picture's, and no pose was found for which it does.
     Misaligned {
-        /// Root mean square distance between the two, in pixels; no part of it counts as more than two.
+        /// Root mean square distance between the two, in pixels; each part of it counts at most
+        /// two.
         outline_px: f64,
     },
     /// The toy is not on the receiver that it was given on.
     OffReceiver {
-        /// Of the foot that is farthest from it, in metres: above it, or, below 0, beneath it.
+        /// Height of the foot farthest from it, in metres; negative if it is below.
         height_m: f64,
-        /// Between the receiver and the plane of the toy's feet, in radians.
+        /// Angle between the receiver and the plane of the toy's feet, in radians.
         lean_rad: f64,
     },
-    /// The outline of the toy's model is not that of the toy.
+    /// The outline of the toy's model differs from the toy's.
     ModelDiffers {
-        /// Root mean square of what it is off by along some centimetres, in pixels.
+        /// Root mean square difference along some centimetres, in pixels.
         model_px: f64,
-        /// Root mean square of what the model was displaced by, in metres, to have the toy's; none where it is shown as it is given.
+        /// Root mean square displacement of the adapted model, in metres; `None` if it is not
+        /// adapted.
         displaced_m: Option<f64>,
     },
     /// No light was found by the toy's shadow.
     LightNotFound {
-        /// Why.
+        /// The reason.
         reason: NoLight,
     },
     /// No light was found by the toy's shadow, and a wide one is assumed.
     LightAssumed {
-        /// The part that it explains of what light from all around leaves of the picture, from 0 to 1.
+        /// The fraction of ambient light's residual that it explains, from 0 to 1.
         explained: f64,
     },
-    /// The toy's shadow is not where the listed lights cast it, nor where any cast it that were found: none stand in for the list.
+    /// The toy's shadow differs from that of the listed lights, and from that of any others: the
+    /// list stays.
     ListUnexplained {
-        /// The part of the shadow that they leave unexplained, from 0 to 1.
+        /// The fraction of the shadow that they leave unexplained, from 0 to 1.
         unexplained: f64,
     },
-    /// The shadows are no longer where the lights cast them, and no lights were found that do.
+    /// The shadows have changed, and no lights were found that explain them.
     LightsChanged {
-        /// The part of the shadows that no light explains, from 0 to 1.
+        /// The fraction of the shadows that no light explains, from 0 to 1.
         unexplained: f64,
     },
-    /// The focal length was asked for, and toy and shadows do not determine it.
+    /// The focal length was requested, and toy and shadows do not determine it.
     FocalLengthNotTold,
-    /// The scale of the world was asked for, and toy and shadows do not determine it.
+    /// The scale of the world was requested, and toy and shadows do not determine it.
     WorldScaleNotTold,
 }
 
@@ -61,12 +64,12 @@ impl fmt::Display for AlignmentWarning {
             Self::LightNotFound { reason } => write!(f, "no light is found by the toy's shadow: {reason}"),
             Self::LightAssumed { explained } => write!(
                 f,
-                "no light is found by the toy's shadow: a wide one is assumed, which explains {:.0} % of what light from all around leaves; list the lights, or photograph a lens",
+                "no light is found by the toy's shadow: a wide one is assumed, which explains {:.0} % of the error with ambient light alone; list the lights, or photograph a lens",
                 100.0 * explained
             ),
             Self::ListUnexplained { unexplained } => write!(
                 f,
-                "{:.0} % of the toy's shadow is not where the listed lights cast it, and none are found that do: check the list, and whether something that is no listed receiver lies under the shadow",
+                "{:.0} % of the toy's shadow is not where the listed lights cast it, and no lights are found that do: check the list, and whether the shadow falls on an object that is not listed as a receiver",
                 100.0 * unexplained
             ),
             Self::LightsChanged { unexplained } => write!(
@@ -76,7 +79,7 @@ impl fmt::Display for AlignmentWarning {
             ),
             Self::Misaligned { outline_px } => write!(
                 f,
-                "the toy's outline is {outline_px:.1} pixels or more from that in the picture, and no pose is found that fits: check world_from_object, and that physical_pose is the toy's"
+                "the toy's outline is {outline_px:.1} pixels or more from the picture's, and no pose is found that fits: check world_from_object, and that physical_pose is the toy's"
             ),
             Self::OffReceiver { height_m, lean_rad } => {
                 let side = if *height_m < 0.0 { "beneath" } else { "above" };
@@ -95,17 +98,17 @@ impl fmt::Display for AlignmentWarning {
                 match displaced_m {
                     Some(displaced_m) => write!(
                         f,
-                        "the model was adapted to it by {:.1} mm, where the outline tells it",
+                        "the model was adapted to it by {:.1} mm, along its outline",
                         1e3 * displaced_m
                     ),
                     None => f.write_str("the model is not quite this toy, and its rim will show it"),
                 }
             }
             Self::FocalLengthNotTold => f.write_str(
-                "the focal length was asked for, but toy and shadow do not tell it: that given is taken",
+                "the focal length was requested, but toy and shadow do not constrain it: the given one is used",
             ),
             Self::WorldScaleNotTold => f.write_str(
-                "the scale of the world was asked for, but toy and shadow do not tell it: that given is taken",
+                "the scale of the world was requested, but toy and shadow do not constrain it: the given one is used",
             ),
         }
     }

@@ -1,8 +1,9 @@
-//! Disjoint sets of indices: what hangs together when pairs are joined one after the other.
+//! Disjoint sets of indices: connected components of successively joined pairs.
 
 /// A union-find forest. Source: Galler and Fischer 1964, with path halving (Tarjan and van Leeuwen 1984).
 pub struct DisjointSets {
-    /// Another index of the same set, closer to its first one; that one is its own parent.
+    /// For each index, another index of its set that is closer to the set's first one, which is its
+    /// own parent.
     parents: Vec<usize>,
 }
 
@@ -24,7 +25,7 @@ impl DisjointSets {
         at
     }
 
-    /// Makes one set of those that two indices are in.
+    /// Joins the sets of two indices.
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.first(a), self.first(b));
         self.parents[a.max(b)] = a.min(b);

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use crate::camera_frame::CameraImage;
+use crate::gloss::Gloss;
 use crate::grain::Grain;
+use crate::reflection::Reflection;
 use crate::scene::check;
 use crate::scene::{Camera, InputError, Light, LightEstimate, Pose, Scene};
 use crate::shadow_style::ShadowStyle;
@@ -14,7 +16,8 @@ use crate::things::Things;
 
 /// A camera frame of the real, static toy, and the pose to show.
 ///
-/// Whatever changes from frame to frame, no pipeline is recompiled; see the architecture for what is learned anew.
+/// No change from frame to frame recompiles a pipeline; the architecture document lists the changes
+/// that lead to new learning.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct FrameInput {
@@ -22,38 +25,48 @@ pub struct FrameInput {
     pub image: CameraImage,
     /// The camera that took it.
     pub camera: Camera,
-    /// Exposure of the picture, relative to that of the scene's other frames: duration times sensitivity. 1 where it
-    /// is unknown; the fit then takes it from the pixels.
+    /// Exposure of the picture, relative to the scene's other frames: duration times sensitivity. 1
+    /// if unknown; the fit then estimates it from the pixels.
     pub exposure: f64,
     /// Transform of the real toy, from the model's scene space to world: a rotation, a translation and one positive
     /// scale.
     pub world_from_object: DMat4,
-    /// The lights, where they differ from those of the scene.
+    /// The lights, if they differ from the scene's.
     pub lights: Option<Arc<[Light]>>,
-    /// What the platform estimates of the light, where it does. Alignment alone looks at it, and only where no light is listed.
+    /// The platform's estimate of the light, if there is one. Only alignment uses it, and only if
+    /// no light is listed.
     pub light_estimate: Option<LightEstimate>,
-    /// Things that stand in the picture beside the toy, where any are known.
+    /// Other things in the picture, if any are known.
     pub things: Option<Things>,
-    /// How soft the picture is, where that was measured: what is laid into it is made as soft. Alignment measures it.
+    /// Measured softness of the picture, which is applied to everything that is composed into it.
+    /// Alignment measures it.
     pub sharpness: Sharpness,
-    /// The pose the toy is to be shown in.
+    /// How glossy the real toy is, where that was measured: its highlights are then moved as reflections, and else as paint. It is the
+    /// toy's, not the picture's: with another one all is learned anew. Alignment measures it; presets of the model alone go by it.
+    pub gloss: Gloss,
+    /// How the receiver that the toy stands on reflects; none where it is matt, as far as is known. Alignment measures it. Presets of
+    /// the model alone go by it, and only beside fewer lights than shadows are moved of.
+    pub reflection: Option<Reflection>,
+    /// The pose to show.
     pub shown_pose: Pose,
-    /// Where the toy is to be shown, if that is not where the real one stands: by the rules of `world_from_object`.
+    /// The place to show the toy, if it differs from the real toy's: by the rules of
+    /// `world_from_object`.
     pub world_from_shown: Option<DMat4>,
-    /// Part of the effect that is shown, from 0, the camera's picture, to 1: an app fades it while pose or lights are not
-    /// known. At 0 nothing is learned.
+    /// Shown share of the effect, from 0, the camera's picture, to 1: an app fades it while pose or
+    /// lights are unknown. At 0 nothing is learned.
     pub effect: f64,
-    /// The picture's noise, which what is made in it is given; none where it is clean. It is looked at with a new picture or pose;
-    /// presets of the model alone go by it.
+    /// The picture's noise, which is added to synthesised pixels; `None` if the picture is clean.
+    /// It is read with a new picture or pose, and only by presets of the model.
     pub grain: Option<Grain>,
-    /// Strength and softness of the shown shadow, to taste. Presets of the model alone go by it. Of a strength other than 1 the first
-    /// frame compiles a shader; a softness above that of the frames before may make the work region larger, and the place is then
-    /// learned anew.
+    /// Artistic strength and softness of the shown shadow, for presets of the model. The first
+    /// frame with a strength other than 1 compiles a shader; a softness above all earlier ones may
+    /// enlarge the work region, which is then learned anew.
     pub shadow_style: ShadowStyle,
 }
 
 impl FrameInput {
-    /// A frame of unknown exposure in the light of the scene, which shows the toy as its file has it, with the whole effect.
+    /// A frame of unknown exposure in the scene's light, which shows the authored pose with the
+    /// whole effect.
     #[must_use]
     pub fn new(image: impl Into<CameraImage>, camera: Camera, world_from_object: DMat4) -> Self {
         Self {
@@ -65,6 +78,8 @@ impl FrameInput {
             light_estimate: None,
             things: None,
             sharpness: Sharpness::SHARP,
+            gloss: Gloss::NONE,
+            reflection: None,
             shown_pose: Pose::default(),
             world_from_shown: None,
             effect: 1.0,
@@ -80,7 +95,7 @@ impl FrameInput {
         self
     }
 
-    /// Sets the camera that took the picture.
+    /// Sets the camera of the picture.
     #[must_use]
     pub fn with_camera(mut self, camera: Camera) -> Self {
         self.camera = camera;
@@ -101,7 +116,7 @@ impl FrameInput {
         self
     }
 
-    /// Sets the lights; with none those of the scene are taken.
+    /// Sets the lights; `None` for the scene's.
     #[must_use]
     pub fn with_lights(mut self, lights: Option<Arc<[Light]>>) -> Self {
         self.lights = lights;
@@ -115,42 +130,56 @@ impl FrameInput {
         self
     }
 
-    /// Sets the things that stand in the picture beside the toy.
+    /// Sets the things in the picture beside the toy.
     #[must_use]
     pub fn with_things(mut self, things: Option<Things>) -> Self {
         self.things = things;
         self
     }
 
-    /// Sets how soft the picture is.
+    /// Sets the softness of the picture.
     #[must_use]
     pub fn with_sharpness(mut self, sharpness: Sharpness) -> Self {
         self.sharpness = sharpness;
         self
     }
 
-    /// Sets the pose that the toy is shown in.
+    /// Sets how glossy the toy is.
+    #[must_use]
+    pub fn with_gloss(mut self, gloss: Gloss) -> Self {
+        self.gloss = gloss;
+        self
+    }
+
+    /// Sets how the receiver that the toy stands on reflects.
+    #[must_use]
+    pub fn with_reflection(mut self, reflection: Option<Reflection>) -> Self {
+        self.reflection = reflection;
+        self
+    }
+
+    /// Sets the pose to show.
     #[must_use]
     pub fn with_shown_pose(mut self, pose: Pose) -> Self {
         self.shown_pose = pose;
         self
     }
 
-    /// Sets where the toy is shown; with none that is where the real one stands.
+    /// Sets the place to show the toy; `None` for the real toy's place.
     #[must_use]
     pub fn with_world_from_shown(mut self, world_from_shown: Option<DMat4>) -> Self {
         self.world_from_shown = world_from_shown;
         self
     }
 
-    /// Sets the part of the effect that is shown, from 0 to 1.
+    /// Sets the shown share of the effect, from 0 to 1.
     #[must_use]
     pub fn with_effect(mut self, effect: f64) -> Self {
         self.effect = effect;
         self
     }
 
-    /// Sets the noise that made pixels are given.
+    /// Sets the noise of synthesised pixels.
     #[must_use]
     pub fn with_grain(mut self, grain: Option<Grain>) -> Self {
         self.grain = grain;
@@ -164,7 +193,7 @@ impl FrameInput {
         self
     }
 
-    /// The lights that are listed for it: its own, or those of the scene.
+    /// The lights of the frame: its own, or the scene's.
     #[must_use]
     pub fn lights_in(&self, scene: &Scene) -> Arc<[Light]> {
         let own = self.lights.clone();
@@ -187,6 +216,9 @@ impl FrameInput {
             light.check(&format!("lights[{index}]"))?;
         }
         self.sharpness.check("sharpness")?;
+        self.gloss.check("gloss")?;
+        self.reflection
+            .map_or(Ok(()), |reflection| reflection.check("reflection"))?;
         self.shadow_style.check("shadow_style")?;
         if let Some(things) = &self.things {
             let [width_px, height_px] = things.size_px().to_array();

@@ -3,47 +3,49 @@
 use crate::geometry::color::{linear_of_codes, linear_per_srgb};
 use crate::scene::{Camera, Image, InputError, Scene, check};
 
-/// Side of a block of pixels in which noise is told from texture.
+/// Side of a block of pixels in which noise is separated from texture.
 const BLOCK_PX: u32 = 8;
-/// Blocks that are looked at, at most: more tell nothing new.
+/// Largest number of blocks: more add no information.
 const MAX_BLOCKS: u32 = 6000;
 /// Pixels of a block.
 const N_PX: usize = (BLOCK_PX * BLOCK_PX) as usize;
 const N: f64 = N_PX as f64;
 /// Codes that are neither clipped nor mostly rounding.
 const USABLE_CODES: std::ops::RangeInclusive<u8> = 10..=250;
-/// Classes of brightness, even in the square root of light.
+/// Classes of brightness, uniform in the square root of light.
 const N_CLASSES: usize = 16;
-/// Blocks that a class needs.
+/// Number of blocks that a class needs.
 const MIN_BLOCKS: usize = 24;
-/// Deviation in codes below which a picture is clean, and nothing is made. Chosen on path-traced pictures without a sensor, which came out as noisy at 2.5.
+/// Standard deviation in codes below which a picture counts as clean, and no grain is made. Chosen
+/// on path-traced pictures without a sensor, which measured up to 2.5.
 const MIN_CODES: f64 = 4.0;
-/// Most correlation that neighbours are given.
+/// Largest correlation of neighbours that can be made.
 const MAX_CORRELATION: f64 = 0.625;
 
 /// Variance of a channel of linear light: `floor + per_light * light`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Noise {
-    /// In the dark.
+    /// Variance in the dark.
     pub floor: f32,
-    /// For each unit of light.
+    /// Variance per unit of light.
     pub per_light: f32,
 }
 
-/// The noise of a camera's picture, which what is made in it is to have, and that of its plate, which made pixels have already.
+/// The noise of a camera's picture, which synthesised pixels should have, and that of its plate,
+/// which they have already.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grain {
-    /// Of the camera's picture.
+    /// Noise of the camera's picture.
     pub frame: Noise,
-    /// Of the plate that was taken from the same place.
+    /// Noise of the plate from the same camera pose.
     pub plate: Noise,
-    /// Correlation of pixels side by side, from 0 to 0.625.
+    /// Correlation of adjacent pixels, from 0 to 0.625.
     pub beside: f32,
     /// Correlation of a pixel's channels, from 0 to 1.
     pub channels: f32,
 }
 
-/// What a block tells of one channel, in linear light.
+/// Statistics of a block's channel, in linear light.
 #[derive(Clone, Copy, Default)]
 struct Told {
     light: f64,
@@ -53,7 +55,8 @@ struct Told {
     beside: f64,
 }
 
-/// Deviations of the pixels of a block from its mean, of the frame, and of the plate at the frame's brightness.
+/// Deviations of the pixels of a block from its mean, of the frame, and of the plate at the frame's
+/// brightness.
 struct Channel {
     frame: [f64; N_PX],
     plate: [f64; N_PX],
@@ -62,16 +65,16 @@ struct Channel {
 }
 
 impl Grain {
-    /// That of a frame, against the first plate that the very same camera took; none where there is no such plate, or where
-    /// [`Grain::measured`] finds none.
+    /// The grain of a frame, against the first plate with the same camera; `None` if there is no
+    /// such plate, or if [`Grain::measured`] finds none.
     #[must_use]
     pub fn of(scene: &Scene, image: &Image, camera: &Camera) -> Option<Self> {
         let plate = scene.plates.iter().find(|plate| plate.camera == *camera)?;
         Self::measured(image, &plate.image)
     }
 
-    /// Measures a picture against a plate of the same view and size: what both show is no noise. None where the picture is
-    /// clean, or where hardly anything can be compared.
+    /// Measures a picture against a plate of the same view and size: common structure is no noise.
+    /// `None` if the picture is clean, or if hardly any pixels can be compared.
     #[must_use]
     pub fn measured(frame: &Image, plate: &Image) -> Option<Self> {
         let size_px = [frame.width_px, frame.height_px];
@@ -79,7 +82,7 @@ impl Grain {
             return None;
         }
         let (told, common) = told(frame, plate);
-        // Of most blocks: shadows, things and edges that the plate lacks are no noise.
+        // The median over blocks: shadows, things and edges that the plate lacks are no noise.
         let typical_codes2 = median(
             told.iter()
                 .map(|block| block.frame / light_per_code(block.light).powi(2)),
@@ -104,7 +107,7 @@ impl Grain {
         grain.is_seen(light).then_some(grain)
     }
 
-    /// Whether the picture is not clean at this light.
+    /// Whether the picture is noisy at this light.
     fn is_seen(&self, light: f64) -> bool {
         self.frame.variance(light) > (MIN_CODES * light_per_code(light)).powi(2)
     }
@@ -112,7 +115,7 @@ impl Grain {
     /// Checks the values.
     ///
     /// # Errors
-    /// When a variance is not from 0 to 1, or a correlation cannot be made.
+    /// When a variance is not from 0 to 1, or a correlation is out of range.
     pub fn check(&self) -> Result<(), InputError> {
         let noises = [("frame", self.frame), ("plate", self.plate)];
         for (picture, noise) in noises {
@@ -133,7 +136,7 @@ impl Grain {
     }
 }
 
-/// Light that a code more is, at a light.
+/// Light per code, at a light.
 fn light_per_code(light: f64) -> f64 {
     #[allow(clippy::cast_possible_truncation, reason = "of a light of one picture")]
     let per_code = f64::from(linear_per_srgb(light as f32)) / 255.0;
@@ -141,14 +144,15 @@ fn light_per_code(light: f64) -> f64 {
 }
 
 impl Noise {
-    /// Of a channel at a light.
+    /// Variance of a channel at a light.
     #[must_use]
     pub fn variance(&self, light: f64) -> f64 {
         f64::from(self.floor) + f64::from(self.per_light) * light
     }
 }
 
-/// What blocks all over the picture tell, channel by channel, and the correlation between channels.
+/// Statistics of blocks all over the picture, channel by channel, and the correlation between
+/// channels.
 fn told(frame: &Image, plate: &Image) -> (Vec<Told>, f64) {
     let light_of = linear_of_codes();
     let [columns, rows] = [frame.width_px, frame.height_px].map(|side| side / BLOCK_PX);
@@ -172,7 +176,7 @@ fn told(frame: &Image, plate: &Image) -> (Vec<Told>, f64) {
 }
 
 impl Channel {
-    /// None where a pixel of either picture cannot be used.
+    /// `None` if a pixel of either picture is unusable.
     fn new(pictures: [&Image; 2], corner: [u32; 2], channel: usize, light_of: &[f32; 256]) -> Option<Self> {
         let [mut frame, mut plate] = [[0.0; N_PX]; 2];
         let width = pictures[0].width_px;
@@ -200,7 +204,8 @@ impl Channel {
         })
     }
 
-    /// Of the frame's noise in two channels: what the plate shows as well is texture.
+    /// Covariance of the frame's noise in two channels: structure of the plate is texture and
+    /// removed.
     fn covariance(&self, other: &Self) -> f64 {
         let pixels = 0..N_PX;
         let sum = pixels
@@ -227,7 +232,7 @@ impl Channel {
         }
     }
 
-    /// Covariance of the noise of pixels side by side.
+    /// Covariance of the noise of adjacent pixels.
     fn beside(&self) -> f64 {
         let (mut sum, mut n) = (0.0, 0.0);
         let side = BLOCK_PX as usize;
@@ -240,12 +245,13 @@ impl Channel {
                 n += 1.0;
             }
         }
-        // The mean that was taken out of the block has a part of each pixel's noise.
+        // The subtracted mean of the block contains a share of each pixel's noise.
         sum / n + self.covariance(self) / N
     }
 }
 
-/// Medians of the classes of brightness that enough blocks are of: things that only one picture shows are outvoted.
+/// Medians of the classes of brightness that have enough blocks: things in only one picture are
+/// outvoted.
 fn classes(told: Vec<Told>) -> Vec<Told> {
     let mut classes = vec![Vec::new(); N_CLASSES];
     for told in told {
@@ -272,14 +278,14 @@ fn classes(told: Vec<Told>) -> Vec<Told> {
     .collect()
 }
 
-/// 0 where there is none.
+/// 0 for an empty list.
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_unstable_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// The line through (light, variance) of least relative error, neither of whose numbers is negative.
+/// The line through (light, variance) of least relative error with two non-negative coefficients.
 fn fitted(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<Noise> {
     let largest = points.clone().map(|(_, variance)| variance).fold(0.0, f64::max);
     let (mut n, mut x, mut y, mut xx, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
@@ -314,7 +320,7 @@ fn fitted(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<Noise> {
     })
 }
 
-/// Between 0 and `most`, 0 for what is no number.
+/// Clamped to 0 to `most`; 0 for NaN.
 #[allow(clippy::cast_possible_truncation, reason = "of the range of a single")]
 fn narrowed(value: f64, most: f64) -> f32 {
     if value.is_finite() {

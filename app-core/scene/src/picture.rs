@@ -1,6 +1,6 @@
-//! Kinds of picture files that are not read, by their first bytes, and the way to one that is.
+//! Unsupported picture formats, recognised by their first bytes, and the way to convert them.
 
-/// The kind of a picture that is not read, and what makes one of it that is; `None` if it is not known.
+/// The format of an unsupported picture, and the way to convert it; `None` for an unknown one.
 #[must_use]
 pub fn kind(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     const DEVELOP: &str = "develop it into PNG or JPEG with the program that reads the camera's raw files";
@@ -18,9 +18,13 @@ pub fn kind(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
         });
     }
     let is_tiff = bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*");
-    let known: [(bool, (&str, &str)); 8] = [
+    let known: [(bool, (&str, &str)); 9] = [
         (is_tiff && is_dng(bytes), ("a raw photograph (DNG)", DEVELOP)),
         (is_tiff, ("TIFF or a raw photograph", SAVE)),
+        (
+            bytes.starts_with(b"FUJIFILM"),
+            ("a raw photograph (RAF)", DEVELOP),
+        ),
         (
             bytes.starts_with(b"\xabKTX 20"),
             (

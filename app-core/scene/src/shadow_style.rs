@@ -1,4 +1,4 @@
-//! The shown shadow to taste: how strong and how soft it is, over what the real one tells.
+//! Artistic control of the shown shadow: its strength and softness relative to the truth.
 
 use std::ops::RangeInclusive;
 
@@ -6,27 +6,28 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::{InputError, check};
 
-/// How strong the shown shadow may be: with 4 a shadow that leaves half of the light leaves a sixteenth.
+/// Range of the strength: with 4, a shadow that leaves half of the light leaves a sixteenth.
 pub const STRENGTH: RangeInclusive<f64> = 0.0..=4.0;
-/// How soft it may be: of a wider light a part would often lie below the table.
+/// Range of the softness: a wider light would often lie partly below the table.
 pub const SOFTNESS: RangeInclusive<f64> = 0.0..=4.0;
 
-/// Strength and softness of the shadow that is shown, 1 being the truth. The real shadow is removed, and the toy is lit, as they are
-/// without it.
+/// Strength and softness of the shown shadow, relative to the truth. The real shadow is removed,
+/// and the toy lit, independently of them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShadowStyle {
-    /// How strong the shadow is on the receivers, in linear light, within [`STRENGTH`]. Up to 1 it is the share of the light that the
-    /// shadow takes of what it truly takes: 0 shows none. Beyond, the part that it leaves is taken to this power: 2 is the true shadow
-    /// laid over itself, which keeps its hue and is never blacker than black. It holds for the shadow of the lights and for that of the
-    /// ambient light.
+    /// Strength of the shadow on the receivers, in linear light, within [`STRENGTH`]. Up to 1 it
+    /// scales the light that the shadow removes: 0 shows no shadow. Beyond 1 it is the exponent of
+    /// the remaining light: 2 is the true shadow laid over itself, which keeps its hue and is never
+    /// blacker than black. It applies to the shadows of lights and of ambient light.
     pub strength: f64,
-    /// Width of the lights, as the shadow shows it, over their own, within [`SOFTNESS`]: penumbrae are as much wider, and 0 is the
-    /// shadow of points. A light that is listed as a point keeps its hard shadow, and the ambient light's stays as it is.
+    /// Width of the lights, as the shadow shows it, over their own, within [`SOFTNESS`]: penumbrae
+    /// scale with it, and 0 is the shadow of points. A point light keeps its hard shadow, and the
+    /// ambient light's shadow does not change.
     pub softness: f64,
 }
 
 impl ShadowStyle {
-    /// The shadow as it truly is.
+    /// The true shadow.
     pub const TRUE: Self = Self {
         strength: 1.0,
         softness: 1.0,

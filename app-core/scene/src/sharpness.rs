@@ -1,34 +1,35 @@
-//! How soft a picture is: by its lens, out of focus, or by a motion while it was taken.
+//! The softness of a picture: by its lens, defocus, or motion during the exposure.
 
 use glam::DVec2;
 
 use crate::scene::{FieldError, InputError};
 
-/// Variance that no picture's spread exceeds, along any direction, in square pixels.
+/// Largest variance of a blur, along any direction, in square pixels.
 const MOST_PX2: f64 = 1e4;
-/// Rounding by which a covariance may miss being one, over its trace.
+/// Rounding tolerance of a covariance, over its trace.
 const ROUNDING: f64 = 1e-9;
 
-/// What a point of light becomes in a picture: a Gaussian, by its covariance in square pixels, x to the right and y down.
+/// The point spread function of a picture: a Gaussian, by its covariance in square pixels, x to the
+/// right and y down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Variance across the picture.
+    /// Variance along the rows.
     pub xx_px2: f64,
     /// Covariance.
     pub xy_px2: f64,
-    /// Variance down the picture.
+    /// Variance along the columns.
     pub yy_px2: f64,
 }
 
 impl Spread {
-    /// A point stays one.
+    /// No blur.
     pub const NONE: Self = Self {
         xx_px2: 0.0,
         xy_px2: 0.0,
         yy_px2: 0.0,
     };
 
-    /// The same in all directions, as a lens out of focus gives it, by its standard deviation in pixels.
+    /// An isotropic blur, as of defocus, by its standard deviation in pixels.
     #[must_use]
     pub fn round(deviation_px: f64) -> Self {
         let variance = deviation_px * deviation_px;
@@ -39,7 +40,7 @@ impl Spread {
         }
     }
 
-    /// That of an even motion by so many pixels while the picture was taken.
+    /// The blur of a uniform motion by `by_px` during the exposure.
     #[must_use]
     pub fn of_motion(by_px: DVec2) -> Self {
         // An interval of length 1 has a variance of a twelfth.
@@ -50,7 +51,7 @@ impl Spread {
         }
     }
 
-    /// One after the other.
+    /// One blur after the other.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -60,7 +61,7 @@ impl Spread {
         }
     }
 
-    /// The same shape with all variances times a factor.
+    /// The same blur with all variances times a factor.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {
         Self {
@@ -70,7 +71,7 @@ impl Spread {
         }
     }
 
-    /// Its variances along its axes, the larger first.
+    /// Its variances along its principal axes, the larger first.
     #[must_use]
     pub fn variances_px2(self) -> [f64; 2] {
         let middle = 0.5 * (self.xx_px2 + self.yy_px2);
@@ -78,24 +79,25 @@ impl Spread {
         [middle + apart, middle - apart]
     }
 
-    /// The standard deviation in the direction in which it is widest, in pixels.
+    /// The largest standard deviation over all directions, in pixels.
     #[must_use]
     pub fn widest_px(self) -> f64 {
         self.variances_px2()[0].max(0.0).sqrt()
     }
 
-    /// The standard deviation of a round spread of as much variance, in pixels.
+    /// The standard deviation of an isotropic blur with the same variance, in pixels.
     #[must_use]
     pub fn mean_px(self) -> f64 {
         (0.5 * (self.xx_px2 + self.yy_px2)).max(0.0).sqrt()
     }
 
-    /// Its two axes, the wider first, each as long as the standard deviation along it; across and down where it is round.
+    /// Its two principal axes, the wider first, each as long as the standard deviation along it;
+    /// the picture's axes for an isotropic blur.
     #[must_use]
     pub fn axes_px(self) -> [DVec2; 2] {
         let [wide, narrow] = self.variances_px2().map(|variance| variance.max(0.0).sqrt());
         let apart = self.xx_px2 - self.yy_px2;
-        // Half the angle of the vector of both differences; that of none is 0.
+        // Half the angle of the vector of both differences; 0 for a zero vector.
         let along = DVec2::from_angle(0.5 * (2.0 * self.xy_px2).atan2(apart));
         [wide * along, narrow * along.perp()]
     }
@@ -107,7 +109,7 @@ impl Spread {
             ("yy_px2", self.yy_px2),
         ];
         let range = |(name, value): (&str, f64), min: f64| {
-            // Written so that what is no number is refused.
+            // Written so that NaN is refused.
             if (min..=MOST_PX2).contains(&value) {
                 return Ok(());
             }
@@ -123,23 +125,23 @@ impl Spread {
         range(values[0], 0.0)?;
         range(values[1], -MOST_PX2)?;
         range(values[2], 0.0)?;
-        // A covariance has no negative variance in any direction.
+        // A covariance is positive semidefinite.
         let [wide, narrow] = self.variances_px2();
         range(("narrowest", narrow + ROUNDING * wide), 0.0)
     }
 }
 
-/// How soft a picture is beside what is laid into it, as it was measured.
+/// Measured softness of a picture, relative to the images that are composed into it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sharpness {
-    /// What makes the plates as soft as the picture; none where they are as soft, or softer.
+    /// The blur that makes the plates as soft as the picture; none if they are at least as soft.
     pub plate_spread: Spread,
-    /// What makes an edge that is drawn by the area of pixels as soft as those in the picture.
+    /// The blur that makes an antialiased edge as soft as edges in the picture.
     pub outline_spread: Spread,
 }
 
 impl Sharpness {
-    /// As sharp as pixels are, with plates alike.
+    /// A perfectly sharp picture, with equal plates.
     pub const SHARP: Self = Self {
         plate_spread: Spread::NONE,
         outline_spread: Spread::NONE,

@@ -1,4 +1,4 @@
-//! What stands in a picture beside the toy: things on the table, and things before the toy.
+//! Other things in a picture: things on the table, and things in front of the toy.
 
 use std::sync::Arc;
 
@@ -6,17 +6,18 @@ use glam::UVec2;
 
 use crate::scene::Camera;
 
-/// What a pixel shows in place of a receiver or the toy.
+/// The content of a pixel in place of a receiver or the toy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mark {
-    /// A receiver or the toy.
+    /// No thing: a receiver or the toy.
     #[default]
     None,
     /// A thing: the camera's pixel stays, and the toy is drawn over it.
     Thing,
-    /// A thing before the toy: the camera's pixel stays, the toy is drawn behind it, and no colour of the toy is taken from it.
+    /// A thing in front of the toy: the camera's pixel stays, the toy is drawn behind it, and no
+    /// colour of the toy is taken from it.
     BeforeToy,
-    /// A receiver whose plate shows something else, as if it had not been photographed there.
+    /// A receiver whose plate shows something else; it is treated as not photographed there.
     WrongPlate,
 }
 
@@ -25,14 +26,14 @@ pub enum Mark {
 pub struct Things {
     size_px: UVec2,
     marks: Arc<[Mark]>,
-    /// Pixels with each mark but none.
+    /// Number of pixels with each mark except `None`.
     counts: [usize; 3],
     /// The camera that took the picture.
     camera: Camera,
 }
 
 impl Things {
-    /// Marks of a picture's pixels, rows from the top; none if their number is not that of the pixels.
+    /// Marks of a picture's pixels, rows from the top; `None` if their number is wrong.
     #[must_use]
     pub fn new(size_px: UVec2, marks: impl Into<Arc<[Mark]>>, camera: Camera) -> Option<Self> {
         let marks = marks.into();
@@ -53,7 +54,7 @@ impl Things {
         self.size_px
     }
 
-    /// Of each pixel, rows from the top.
+    /// The mark of each pixel, rows from the top.
     #[must_use]
     pub fn marks(&self) -> &[Mark] {
         &self.marks
@@ -65,13 +66,13 @@ impl Things {
         &self.camera
     }
 
-    /// Whether both are the same marks of the same picture: in one memory.
+    /// Whether both share their memory, and so mark the same picture.
     #[must_use]
     pub fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.marks, &other.marks)
     }
 
-    /// Whether they say the same, wherever they are in memory.
+    /// Whether both have equal contents.
     #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
         self.camera == other.camera && self.marks == other.marks

@@ -1,21 +1,22 @@
-//! Numbers, lists and texts in messages, at a length that a person reads.
+//! Numbers, lists and texts in messages, at a readable length.
 
 use std::fmt;
 
 /// Significant digits of a number.
 const N_DIGITS: usize = 6;
-/// Names of a list before the rest is counted.
+/// Number of listed names; the rest is counted.
 const N_NAMES: usize = 5;
-/// Characters of a text that comes from a file.
+/// Number of shown characters of a text from a file.
 const N_CHARACTERS: usize = 160;
 
-/// A number with at most six significant digits, in powers of ten where it is very large or small.
+/// A number with at most six significant digits, in scientific notation if it is very large or
+/// small.
 pub struct Number(pub f64);
 
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rounded = format!("{:.*e}", N_DIGITS - 1, self.0);
-        // Not a number, or an infinity.
+        // NaN, or an infinity.
         let Some((_, exponent)) = rounded.split_once('e') else {
             return write!(f, "{}", self.0);
         };
@@ -31,17 +32,17 @@ impl fmt::Display for Number {
     }
 }
 
-/// Some words of a list, and how many more there are.
+/// Some words of a list, and the number of the others.
 pub struct Listed<'a, T> {
     /// The words.
     pub items: &'a [T],
-    /// Between two of them.
+    /// Separator.
     pub between: &'static str,
 }
 
 impl<T: fmt::Display> fmt::Display for Listed<'_, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // One more than that takes no more room than to say so.
+        // One more name takes no more room than its count.
         let n_shown = if self.items.len() <= N_NAMES + 1 {
             self.items.len()
         } else {

@@ -36,32 +36,32 @@ pub use written::ScenePaths;
 
 /// A `shadow-capture` folder.
 ///
-/// Opening checks all of `capture.json` and reads the toy, the plates and the pictures of a probe. The frames' pictures are
-/// read when they are asked for.
+/// Opening checks all of `capture.json` and reads the toy, the plates and the pictures of a probe.
+/// The frames' pictures are read on demand.
 pub struct Capture {
     store: PictureStore,
     scene: Scene,
     warnings: Vec<SessionWarning>,
     frames: Vec<Frame>,
-    /// The last frame's picture: a still camera repeats one picture over and over.
+    /// The last frame's picture: a still camera repeats one picture many times.
     last_picture: Mutex<Option<(FrameKey, Photo)>>,
 }
 
-/// A picture, and the camera whose lens it was freed of.
+/// A picture, and the camera whose distortion is removed from it.
 type FrameKey = (String, Option<Lens>);
 
-/// A photograph, and how its file asks to turn it.
+/// A photograph, with its file's orientation tag.
 #[derive(Clone)]
 struct Photo {
-    /// As by a pinhole.
+    /// The photograph without distortion.
     image: Arc<Image>,
-    /// As the camera gave it.
+    /// The photograph as taken.
     as_taken: Arc<Image>,
     orientation: u8,
 }
 
 impl Photo {
-    /// What is to be said of it where a field names it.
+    /// The warning about it, if any, for the field that names it.
     fn warning(&self, file: &str, field: &str) -> Option<SessionWarning> {
         (self.orientation != 1).then(|| SessionWarning::Turned {
             file: file.to_owned(),
@@ -102,10 +102,10 @@ impl Capture {
         convert::capture_from_record(Box::new(files), record, distortion)
     }
 
-    /// Opens the capture as taken with a lens, or by a pinhole, whatever its index says of one.
+    /// Opens the capture with the given lens, or as a pinhole's, whatever its index states.
     ///
     /// # Errors
-    /// As [`Self::open`], and where the lens folds a picture.
+    /// As [`Self::open`], and if the lens folds a picture.
     pub fn open_with_lens(
         files: impl Files + 'static,
         distortion: Option<Distortion>,
@@ -216,7 +216,7 @@ impl GroundTruth for Capture {
 struct PictureStore {
     files: Box<dyn Files>,
     size: PictureSize,
-    /// Of all photographs, but not of labels.
+    /// Distortion of all photographs, but not of labels.
     distortion: Option<Distortion>,
 }
 
@@ -230,7 +230,7 @@ impl PictureStore {
         at(LENS, lens.transpose())
     }
 
-    /// A photograph by a camera.
+    /// A photograph by the given camera.
     fn photo(&self, path: &str, field: &str, intrinsics: &Intrinsics) -> Result<Photo, SessionError> {
         let lens = self.lens(intrinsics)?;
         self.read(path, field, |bytes, size| {
@@ -258,7 +258,7 @@ fn read_index(files: &dyn Files) -> Result<CaptureRecord, SessionError> {
     let bytes = files
         .read(INDEX_FILE, MAX_INDEX_BYTES)
         .map_err(|error| SessionError::new(INDEX_FILE, WHOLE_FILE, error))?;
-    // Some editors mark the text's encoding, which JSON knows nothing of.
+    // Some editors write a byte order mark, which JSON does not allow.
     parse_index(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes))
 }
 
@@ -266,7 +266,7 @@ fn read_index(files: &dyn Files) -> Result<CaptureRecord, SessionError> {
 fn parse_index(bytes: &[u8]) -> Result<CaptureRecord, SessionError> {
     let header: Header = match parse(bytes) {
         Ok(header) => header,
-        // A syntax error is found again by parsing everything, which can name the field.
+        // For a syntax error everything is parsed again, which can name the field.
         Err(error) if !is_about_values(&error) => {
             return Err(parse::<CaptureRecord>(bytes).err().unwrap_or(error));
         }

@@ -1,4 +1,4 @@
-//! Errors of a session: always the file, the field and the reason.
+//! Errors of a session, each with file, field and reason.
 
 use thiserror::Error;
 
@@ -7,15 +7,15 @@ use app_scene::scene::FieldError;
 use app_scene::toy::ToyError;
 use app_scene::words::Text;
 
-/// A session that cannot be used, or a frame of it.
+/// A session or a frame that cannot be used.
 #[derive(Debug, Error)]
 #[error("{file} ({field}): {kind}")]
 pub struct SessionError {
-    /// The file at fault, relative to the session.
+    /// The file, relative to the session.
     pub file: String,
-    /// The field at fault, or for another file the field that names it, as in `frames[3].image`.
+    /// The field, or for another file the field that names it, for example `frames[3].image`.
     pub field: String,
-    /// What is wrong.
+    /// The reason.
     pub kind: Box<SessionErrorKind>,
 }
 
@@ -36,35 +36,35 @@ pub enum SessionErrorKind {
     /// The file itself cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Not JSON, or not the JSON that the format asks for.
+    /// Not JSON, or not the JSON of the format.
     #[error("{0}")]
     Json(#[from] serde_json::Error),
-    /// Another format.
+    /// An unsupported format.
     #[error("the format is {:?}, but only {supported:?} can be read", Text(found).to_string())]
     Format {
         /// The format as written.
         found: String,
-        /// The one format that is read.
+        /// The only supported format.
         supported: &'static str,
     },
-    /// Another version of the format.
+    /// An unsupported version of the format.
     #[error("version {found} of the format is not supported, only version {supported} is")]
     Version {
         /// The version as written.
         found: u64,
-        /// The one version that is read.
+        /// The only supported version.
         supported: u64,
     },
-    /// A value outside what the format allows.
+    /// A value that the format does not allow.
     #[error(transparent)]
     Field(#[from] FieldError),
     /// A picture that cannot be used.
     #[error(transparent)]
     Picture(#[from] PictureError),
-    /// A toy that cannot be used, or a clip that it does not have.
+    /// A toy that cannot be used, or a clip that does not exist.
     #[error(transparent)]
     Toy(#[from] ToyError),
-    /// A frame beyond the last.
+    /// An index beyond the last frame.
     #[error("the session has {n_frames} frames, counted from 0")]
     NoSuchFrame {
         /// Number of frames.
@@ -72,29 +72,29 @@ pub enum SessionErrorKind {
     },
 }
 
-/// Why a picture is refused.
+/// The reason why a picture is refused.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PictureError {
-    /// Not one of the two formats.
+    /// An unknown format.
     #[error("neither PNG nor JPEG")]
     Format,
-    /// Another format that is known.
+    /// A known but unsupported format.
     #[error("the picture is {format}, and only PNG and JPEG are read: {way_out}")]
     OtherFormat {
-        /// What it is.
+        /// The format.
         format: &'static str,
-        /// What makes a picture of it that is read.
+        /// The way to convert it.
         way_out: &'static str,
     },
-    /// Another size than the session's; checked before anything is decoded.
+    /// A size other than the session's; checked before decoding.
     #[error(
         "the picture is {width_px} x {height_px} px, but the session's is {expected_width_px} x {expected_height_px} px"
     )]
     Size {
-        /// Width that the picture's header states.
+        /// Width in the picture's header.
         width_px: u32,
-        /// Height that the picture's header states.
+        /// Height in the picture's header.
         height_px: u32,
         /// Width of the session.
         expected_width_px: u32,
@@ -104,10 +104,10 @@ pub enum PictureError {
     /// Damaged or cut short.
     #[error("damaged picture: {0}")]
     Decode(#[from] image::ImageError),
-    /// A JPEG without its end, which decoders fill with grey.
+    /// A JPEG without its end; decoders would fill the rest with grey.
     #[error("damaged picture: the JPEG is cut short")]
     Truncated,
-    /// A mask without its fourth number.
+    /// A mask without a fourth channel.
     #[error("not an 8-bit RGBA picture, as a mask must be")]
     NotAMask,
 }

@@ -1,41 +1,42 @@
-//! Access to a session's files: a trait for the shell, and the rule for paths that all share.
+//! Access to a session's files: a trait for the shell, and the common rule for paths.
 
 use thiserror::Error;
 
-/// What a session's index is called, which makes a folder a session.
+/// File name of a session's index, which marks a folder as a session.
 pub const INDEX_FILE: &str = "capture.json";
-/// No longer index is read; bytes.
+/// Limit for the size of an index, in bytes.
 pub const MAX_INDEX_BYTES: u64 = 16 << 20;
 
 /// Read access to the files of one session, and to nothing else.
 pub trait Files: Send + Sync {
     /// Reads a whole file.
     ///
-    /// `path` is relative to the session, with `/` between its parts. An implementation passes it
-    /// through [`check_path`] and makes sure that links do not lead out of the session.
+    /// `path` is relative to the session, with `/` between its parts. An implementation calls
+    /// [`check_path`] and makes sure that links do not lead out of the session.
     ///
     /// # Errors
-    /// When the path is refused, or the file is missing, unreadable or larger than `max_bytes`.
+    /// When the path is refused, or the file is missing, unreadable or larger than
+    /// `max_bytes`.
     fn read(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, FileError>;
 }
 
-/// Why a file could not be read. The caller knows its name.
+/// The reason why a file could not be read. The caller knows its name.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum FileError {
     /// The path is not one that a session may use.
     #[error("bad path: {0}")]
     Path(#[from] PathError),
-    /// There is nothing under this name.
+    /// There is no such file.
     #[error("the file does not exist")]
     Missing,
-    /// The name is that of a folder or a device.
+    /// The path belongs to a folder or a device.
     #[error("not a regular file")]
     NotAFile,
     /// A link leads out of the session's folder.
     #[error("the file lies outside the session's folder")]
     Outside,
-    /// The file is larger than its kind may be.
+    /// The file is larger than the limit for its kind.
     #[error("larger than the {max_bytes} bytes allowed")]
     TooLarge {
         /// The limit that was passed.
@@ -46,20 +47,20 @@ pub enum FileError {
     Io(String),
 }
 
-/// Why a path is refused, whatever lies there.
+/// The reason why a path is refused, independent of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum PathError {
-    /// No character at all.
+    /// An empty path.
     #[error("it is empty")]
     Empty,
-    /// Starts at the root of a file system.
+    /// An absolute path.
     #[error("it is absolute, but must be relative to the session's folder")]
     Absolute,
-    /// Climbs with `..`.
+    /// A path with `..`.
     #[error("it holds `..`, but must stay inside the session's folder")]
     Climbs,
-    /// A character that means something else on another system.
+    /// A character with another meaning on other systems.
     #[error("it holds {0:?}, which is not portable")]
     Character(char),
 }

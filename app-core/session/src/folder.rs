@@ -9,12 +9,12 @@ use thiserror::Error;
 
 use crate::files::{FileError, Files, check_path};
 
-/// A session's folder: reads its files and no others, whatever its paths and links say.
+/// A session's folder: reads its files and no others, whatever its paths and links are.
 ///
 /// Only with the feature `fs`.
 #[derive(Clone, Debug)]
 pub struct Folder {
-    /// Without links, so that a file inside it can be told from one outside.
+    /// Absolute path without links, to recognise files outside of it.
     root: PathBuf,
 }
 
@@ -22,9 +22,9 @@ pub struct Folder {
 #[derive(Debug, Error)]
 #[error("{}: {reason}", path.display())]
 pub struct FolderError {
-    /// The folder, or what is in it.
+    /// The folder, or an entry of it.
     pub path: PathBuf,
-    /// What the system said, or what is wrong.
+    /// The system's error, or another reason.
     pub reason: io::Error,
 }
 
@@ -55,7 +55,8 @@ impl Folder {
     /// Paths of its files and of those in its folders, with `/` between their parts.
     ///
     /// # Errors
-    /// When one is a link, which could lead out of it, has a name that is no text, or a folder cannot be read.
+    /// When one is a link, which could lead out of it, has a name that is not valid text, or a folder
+    /// cannot be read.
     pub fn paths(&self) -> Result<Vec<String>, FolderError> {
         let mut paths = Vec::new();
         let mut folders = vec![String::new()];
@@ -70,7 +71,7 @@ impl Folder {
                     return Err(error(io::Error::other("is a link")));
                 }
                 let name = entry.file_name().into_string();
-                let name = name.map_err(|_| error(io::Error::other("its name is no text")))?;
+                let name = name.map_err(|_| error(io::Error::other("its name is not valid text")))?;
                 let path = format!("{folder}{name}");
                 if kind.is_dir() {
                     folders.push(path + "/");
@@ -100,11 +101,11 @@ impl Files for Folder {
         if !file.starts_with(&self.root) {
             return Err(FileError::Outside);
         }
-        // Asked before opening: opening a pipe would wait for its other end.
+        // Checked before opening: opening a pipe would wait for its other end.
         if !fs::metadata(&file).map_err(file_error)?.is_file() {
             return Err(FileError::NotAFile);
         }
-        // One byte more tells a file that is too large, also when it grows meanwhile.
+        // One byte more reveals a file that is too large, even if it grows meanwhile.
         let mut bytes = Vec::new();
         let mut reader = File::open(&file)
             .map_err(file_error)?

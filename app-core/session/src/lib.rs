@@ -1,8 +1,8 @@
-//! Sessions: a scene, and camera frames of it, however they are stored.
+//! Sessions: a scene and its camera frames, in any storage.
 //!
-//! A recording, a live camera and a folder of pictures look the same from here: a [`Scene`] that is available at once
-//! and frames that are fetched one by one. Bytes come through [`Files`], so this crate opens no file itself,
-//! but for the `Folder` of the feature `fs`.
+//! A recording, a live camera and a folder of pictures have the same interface: a [`Scene`] that is
+//! available at once and frames that are fetched one by one. Bytes come through [`Files`], so this
+//! crate opens no file itself, except in the `Folder` of the feature `fs`.
 //!
 #![doc = include_str!("../../doc/session.md")]
 #![forbid(unsafe_code)]
@@ -54,8 +54,8 @@ pub trait Session {
     /// When there is no such frame, or its picture cannot be read.
     fn frame(&self, index: usize) -> Result<SessionFrame, SessionError>;
 
-    /// Looks at the picture files of `frames`, but at no pixel: whether each is there, of a kind that is read and of the session's size.
-    /// What takes long is not begun before.
+    /// Checks the picture files of `frames` without decoding them: whether each exists, is of a
+    /// supported format and has the session's size. Call it before long work.
     ///
     /// # Errors
     /// When there are no such frames, or a picture of one cannot be read.
@@ -63,7 +63,8 @@ pub trait Session {
         Ok(())
     }
 
-    /// The photograph of the frame `index` as its camera gave it, distortion and all: [`SessionFrame::image`] where the session has no lens.
+    /// The photograph of the frame `index` as its camera took it, distortion included:
+    /// [`SessionFrame::image`] if the session has no lens.
     ///
     /// # Errors
     /// As [`Session::frame`].
@@ -71,8 +72,8 @@ pub trait Session {
         Ok(self.frame(index)?.image)
     }
 
-    /// The lens that [`Session::photograph`] of the frame `index` was taken with, and that [`SessionFrame::image`] is freed of; none
-    /// where the session has none.
+    /// The lens of [`Session::photograph`] of the frame `index`, which is removed from
+    /// [`SessionFrame::image`]; `None` if the session has none.
     ///
     /// # Errors
     /// When there is no such frame.
@@ -84,21 +85,22 @@ pub trait Session {
 /// One camera frame and the pose to show in it.
 #[derive(Clone, Debug)]
 pub struct SessionFrame {
-    /// When the frame was taken, from an origin of the session's own.
+    /// Time of the frame, from an origin of the session's own.
     pub time_secs: f64,
-    /// The camera's picture of the real toy, as a pinhole would have seen it. Frames that repeat a picture share it.
+    /// The camera's picture of the real toy, without distortion. Frames that repeat a picture share
+    /// it.
     pub image: Arc<Image>,
     /// The camera that took it.
     pub camera: Camera,
     /// Transform of the real toy, from object space to world.
     pub world_from_object: DMat4,
-    /// Exposure of the picture, relative to that of the session's other frames; 1 where it is unknown.
+    /// Exposure of the picture, relative to that of the session's other frames; 1 if unknown.
     pub exposure: f64,
-    /// What the platform estimated of the light, where it is recorded.
+    /// The platform's light estimate, if it is recorded.
     pub light_estimate: Option<LightEstimate>,
-    /// The pose the toy is to be shown in.
+    /// The pose to show.
     pub shown_pose: Pose,
-    /// Where the toy is to be shown, if that is not where the real one stands.
+    /// The place to show the toy, if it differs from the real toy's.
     pub world_from_shown: Option<DMat4>,
     /// Warnings about this frame.
     pub warnings: Vec<SessionWarning>,
@@ -114,11 +116,12 @@ impl From<&SessionFrame> for FrameInput {
     }
 }
 
-/// The photographs that the camera would have taken if the toy really had moved, through the lens that it has.
+/// The photographs that the camera would have taken of the really moved toy, through its lens.
 ///
-/// For scoring only. It is not part of [`Session`], so code that makes pictures from a session cannot reach them.
+/// Only for scoring. It is not part of [`Session`], so code that makes pictures from a session
+/// cannot reach them.
 pub trait GroundTruth {
-    /// Fetches the truth of the frame `index`, or `None` where the session has none.
+    /// Fetches the truth of the frame `index`, or `None` if the session has none.
     ///
     /// # Errors
     /// When there is no such frame, or its pictures cannot be read.
@@ -132,23 +135,23 @@ pub struct Truth {
     pub image: Image,
     /// Labels of each pixel, as plain numbers in all four channels.
     ///
-    /// R is 255 where the moved toy is, G where the real toy is. B is 255 times one minus the
-    /// smallest visibility over all lights with the moved toy, A the same with the real one.
+    /// R is 255 on the moved toy, G on the real toy. B is 255 times one minus the smallest
+    /// visibility over all lights with the moved toy, A the same with the real one.
     pub mask: Image,
 }
 
-/// A value that was corrected or left out while reading.
+/// A value that was corrected or ignored while reading.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SessionWarning {
-    /// A time lay beyond the end of its clip; the clip's last moment is shown.
+    /// A time beyond the end of its clip; the clip's last moment is shown.
     #[error(
         "{file} ({field}): {} s is beyond the end of the clip, {} s is used",
         Number(*asked_secs),
         Number(*used_secs)
     )]
     TimeClamped {
-        /// File that holds the time.
+        /// File with the time.
         file: String,
         /// Path of the time within the file.
         field: String,
@@ -157,9 +160,10 @@ pub enum SessionWarning {
         /// The time that is used instead.
         used_secs: f64,
     },
-    /// A picture that asks to be turned before it is looked at. It is taken as stored, as cameras' intrinsics have it.
+    /// A picture with an orientation tag. It is read as stored, since cameras' intrinsics refer to
+    /// that.
     #[error(
-        "{file} ({field}): its EXIF orientation is {orientation}, which is not applied: where it lies on its side or is mirrored, turn its pixels; where not, drop the tag"
+        "{file} ({field}): its EXIF orientation is {orientation}, which is not applied: if the picture lies on its side or is mirrored, turn its pixels; otherwise remove the tag"
     )]
     Turned {
         /// File of the picture.
@@ -174,7 +178,7 @@ pub enum SessionWarning {
     Toy {
         /// File of the toy.
         file: String,
-        /// What it is.
+        /// The feature.
         warning: ToyWarning,
     },
 }

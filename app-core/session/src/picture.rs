@@ -9,10 +9,10 @@ use super::error::PictureError;
 use super::tags::{JPEG_MAGIC, PNG_MAGIC};
 use app_scene::scene::Image;
 
-/// Room for what a picture file holds besides pixels: colour profiles, previews, text.
+/// Room for data of a picture file besides pixels: colour profiles, previews, text.
 const EXTRA_BYTES: u64 = 16 << 20;
 
-/// The size that each picture of a session has.
+/// The size of all pictures of a session.
 #[derive(Clone, Copy)]
 pub(super) struct PictureSize {
     pub(super) width_px: u32,
@@ -24,7 +24,7 @@ impl PictureSize {
         u64::from(self.width_px) * u64::from(self.height_px)
     }
 
-    /// Largest file of this size: 16-bit RGBA that did not compress at all.
+    /// Largest file of this size: incompressible 16-bit RGBA.
     pub(super) fn max_file_bytes(self) -> u64 {
         self.n_pixels() * 8 + EXTRA_BYTES
     }
@@ -39,7 +39,7 @@ pub(super) fn decode_photo(bytes: &[u8], size: PictureSize) -> Result<Image, Pic
     Ok(with_size(image, size))
 }
 
-/// Decodes a mask, whose four channels are numbers of their own.
+/// Decodes a mask, whose four channels are independent numbers.
 pub(super) fn decode_mask(bytes: &[u8], size: PictureSize) -> Result<Image, PictureError> {
     match decode(bytes, size)? {
         DynamicImage::ImageRgba8(image) => Ok(with_size(image.into_raw(), size)),
@@ -47,7 +47,7 @@ pub(super) fn decode_mask(bytes: &[u8], size: PictureSize) -> Result<Image, Pict
     }
 }
 
-/// Looks at kind and size of a photograph or a mask, and at a JPEG's end, but decodes no pixel.
+/// Checks format and size of a photograph or a mask, and a JPEG's end, without decoding it.
 pub(super) fn check_head(bytes: &[u8], size: PictureSize, is_mask: bool) -> Result<(), PictureError> {
     let mut limits = Limits::default();
     limits.max_alloc = Some(size.max_file_bytes());
@@ -96,7 +96,7 @@ fn decode(bytes: &[u8], size: PictureSize) -> Result<DynamicImage, PictureError>
     }
 }
 
-/// What is said of bytes that are neither PNG nor JPEG.
+/// The error for bytes that are neither PNG nor JPEG.
 fn other_kind(bytes: &[u8]) -> PictureError {
     match app_scene::picture::kind(bytes) {
         Some((format, way_out)) => PictureError::OtherFormat { format, way_out },
@@ -104,7 +104,7 @@ fn other_kind(bytes: &[u8]) -> PictureError {
     }
 }
 
-/// Compares the size in the header before a pixel is decoded or room for it is made.
+/// Compares the size in the header before any decoding or allocation.
 fn decode_sized(decoder: impl ImageDecoder, size: PictureSize) -> Result<DynamicImage, PictureError> {
     check_size(&decoder, size)?;
     Ok(DynamicImage::from_decoder(decoder)?)
@@ -123,8 +123,8 @@ fn check_size(decoder: &impl ImageDecoder, size: PictureSize) -> Result<(), Pict
     Ok(())
 }
 
-/// Walks a JPEG's segments to its end marker. Previews in its metadata have ends of their own, so
-/// looking for the marker's bytes alone would not do.
+/// Walks a JPEG's segments to its end marker. Previews in its metadata have their own end markers,
+/// so a search for the marker's bytes would not do.
 fn jpeg_has_end(bytes: &[u8]) -> bool {
     const STUFFED: u8 = 0x00;
     const FILL: u8 = 0xff;

@@ -1,4 +1,4 @@
-//! What a picture file says about its pixels: the chunks of a PNG, and how EXIF asks to turn it.
+//! Metadata of picture files: the chunks of a PNG, and EXIF's orientation.
 
 use std::io::Cursor;
 
@@ -9,7 +9,7 @@ use image::metadata::Orientation;
 pub(crate) const PNG_MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 pub(crate) const JPEG_MAGIC: &[u8] = b"\xff\xd8\xff";
 
-/// Name and data of each chunk of a PNG, in order, as far as the file goes. None of another file.
+/// Name and data of each chunk of a PNG, in order, up to the file's end. Empty for other files.
 ///
 /// Source: PNG specification (W3C, third edition), section 5.3.
 pub fn png_chunks(bytes: &[u8]) -> impl Iterator<Item = ([u8; 4], &[u8])> {
@@ -23,10 +23,10 @@ pub fn png_chunks(bytes: &[u8]) -> impl Iterator<Item = ([u8; 4], &[u8])> {
     })
 }
 
-/// How the picture is to be turned before it is looked at, as EXIF numbers it, 1 to 8; 1 as it is stored, and where no tag
-/// that can be read says otherwise.
+/// EXIF's orientation of the picture, 1 to 8; 1, which means as stored, if there is no readable
+/// tag.
 ///
-/// A PNG may have its tag behind the pixels, where decoders do not look.
+/// A PNG may have its tag after the pixels, where decoders do not look.
 #[must_use]
 pub fn exif_orientation(bytes: &[u8]) -> u8 {
     let orientation = if bytes.starts_with(JPEG_MAGIC) {

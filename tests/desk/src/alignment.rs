@@ -1,4 +1,4 @@
-//! The frames of a session as the core is given them: as recorded, or aligned by their pictures.
+//! The frames of a session as the core receives them: as recorded, or aligned by their pictures.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -8,8 +8,10 @@ use app_core::alignment::{
     Aligner, Alignment, AlignmentReport, DiscoveredLight, LensAlignment, Observer, RatioAlignment,
 };
 use app_core::frame::FrameInput;
+use app_core::gloss::Gloss;
 use app_core::preset::Preset;
 use app_core::probe::TrackedLight;
+use app_core::reflection::Reflection;
 use app_core::scene::{Camera, Light, Receiver, Scene};
 use app_core::session::{Session, SessionFrame};
 use app_core::sharpness::Sharpness;
@@ -19,32 +21,32 @@ use serde::Serialize;
 
 use crate::replay::ReplayError;
 
-/// Where lights come from.
+/// The source of the lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Lights {
-    /// From the session's list; where that is empty as its probe tells, and without one they are looked for.
+    /// The session's list; if that is empty, its probe, and without a probe the toy's shadow.
     #[default]
     Given,
-    /// From the frames alone: list and probe are put aside, and the list is compared with.
+    /// The frames alone: list and probe are ignored, and the result is compared with the list.
     Found,
-    /// As the session's probe tells: the list is put aside, and compared with.
+    /// The session's probe: the list is ignored, and the result is compared with it.
     Probe,
 }
 
-/// Where a number comes from.
+/// The source of a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Source {
     /// The session.
     #[default]
     Given,
-    /// The pictures; numbers within 3 % of what the session says.
+    /// An estimate from the pictures, within 3 % of the session's number.
     Found,
 }
 
-/// The number that is looked for in the pictures.
+/// The number to estimate from the pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ratio {
-    /// None: all are the session's.
+    /// No number: all are the session's.
     #[default]
     Given,
     /// The focal length.
@@ -53,28 +55,29 @@ pub enum Ratio {
     WorldScale,
 }
 
-/// Options that ask for a number.
+/// Options that ask for an estimate of a number.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct RatioArgs {
-    /// Look for the focal length, too, which takes several times as long as all else
+    /// Estimate the focal length, too, which takes several times as long as all else
     #[arg(long, value_enum, default_value_t)]
     focal_length: Source,
-    /// Look for the scale of the world in place of it, as by a tracker whose metre is none: the toy's model has the right size
+    /// Estimate the scale of the world instead, for a tracker whose scale is wrong: the toy's model
+    /// has the right size
     #[arg(long, value_enum, default_value_t, conflicts_with = "focal_length")]
     world_scale: Source,
-    /// Look for two radial terms of the lens's distortion, in place of those that the session says
+    /// Estimate two radial terms of the lens's distortion, in place of the session's
     #[arg(long, value_enum, default_value_t)]
     lens: Source,
 }
 
 impl RatioArgs {
-    /// Where the lens comes from.
+    /// The source of the lens.
     #[must_use]
     pub fn lens(&self) -> Source {
         self.lens
     }
 
-    /// The number that they ask for.
+    /// The number to estimate.
     #[must_use]
     pub fn asked(&self) -> Ratio {
         match (self.focal_length, self.world_scale) {
@@ -85,7 +88,7 @@ impl RatioArgs {
     }
 }
 
-/// What is looked for in the pictures though a session says it.
+/// Quantities to estimate from the pictures even if the session states them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Asked {
     /// The lights.
@@ -94,18 +97,18 @@ pub struct Asked {
     pub ratio: Ratio,
 }
 
-/// Corrections of frames, found once for all presets, one frame after the other.
+/// Corrections of frames, estimated once for all presets, one frame after the other.
 pub struct Alignments {
     lights: Lights,
-    /// None where frames stay as they were recorded.
+    /// `None` if frames stay as they were recorded.
     aligner: Option<Aligner>,
-    /// What looks at frames that stay as they were recorded.
+    /// The observer of frames that stay as they were recorded.
     observer: Observer,
-    /// What it saw in each.
+    /// Its observation of each frame.
     observed: Vec<Observed>,
     first: usize,
     found: Vec<Aligned>,
-    /// Plates whose camera was corrected, by their index.
+    /// Plates with a corrected camera, by their index.
     moved_plates: Vec<(usize, Camera)>,
     /// The receivers, where they are others than the session's.
     receivers: Option<Vec<Receiver>>,
@@ -113,51 +116,53 @@ pub struct Alignments {
     lens: Option<LensAlignment>,
 }
 
-/// What is seen in a frame that stays as it was recorded.
+/// The observation of a frame that stays as it was recorded.
 struct Observed {
     index: usize,
     things: Option<Things>,
     sharpness: Sharpness,
+    gloss: Gloss,
+    reflection: Option<Reflection>,
 }
 
-/// Of one frame.
+/// The alignment of one frame.
 pub struct Aligned {
-    /// Where toy and lights are.
+    /// The estimated toy pose and lights.
     pub alignment: Alignment,
-    /// What finding it took on the processor.
+    /// Time of the estimate on the processor.
     pub cpu_ms: f64,
-    /// The lights that were put aside.
+    /// The session's lights that were ignored.
     pub put_aside: Vec<Light>,
-    /// The toy's middle in the world.
+    /// Centre of the toy in the world.
     middle: DVec3,
 }
 
-/// A light as it is seen from a place.
+/// A light as it appears from a place.
 #[derive(Clone, Copy, Debug)]
 pub struct SeenLight {
-    /// Unit vector to its middle.
+    /// Unit vector to its centre.
     pub direction_in_world: DVec3,
-    /// None for a light without end.
+    /// `None` for a light at infinity.
     pub distance_m: Option<f64>,
-    /// Half the angle that it fills.
+    /// Half its angular width.
     pub angular_radius_rad: f64,
 }
 
-/// Error of a light that was found.
+/// Error of an estimated light.
 #[derive(Clone, Debug, Serialize)]
 pub struct LightError {
     /// Index of the light of the list that it is compared with.
     pub index: usize,
     /// Angle between the directions, in radians.
     pub direction_rad: f64,
-    /// Found distance over the listed; none where one of them has none.
+    /// Estimated distance over the listed one; `None` if either light is at infinity.
     pub distance_ratio: Option<f64>,
-    /// Found angular radius over the listed; none for a point light.
+    /// Estimated angular radius over the listed one; `None` for a point light.
     pub size_ratio: Option<f64>,
 }
 
 impl LightError {
-    /// Against the light in the nearest direction; none without a list.
+    /// The error against the listed light in the nearest direction; `None` without a list.
     fn nearest(found: &SeenLight, listed: impl Iterator<Item = SeenLight>) -> Option<Self> {
         let error = |(index, listed): (usize, SeenLight)| Self {
             index,
@@ -175,7 +180,7 @@ impl LightError {
 }
 
 impl SeenLight {
-    /// One that was found by its shadow, from the toy's middle.
+    /// A light that was found by its shadow, seen from the toy's centre.
     #[must_use]
     pub fn found(light: &DiscoveredLight) -> Self {
         Self {
@@ -185,7 +190,7 @@ impl SeenLight {
         }
     }
 
-    /// From a place in the world.
+    /// A light seen from a place in the world.
     #[must_use]
     pub fn from(place: DVec3, light: &Light) -> Self {
         Self {
@@ -197,7 +202,7 @@ impl SeenLight {
 }
 
 impl Alignments {
-    /// Frames stay as they were recorded.
+    /// Frames as they were recorded.
     #[must_use]
     pub fn none() -> Self {
         Self {
@@ -213,20 +218,20 @@ impl Alignments {
         }
     }
 
-    /// With what was found of the lens when the session was opened.
+    /// Adds the lens that was estimated when the session was opened.
     #[must_use]
     pub fn with_lens(mut self, lens: Option<LensAlignment>) -> Self {
         self.lens = lens;
         self
     }
 
-    /// What was found of the lens that photographs are freed of; none where nobody asked.
+    /// The estimate of the lens that is removed from photographs; `None` if it was not asked for.
     #[must_use]
     pub fn lens(&self) -> Option<&LensAlignment> {
         self.lens.as_ref()
     }
 
-    /// No frame is aligned yet.
+    /// An alignment without any frame yet.
     #[must_use]
     pub fn new(scene: &Scene, asked: Asked) -> Self {
         let aligner = Aligner::new(asked.lights.known(scene));
@@ -272,7 +277,8 @@ impl Alignments {
         Ok(self)
     }
 
-    /// Aligns a frame of a session's scene: the first one, that after the last, or one that is aligned already, which costs nothing.
+    /// Aligns a frame of a session's scene: the first one, the next one, or one that is aligned
+    /// already, which costs nothing.
     ///
     /// # Errors
     /// When it cannot be aligned.
@@ -309,7 +315,7 @@ impl Alignments {
         Ok(())
     }
 
-    /// Looks at a frame that stays as it was recorded.
+    /// Observes a frame that stays as it was recorded.
     fn observe(&mut self, scene: &Scene, index: usize, frame: &SessionFrame) -> Result<(), ReplayError> {
         if self.observed.iter().any(|observed| observed.index == index) {
             return Ok(());
@@ -323,12 +329,14 @@ impl Alignments {
             index,
             things: observed.things,
             sharpness: observed.sharpness,
+            gloss: observed.gloss,
+            reflection: observed.reflection,
         });
         self.receivers = other_receivers(scene, &self.observer.scene(scene));
         Ok(())
     }
 
-    /// What the core is given of a session's scene.
+    /// The scene that the core receives for a session's scene.
     #[must_use]
     pub fn scene(&self, given: &Scene) -> Scene {
         let mut scene = given.clone();
@@ -341,11 +349,12 @@ impl Alignments {
         scene
     }
 
-    /// The scene from a frame on: its plates in another light, once lights were moved, or its toy in another shape.
+    /// The scene from a frame on: its plates in another light if lights were moved, or its toy in
+    /// another shape.
     #[must_use]
     pub fn changed_scene(&self, given: &Scene, index: usize) -> Option<Scene> {
         let now = self.of(index)?.alignment.scene.as_ref()?;
-        // Cameras alone are corrected in the scene from its begin on.
+        // From the first frame on, the scene has corrected cameras and nothing else.
         let mut pairs = now.plates.iter().zip(&given.plates);
         let is_relit = pairs.any(|(now, given)| !Arc::ptr_eq(&now.image, &given.image));
         let is_changed = is_relit || !Arc::ptr_eq(&now.toy, &given.toy);
@@ -356,7 +365,7 @@ impl Alignments {
         })
     }
 
-    /// Lights that the core is given with the last frame.
+    /// Number of lights in the core's input of the last frame.
     #[must_use]
     pub fn n_lights(&self, given: &Scene, preset: Preset) -> usize {
         let found = self.found.last().and_then(|last| last.lights(preset));
@@ -369,19 +378,19 @@ impl Alignments {
         self.receivers.as_deref()
     }
 
-    /// Plates whose camera was corrected, by their index.
+    /// Plates with a corrected camera, by their index.
     #[must_use]
     pub fn moved_plates(&self) -> &[(usize, Camera)] {
         &self.moved_plates
     }
 
-    /// The focal length of all frames and plates, over that recorded.
+    /// The focal length of all frames and plates, over the recorded one.
     #[must_use]
     pub fn focal_ratio(&self) -> f64 {
         self.ratio(|report| report.focal_length)
     }
 
-    /// The scale of all poses of the toy, over that recorded.
+    /// The scale of all poses of the toy, over the recorded one.
     #[must_use]
     pub fn world_scale(&self) -> f64 {
         self.ratio(|report| report.world_scale)
@@ -393,13 +402,13 @@ impl Alignments {
         found.map_or(1.0, |found| if found.is_applied() { found.ratio } else { 1.0 })
     }
 
-    /// Of a frame; none where it stays as recorded.
+    /// The alignment of a frame; `None` if it stays as recorded.
     #[must_use]
     pub fn of(&self, index: usize) -> Option<&Aligned> {
         self.found.get(index.checked_sub(self.first)?)
     }
 
-    /// What the core is given of a frame with a preset.
+    /// The core's input for a frame with a preset.
     #[must_use]
     pub fn input(&self, index: usize, frame: &SessionFrame, preset: Preset) -> FrameInput {
         let input = self.lights.input(frame);
@@ -414,6 +423,8 @@ impl Alignments {
                     input
                         .with_things(observed.things.clone())
                         .with_sharpness(observed.sharpness)
+                        .with_gloss(observed.gloss)
+                        .with_reflection(observed.reflection)
                 })
             }
         }
@@ -421,14 +432,14 @@ impl Alignments {
 }
 
 impl Aligned {
-    /// A light that a probe tells, against the lights that were put aside; none where there are none.
+    /// The error of a probe's light against the ignored list; `None` if that is empty.
     #[must_use]
     pub fn error_of_told(&self, light: &TrackedLight) -> Option<LightError> {
         let place = light.seen.origin_in_world;
         LightError::nearest(&SeenLight::from(place, &light.light), self.put_aside_from(place))
     }
 
-    /// The same of a light that was found by its shadow.
+    /// The same for a light that was found by its shadow.
     #[must_use]
     pub fn error_of_discovered(&self, light: &DiscoveredLight) -> Option<LightError> {
         LightError::nearest(&SeenLight::found(light), self.put_aside_from(self.middle))
@@ -439,8 +450,8 @@ impl Aligned {
         put_aside.map(move |light| SeenLight::from(place, light))
     }
 
-    /// Lights that were found; none where those that were given stay. With preset `paper` those that a probe tells are the paper's own:
-    /// the viewer on the axis, and no shadow looked at.
+    /// Estimated lights; `None` if the session's stay. With preset `paper`, lights from a probe are
+    /// the paper's own: the viewer on the axis, without correction by the shadow.
     fn lights(&self, preset: Preset) -> Option<Arc<[Light]>> {
         let probe = self.alignment.report.probe.as_ref();
         let published = probe.filter(|probe| preset == Preset::Paper && !probe.published.is_empty());
@@ -464,7 +475,7 @@ fn moved_plates(given: &Scene, aligned: &Scene) -> Vec<(usize, Camera)> {
 }
 
 impl Lights {
-    /// Those of a scene's list that are not put aside.
+    /// The lights of a scene's list that are not ignored.
     fn listed(self, scene: &Scene) -> &[Light] {
         match self {
             Self::Given => &scene.lights,
@@ -472,7 +483,7 @@ impl Lights {
         }
     }
 
-    /// A scene without what is put aside of it.
+    /// A scene without the ignored parts.
     pub(crate) fn known(self, scene: &Scene) -> Scene {
         let mut known = scene.clone();
         if self == Self::Found {
@@ -490,7 +501,7 @@ impl Lights {
     }
 }
 
-/// Middle of the box around the real toy, in the world.
+/// Centre of the box around the real toy, in the world.
 pub fn middle(scene: &Scene, world_from_object: &DMat4) -> DVec3 {
     let bounds = scene.toy.bounds_of_pose(&scene.physical_pose);
     let middle = bounds.map_or(DVec3::ZERO, |bounds| 0.5 * (bounds.min + bounds.max).as_dvec3());

@@ -6,19 +6,19 @@ use image::ExtendedColorType;
 use image::ImageEncoder;
 use image::codecs::png::PngEncoder;
 
-/// Dots of a printed metre at 300 dots an inch, as PNG counts them.
+/// Dots per metre in a PNG of 300 dots per inch.
 pub const DOTS_PER_M: u32 = 11_811;
 /// Distance between the crosses: across, and down the page.
 pub const CROSSES_M: DVec2 = DVec2::new(0.150, 0.240);
 
-/// The pattern beside the lens.
+/// Position and size of the pattern beside the lens.
 const BESIDE_M: [DVec2; 2] = [DVec2::new(0.098, 0.158), DVec2::new(0.052, 0.060)];
 /// First cross, from the pattern's corner.
 const FIRST_CROSS_M: DVec2 = DVec2::new(0.0, -0.008);
-/// Beginning of the ruler, and its length.
+/// Start of the ruler, and its length.
 const RULER_M: DVec2 = DVec2::new(0.025, 0.224);
 const RULER_LENGTH_M: f64 = 0.100;
-/// Half a cross.
+/// Half the length of a cross's arm.
 const ARM_M: f64 = 0.005;
 const LINE_M: f64 = 0.000_35;
 
@@ -32,10 +32,10 @@ pub enum Paper {
 }
 
 impl Paper {
-    /// All there are.
+    /// All papers.
     pub const ALL: [Self; 2] = [Self::A4, Self::Letter];
 
-    /// Part of a file's name.
+    /// The paper's part of a file's name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -44,7 +44,7 @@ impl Paper {
         }
     }
 
-    /// Its size.
+    /// Size of the paper.
     #[must_use]
     pub fn size_m(self) -> DVec2 {
         match self {
@@ -53,7 +53,7 @@ impl Paper {
         }
     }
 
-    /// Where the pattern's upper left corner lies on it.
+    /// Position of the pattern's upper left corner on the page.
     fn pattern_at_m(self) -> DVec2 {
         0.5 * (self.size_m() - CROSSES_M) - FIRST_CROSS_M
     }
@@ -66,10 +66,10 @@ impl Paper {
     }
 }
 
-/// The file of a picture, with its dots a metre.
+/// The file of a picture, with its dots per metre.
 ///
 /// # Errors
-/// When the encoder refuses.
+/// When the encoder fails.
 pub fn png(gray: &Gray) -> Result<Vec<u8>, image::ImageError> {
     let mut png = Vec::new();
     let [width, height] = gray.size_px;
@@ -92,7 +92,7 @@ fn density_chunk(dots_per_m: u32) -> Vec<u8> {
     chunk
 }
 
-/// The page.
+/// The page as a picture.
 #[must_use]
 pub fn page(paper: Paper) -> Gray {
     let mut page = Gray::white(paper.size_m(), DOTS_PER_M);
@@ -100,7 +100,7 @@ pub fn page(paper: Paper) -> Gray {
     let mut random = SplitMix::new(SEED);
     leaves(&mut page, [at, DVec2::splat(PATTERN_M)], &mut random);
     leaves(&mut page, [at + BESIDE_M[0], BESIDE_M[1]], &mut random);
-    // Black: what a lamp makes on the lens stands out in an underexposed picture.
+    // Black, so that a lamp's reflection on the lens stands out in an underexposed picture.
     page.rectangle(at + LENS_M[0], LENS_M[1], 0);
     let inner = DVec2::splat(0.002);
     words(&mut page, at + LENS_M[0] + 2.0 * inner, "LENS", 255);
@@ -121,7 +121,7 @@ pub fn page(paper: Paper) -> Gray {
     page
 }
 
-/// Rows of five dots, the highest bit left.
+/// Rows of five dots, the highest bit leftmost.
 fn glyph(letter: char) -> [u8; 7] {
     match letter {
         '0' => [14, 17, 19, 21, 25, 17, 14],

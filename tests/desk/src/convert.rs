@@ -14,11 +14,11 @@ use crate::files::SESSION_FILE;
 use crate::output::{make_folder, write_whole};
 use crate::stored::Stored;
 
-/// What makes a path that of a recording.
+/// The file name extension of a recording.
 pub const EXTENSION: &str = "mcap";
-/// In a folder: messages of the platform's channels, one a line.
+/// In a folder: messages of the platform's channels, one per line.
 const NOTES_FILE: &str = "notes.jsonl";
-/// In a folder: what is known of the device.
+/// In a folder: facts about the device.
 const DEVICE_FILE: &str = "device.json";
 /// No file of a session is larger, the toy's 256 MiB included.
 const MAX_FILE_BYTES: u64 = 512 << 20;
@@ -31,7 +31,7 @@ struct NoteLine {
     message: Box<RawValue>,
 }
 
-/// Of the index no more than what is put elsewhere.
+/// The keys of the index whose values are stored elsewhere.
 #[derive(Deserialize)]
 struct Index<'a> {
     #[serde(borrow, default)]
@@ -45,14 +45,18 @@ struct Entry {
     time: f64,
 }
 
-/// Writes a session to `out`, as a recording where the path ends so, else as a folder. With `index` that is its
-/// `capture.json`.
+/// Writes a session to `out`, as a recording if the path ends so, else as a folder. `index`
+/// replaces its `capture.json` if given.
 ///
 /// # Errors
-/// When `out` is there already or lies in the session's folder, a file of the session cannot be read or is a link, or the
-/// system refuses.
+/// When `out` exists already or lies in the session's folder, a file of the session cannot be read
+/// or is a link, or the system refuses.
 pub fn write(session: &Stored, index: Option<Vec<u8>>, out: &Path) -> anyhow::Result<()> {
-    ensure!(!out.exists(), "{}: is there already", out.display());
+    ensure!(
+        !out.exists(),
+        "{}: exists already: delete it or name another path",
+        out.display()
+    );
     let index = match index {
         Some(index) => index,
         None => read(session, SESSION_FILE)?,
@@ -77,7 +81,10 @@ fn write_folder(session: &Stored, index: &[u8], paths: &[String], out: &Path) ->
         && folder.holds(out)?
     {
         fs::remove_dir(out)?;
-        anyhow::bail!("{}: lies in the session itself", out.display());
+        anyhow::bail!(
+            "{}: lies in the session itself: name a path outside of it",
+            out.display()
+        );
     }
     for path in paths.iter().filter(|path| *path != SESSION_FILE) {
         let file = out.join(path);
@@ -97,7 +104,7 @@ fn write_folder(session: &Stored, index: &[u8], paths: &[String], out: &Path) ->
             write_whole(&out.join(DEVICE_FILE), &device)?;
         }
     }
-    // Last, so that a folder with an index is whole.
+    // Written last, so that a folder with an index is complete.
     Ok(write_whole(&out.join(SESSION_FILE), index)?)
 }
 
@@ -120,7 +127,7 @@ fn write_recording(session: &Stored, index: &[u8], paths: &[String], out: &Path)
     });
     let entries = entries.collect::<Result<Vec<_>, _>>()?;
     let (notes, device) = told(session)?;
-    // Under another name until it is whole.
+    // Written under another name until it is complete.
     let partial = out.with_extension(format!("{}.partial", std::process::id()));
     let context = || partial.display().to_string();
     let written = File::create(&partial).with_context(context).and_then(|file| {
@@ -144,7 +151,7 @@ fn write_recording(session: &Stored, index: &[u8], paths: &[String], out: &Path)
     moved
 }
 
-/// Whether a recording has a place of its own for that file.
+/// Whether a recording has a channel of its own for that file.
 fn is_of_recording(path: &str) -> bool {
     [SESSION_FILE, NOTES_FILE, DEVICE_FILE].contains(&path)
 }
@@ -177,13 +184,13 @@ fn write_frames(
     Ok(())
 }
 
-/// Nanoseconds of a time in seconds; nought before the origin.
+/// Nanoseconds of a time in seconds; 0 before the origin.
 #[expect(clippy::cast_possible_truncation, reason = "a cast saturates")]
 fn time_ns(secs: f64) -> u64 {
     (secs * 1e9).round() as u64
 }
 
-/// What a session says of the platform and of the device.
+/// The session's notes of the platform and facts about the device.
 fn told(session: &Stored) -> anyhow::Result<(Vec<Note>, BTreeMap<String, String>)> {
     let folder = match session {
         Stored::Recording(recording) => {

@@ -1,5 +1,6 @@
-//! Values that can be read, but contradict one another or the pictures: lengths in millimetres, a bulb around the toy, a stated exposure,
-//! frames without the plates' colours. They are said, and nothing is changed.
+//! Values that can be read, but contradict one another or the pictures: lengths in millimetres, a
+//! bulb around the toy, a wrong exposure, frames without the plates' colours. They are reported,
+//! and nothing is changed.
 
 use app_core::scene::{Camera, Image, Light, Plate, Scene};
 use app_core::session::SessionFrame;
@@ -7,27 +8,30 @@ use app_scene::geometry::color::linear_of_codes;
 use app_scene::words::Number;
 use glam::{DMat4, DVec3};
 
-/// Distances to a toy that are no mistake, in metres.
+/// Plausible distances of a camera from the toy, in metres.
 const CAMERA_M: [f64; 2] = [0.03, 30.0];
-/// Other units than the metre, and how many metres one is.
+/// Other units than the metre, and their length in metres.
 const UNITS: [(&str, f64); 2] = [("millimetres", 0.001), ("centimetres", 0.01)];
-/// Sizes of a toy that a camera usually is away from it.
+/// Usual distance of a camera, in sizes of the toy.
 const USUAL_SIZES: f64 = 5.0;
-/// Pixels that are looked at along a row and along a column.
+/// Number of sampled pixels along a row and along a column.
 const N_SAMPLES: u32 = 64;
-/// Codes that tell a pixel's light: neither noise nor clipped.
+/// Codes that measure a pixel's light: neither noise nor clipped.
 const TELLING: std::ops::RangeInclusive<u8> = 12..=245;
-/// By how much light may differ from what an exposure says: of the same place, and of a place seen from elsewhere.
+/// Allowed factor between measured light and a stated exposure: for the same place, and for a place
+/// seen from elsewhere.
 const SAME_PLACE: f64 = 1.5;
 const OTHER_PLACE: f64 = 3.0;
-/// How far a camera of the same place may be moved, in parts of its distance, and turned, as a cosine.
+/// Largest move of a camera that still sees the same place, as a fraction of its distance, and
+/// largest turn, as a cosine.
 const MOVED: f64 = 0.02;
 const TURNED: f64 = 0.9998;
-/// Differences between channels, in codes: of a grey picture at most, and of one with colours in the mean.
+/// Differences between channels, in codes: the largest of a grey picture, and the mean of one with
+/// colours.
 const GREY: u8 = 2;
 const COLOURED: f64 = 6.0;
 
-/// Of the session as a whole.
+/// Doubts about the session as a whole.
 pub(crate) fn of_scene(scene: &Scene) -> Vec<String> {
     let Some([centre, _]) = centre_and_diagonal(scene, &scene.world_from_object) else {
         return Vec::new();
@@ -46,7 +50,7 @@ pub(crate) fn of_scene(scene: &Scene) -> Vec<String> {
     scene.lights.iter().enumerate().filter_map(around).collect()
 }
 
-/// Of one frame.
+/// Doubts about one frame.
 pub(crate) fn of_frame(scene: &Scene, index: usize, frame: &SessionFrame) -> Vec<String> {
     let about = [
         distance(scene, frame).map(|what| ("world_from_camera", what)),
@@ -59,7 +63,7 @@ pub(crate) fn of_frame(scene: &Scene, index: usize, frame: &SessionFrame) -> Vec
         .collect()
 }
 
-/// A camera much too far away or close by, and by what its lengths would be right.
+/// A camera much too far away or too close, and the unit that would make its lengths right.
 fn distance(scene: &Scene, frame: &SessionFrame) -> Option<String> {
     let [centre, diagonal] = centre_and_diagonal(scene, &frame.world_from_object)?;
     let diagonal_m = diagonal.length();
@@ -82,7 +86,7 @@ fn distance(scene: &Scene, frame: &SessionFrame) -> Option<String> {
     ))
 }
 
-/// A stated exposure by which the picture is not brighter or darker.
+/// A stated exposure that the picture's brightness contradicts.
 fn exposure(scene: &Scene, frame: &SessionFrame) -> Option<String> {
     if frame.exposure == 1.0 {
         return None;
@@ -118,7 +122,7 @@ fn is_same_place(a: &Camera, b: &Camera, distance_m: f64) -> bool {
     a.intrinsics == b.intrinsics && moved_m <= MOVED * distance_m && turned >= TURNED
 }
 
-/// A frame without colours of a place that has some.
+/// A grey frame of a place whose plate has colours.
 fn colours(scene: &Scene, frame: &SessionFrame) -> Option<String> {
     let spread = |image: &Image| samples(image).map(spread_of).collect::<Vec<_>>();
     if spread(&frame.image).into_iter().any(|spread| spread > GREY) {
@@ -139,7 +143,7 @@ fn spread_of([r, g, b]: [u8; 3]) -> u8 {
     r.max(g).max(b) - r.min(g).min(b)
 }
 
-/// Some pixels all over a picture.
+/// Sample pixels all over a picture.
 fn samples(image: &Image) -> impl Iterator<Item = [u8; 3]> {
     let [width, height] = [image.width_px, image.height_px];
     let along = |n: u32| (0..n).step_by((n / N_SAMPLES).max(1) as usize);
@@ -147,7 +151,7 @@ fn samples(image: &Image) -> impl Iterator<Item = [u8; 3]> {
     places.filter_map(|at| image.rgba8.get(4 * at..4 * at + 3)?.try_into().ok())
 }
 
-/// Median of how much brighter pixels are than those of another picture, in their green.
+/// Median ratio of the pixels' green to that of another picture.
 fn ratio_of_pixels(image: &Image, other: &Image) -> Option<f64> {
     let linear = linear_of_codes();
     let both = samples(image).zip(samples(other));
@@ -158,7 +162,7 @@ fn ratio_of_pixels(image: &Image, other: &Image) -> Option<f64> {
     ratios.get(ratios.len() / 2).copied()
 }
 
-/// Mean light of a picture's green; none of a black one.
+/// Mean green of a picture in linear light; `None` for a black one.
 fn mean_light(image: &Image) -> Option<f64> {
     let linear = linear_of_codes();
     let light: Vec<f64> = samples(image)
@@ -168,7 +172,7 @@ fn mean_light(image: &Image) -> Option<f64> {
     (mean > 0.0).then_some(mean)
 }
 
-/// Of the toy's box in the world: its middle, and from one corner to the opposite one.
+/// Centre and diagonal of the toy's box in the world.
 fn centre_and_diagonal(scene: &Scene, world_from_object: &DMat4) -> Option<[DVec3; 2]> {
     let bounds = scene.toy.bounds_of_pose(&scene.physical_pose).ok()?;
     let ends = [bounds.min, bounds.max].map(|end| world_from_object.transform_point3(end.as_dvec3()));

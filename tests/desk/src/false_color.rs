@@ -8,7 +8,7 @@ use serde::Serialize;
 /// Colours at equal steps from the lowest value to the highest, as 8-bit sRGB.
 pub type Ramp = &'static [[u8; 3]];
 
-/// Error in codes at and above which the ramp stays at its end.
+/// Error in codes at which the ramp ends.
 pub const ERROR_END_CODES: u8 = 16;
 /// Even steps of lightness from black. Source: inferno of matplotlib (CC0), every 32nd colour.
 pub const ERROR_RAMP: Ramp = &[
@@ -30,14 +30,14 @@ const TAPS_RAMP: Ramp = &[
     [94, 201, 98],
     [253, 231, 37],
 ];
-/// Blue where light is missing from the model, red where the model has too little.
+/// Blue if the model has too much light, red if it has too little.
 const SIGNED_RAMP: Ramp = &[[33, 102, 172], [247, 247, 247], [178, 24, 43]];
 
 const RECEIVER: [u8; 3] = [86, 180, 233];
 const TOY: [u8; 3] = [230, 159, 0];
-/// Of a light that was found or corrected: yellow.
+/// Colour of an estimated or corrected light: yellow.
 pub const LIGHT_FOUND: [u8; 3] = [255, 220, 40];
-/// Of one that was given: red.
+/// Colour of a given light: red.
 pub const LIGHT_GIVEN: [u8; 3] = [255, 40, 40];
 const NOTHING: [u8; 4] = [0; 4];
 /// Residual, in plates, at which the ramp ends.
@@ -45,16 +45,17 @@ const RESIDUAL_END: f32 = 0.1;
 /// Candidates at which the ramp of the ring search ends.
 const TAPS_END: f32 = 3200.0;
 
-/// How a map is shown to a person.
+/// Presentation of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Shown {
     /// Name in file names.
     pub name: &'static str,
-    /// Name for a person.
+    /// Title for the reader.
     pub title: &'static str,
-    /// What is to be seen.
+    /// Caption.
     pub caption: &'static str,
-    /// The meaning of its colours; none where single ones have a meaning, or where they are those of a picture.
+    /// The meaning of its ramp; `None` if single colours have a meaning, or if the colours are a
+    /// picture's.
     pub legend: Option<Legend>,
     /// Single colours and their meanings.
     pub swatches: &'static [Swatch],
@@ -65,22 +66,22 @@ pub struct Shown {
 pub struct Swatch {
     /// The colour, as 8-bit sRGB.
     pub color: [u8; 3],
-    /// What it means.
+    /// Description of the map.
     pub meaning: &'static str,
 }
 
 /// The meaning of a ramp.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Legend {
-    /// What its first colour means.
+    /// Meaning of the first colour.
     pub low: &'static str,
-    /// What its last colour means.
+    /// Meaning of the last colour.
     pub high: &'static str,
     /// Its colours.
     pub ramp: Ramp,
 }
 
-/// How the error is shown.
+/// Presentation of the error.
 pub const ERROR: Shown = shown(
     "error",
     "Error",
@@ -88,7 +89,7 @@ pub const ERROR: Shown = shown(
     Some(("0", "16 codes of 255 and more", ERROR_RAMP)),
 );
 
-/// How the lights are shown.
+/// Presentation of the lights.
 pub const LIGHTS: Shown = shown(
     "lights",
     "Lights",
@@ -158,7 +159,7 @@ const fn swatches_of(map: Map) -> &'static [Swatch] {
     }
 }
 
-/// How `map` is shown; none for a map that is not.
+/// Presentation of `map`; `None` for a map that is not shown.
 #[must_use]
 pub fn describe(map: Map) -> Option<Shown> {
     let light = Some(("hidden", "in full sight", GRAY));
@@ -166,7 +167,7 @@ pub fn describe(map: Map) -> Option<Shown> {
         Map::Validity => (
             "validity",
             "Validity",
-            "What each pixel of the camera frame shows, and so what it may be used for.",
+            "The content of each pixel of the camera frame, and thus its permitted uses.",
             None,
         ),
         Map::GbufferBase => (
@@ -178,51 +179,51 @@ pub fn describe(map: Map) -> Option<Shown> {
         Map::GbufferReceived => (
             "received",
             "Light on the toy",
-            "What each point of the real toy receives of each light, its own shadow on itself included; three lights as \
-             red, green, blue.",
+            "The light that each point of the real toy receives from each lamp, including the toy's shadow on itself; \
+             three lights as red, green, blue.",
             Some(("turned away or hidden", "in full light", GRAY)),
         ),
         Map::Appearance => (
             "appearance",
             "Toy's own colours",
-            "Colours taken from the camera frame and carried past the outline: what the moved toy is painted with.",
+            "Colours of the camera frame, extrapolated beyond the outline: the paint of the moved toy.",
             None,
         ),
         Map::PhysicalVisibility => (
             "visibility-before",
             "Light, real pose",
-            "How much of each light every point of the table sees past the real toy; three lights as red, green, blue.",
+            "The visible fraction of each light at every point of the table, past the real toy; three lights as red, green, blue.",
             light,
         ),
         Map::PhysicalAmbient => (
             "ambient-before",
             "Surroundings, real pose",
-            "How much of the surroundings every point of the table sees past the real toy.",
+            "The visible fraction of the surroundings at every point of the table, past the real toy.",
             light,
         ),
         Map::Visibility => (
             "visibility",
             "Light, shown pose",
-            "How much of each light every point of the table sees past the moved toy; three lights as red, green, blue.",
+            "The visible fraction of each light at every point of the table, past the moved toy; three lights as red, green, blue.",
             light,
         ),
         Map::Ambient => (
             "ambient",
             "Surroundings, shown pose",
-            "How much of the surroundings every point of the table sees past the moved toy.",
+            "The visible fraction of the surroundings at every point of the table, past the moved toy.",
             light,
         ),
         Map::Residual => (
             "residual",
             "Residual",
-            "What the model of light and shadow leaves unexplained, as a fraction of the plate.",
+            "The residual of the model of light and shadow, as a fraction of the plate.",
             Some(("\u{2212}0.1: darker than modelled", "+0.1: brighter", SIGNED_RAMP)),
         ),
         Map::DirectFraction => (
             "share",
             "Share of the lights (f)",
-            "How much of the table's light comes from the lights on the list, for red, green and blue; the rest comes from all around \
-             (ambient). It is f in the paper.",
+            "The share of the listed lights in the table's light, for red, green and blue; the rest is ambient. It is f in \
+             the paper.",
             Some(("0: all of it is ambient", "1: all of it is from the lights", GRAY)),
         ),
         Map::Masks => ("mask", "Object mask", MASK_CAPTION, None),
@@ -251,7 +252,8 @@ pub(crate) fn color_at(ramp: Ramp, t: f32) -> [u8; 3] {
     [channel(0), channel(1), channel(2)]
 }
 
-/// The largest difference over the three colours of each pixel as a colour. Both pictures are of one size.
+/// The largest difference over the three channels of each pixel as a colour. Both pictures have the
+/// same size.
 #[must_use]
 pub fn error(picture: &Image, truth: &Image) -> Image {
     let pairs = picture.rgba8.chunks_exact(4).zip(truth.rgba8.chunks_exact(4));
@@ -267,7 +269,7 @@ pub fn error(picture: &Image, truth: &Image) -> Image {
     }
 }
 
-/// `values` of `map` as a picture of the whole frame, transparent around the region that they are of.
+/// `values` of `map` as a picture of the whole frame, transparent outside of their region.
 #[must_use]
 pub fn picture(map: Map, values: &FloatMap, region: PixelRect, size_px: [u32; 2]) -> Image {
     let [width_px, height_px] = size_px;
@@ -308,7 +310,7 @@ fn color_of(map: Map, [r, g, b, a]: [f32; 4], is_colored: bool) -> [u8; 4] {
     }
 }
 
-/// The second set lies over the first.
+/// Overlays the second set on the first.
 fn two_sets(first: f32, second: f32, first_color: [u8; 3], second_color: [u8; 3]) -> [u8; 4] {
     if second > 0.5 {
         opaque(second_color)

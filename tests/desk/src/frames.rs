@@ -1,4 +1,4 @@
-//! Frames of a session as they are asked for in an argument: one, or a range that may be open at either end.
+//! Frames of a session as an argument names them: one, or a range that may be open at either end.
 
 use std::fmt;
 use std::ops::Range;
@@ -6,19 +6,20 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-/// Frames that are asked for, counted from 0: `3` is one frame, `2..5` goes from 2 to 4, `3..` to the last, `..2` has the first two.
+/// A selection of frames, counted from 0: `3` is one frame, `2..5` goes from 2 to 4, `3..` to the
+/// last, `..2` has the first two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frames {
     start: usize,
-    /// The first that is not asked for; none if all to the last are.
+    /// The end of the range, exclusive; `None` for all to the last.
     end: Option<usize>,
 }
 
 impl Frames {
-    /// All that there are.
+    /// All frames.
     pub const ALL: Self = Self { start: 0, end: None };
 
-    /// Those of a session of `n_frames`.
+    /// The selected range within a session of `n_frames`.
     ///
     /// # Errors
     /// When it has not all of them, or none at all is left.
@@ -76,7 +77,7 @@ impl fmt::Display for Frames {
     }
 }
 
-/// A text that names no frames.
+/// A text that is no selection of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("a number, or two of them A..B, the first smaller than the second; one of the two may be missing")]
 pub struct FramesError;
@@ -87,6 +88,6 @@ pub struct FramesError;
 pub struct NoSuchFrames {
     /// The frames asked for.
     pub asked: Frames,
-    /// Number of frames that there are.
+    /// Number of frames of the session.
     pub n_frames: usize,
 }

@@ -1,4 +1,4 @@
-//! Lights over a photograph: where they are as seen from the toy, how wide, and how well that is known.
+//! Lights drawn over a photograph: their direction from the toy, their width, and its uncertainty.
 
 use std::f64::consts::TAU;
 
@@ -15,31 +15,31 @@ pub use crate::false_color::{LIGHT_FOUND as FOUND, LIGHT_GIVEN as GIVEN};
 const RAY: f64 = 0.45;
 /// Dots along a line, and around a ring.
 const N_DOTS: u32 = 600;
-/// Rings stand for so many deviations.
+/// Radius of a dashed ring, in standard deviations.
 const DEVIATIONS: f64 = 2.0;
 /// Side of the picture of a hemisphere, and radius of its horizon, in pixels.
 const HEMISPHERE_PX: u32 = 400;
 const HORIZON_PX: f64 = 190.0;
 const SURROUNDINGS: [u8; 4] = [32, 32, 32, 255];
 
-/// A light to be drawn.
+/// A light to draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Gizmo {
-    /// As seen from the toy's middle.
+    /// The light seen from the toy's centre.
     pub seen: SeenLight,
-    /// One deviation of its direction, in radians, where that is told.
+    /// Standard deviation of its direction, in radians, if known.
     pub deviation_rad: Option<f64>,
 }
 
 impl Gizmo {
-    /// Those of a list, from the middle of the toy where an input has it.
+    /// The lights of a list, seen from the toy of an input.
     #[must_use]
     pub fn listed(scene: &Scene, input: &FrameInput) -> Vec<Self> {
         let lights = input.lights.as_deref().unwrap_or(&scene.lights);
         Self::of(lights, middle(scene, &input.world_from_object), |_| None)
     }
 
-    /// Those that an aligned input has, with what alignment tells of them.
+    /// The lights of an aligned input, with alignment's report about them.
     #[must_use]
     pub fn aligned(scene: &Scene, input: &FrameInput, report: &AlignmentReport) -> Vec<Self> {
         let lights = input.lights.as_deref().unwrap_or(&scene.lights);
@@ -61,8 +61,8 @@ impl Gizmo {
     }
 }
 
-/// Draws for each light a ray from the toy's middle towards it, at its end a ring as wide as the light, and a dashed one of two deviations
-/// of its direction.
+/// Draws for each light a ray from the toy's centre towards it, at its end a ring as wide as the
+/// light, and a dashed ring of two standard deviations of its direction.
 pub fn rays(picture: &mut Image, (scene, input): (&Scene, &FrameInput), lights: &[Gizmo], color: [u8; 3]) {
     let from = middle(scene, &input.world_from_object);
     let bounds = scene.toy.bounds_of_pose(&scene.physical_pose);
@@ -85,7 +85,7 @@ pub fn rays(picture: &mut Image, (scene, input): (&Scene, &FrameInput), lights: 
     }
 }
 
-/// A ring around an end, whole, or dashed in groups of so many dots.
+/// A ring around an end, whole, or dashed in groups of equally many dots.
 fn ring(
     picture: &mut Image,
     camera: &Camera,
@@ -106,7 +106,7 @@ fn mark(picture: &mut Image, camera: &Camera, at: DVec3, color: [u8; 3]) {
     }
 }
 
-/// Paints the pixel that a place is in, where that is in the picture.
+/// Paints the pixel at a place, if that is in the picture.
 pub(crate) fn dot(picture: &mut Image, at_px: DVec2, color: [u8; 3]) {
     let at = at_px.floor();
     let size = DVec2::new(f64::from(picture.width_px), f64::from(picture.height_px));
@@ -117,9 +117,10 @@ pub(crate) fn dot(picture: &mut Image, at_px: DVec2, color: [u8; 3]) {
     }
 }
 
-/// The hemisphere above the receiver that the search for lights scored, seen from above with the camera below: the middle is straight up,
-/// the rim the horizon, and areas stay as large as they are (Lambert). The brighter, the more a light there explains; rings are lights,
-/// about as wide as two deviations of them, and 6 pixels at least.
+/// The hemisphere above the receiver that the search for lights scored, seen from above with the
+/// camera below: the centre is straight up, the rim the horizon, and areas are preserved (Lambert).
+/// Brightness is the score of a light there; rings are lights, about two standard deviations wide,
+/// and 6 pixels at least.
 #[must_use]
 pub fn hemisphere(search: &LightSearch, camera: &Camera, lights: &[(Gizmo, [u8; 3])]) -> Image {
     let plane = Plane::new(search.up_in_world, camera);
@@ -180,11 +181,11 @@ impl Plane {
         }
     }
 
-    /// None beyond the horizon.
+    /// The direction at a place; `None` beyond the horizon.
     fn direction(&self, at_px: DVec2) -> Option<DVec3> {
         let at = (at_px - 0.5 * f64::from(HEMISPHERE_PX)) / HORIZON_PX;
         let r2 = at.length_squared();
-        // Lambert's azimuthal projection: the distance is that of the chord, 1 at the horizon.
+        // Lambert's azimuthal projection: the distance is the chord's, 1 at the horizon.
         let level = (2.0 - r2).max(0.0).sqrt();
         let [right, away, up] = self.axes;
         (r2 <= 1.0).then(|| level * (at.x * right - at.y * away) + (1.0 - r2) * up)

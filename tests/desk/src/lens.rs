@@ -1,11 +1,12 @@
-//! What was made of a frame as a pinhole sees it, as the session's lens shows it.
+//! Converts pictures from the pinhole's view to the session's lens.
 
 use app_core::lens::Lens;
 use app_core::scene::Image;
 use app_core::session::{Session, SessionError};
 
-/// The photograph of the frame `index` with what was changed in its pinhole's picture to make `made`, of the same size: `made` itself
-/// where the session has no lens. Pixels whose surroundings did not change are the photograph's own.
+/// The photograph of the frame `index` with the changes of its pinhole's picture `made`, of the
+/// same size: `made` itself if the session has no lens. Pixels with unchanged surroundings are the
+/// photograph's own.
 ///
 /// # Errors
 /// When there is no such frame, or its picture cannot be read.
@@ -19,8 +20,8 @@ pub fn through_lens(session: &dyn Session, index: usize, made: Image) -> Result<
     })
 }
 
-/// A map over the pinhole's picture of the frame `index`, of the same size, as it lies over the photograph: `map` itself where the
-/// session has no lens. What lies beside it is all zero.
+/// A map over the pinhole's picture of the frame `index`, of the same size, converted to the
+/// photograph: `map` itself if the session has no lens. Pixels beside it are zero.
 ///
 /// # Errors
 /// When there is no such frame.
@@ -31,7 +32,7 @@ pub fn map_through_lens(session: &dyn Session, index: usize, map: Image) -> Resu
     })
 }
 
-/// The lens of a picture of the session's size.
+/// The lens for a picture of the session's size.
 fn lens_for(session: &dyn Session, index: usize, picture: &Image) -> Result<Option<Lens>, SessionError> {
     let scene = session.scene();
     let lens = session.lens(index)?;

@@ -1,4 +1,5 @@
-//! The desktop programs: they run the core over recorded sessions, score what it makes and report what it took.
+//! The desktop programs: they run the core over recorded sessions, score its pictures and report
+//! its cost.
 
 pub mod alignment;
 pub mod card;

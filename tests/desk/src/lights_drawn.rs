@@ -1,4 +1,4 @@
-//! Pictures of the lights that alignment found, beside a report.
+//! Pictures of the estimated lights, beside a report.
 
 use app_core::alignment::LightSearch;
 use app_core::frame::FrameInput;
@@ -13,11 +13,11 @@ use crate::page::pictures::Pictures;
 use crate::replay::{ReplayError, Shot};
 use crate::report::MapEntry;
 
-/// Name of the picture of all directions that lights were looked for in.
+/// Name of the picture of the search directions.
 pub(crate) const HEMISPHERE: &str = "hemisphere";
 
-/// Draws the lights of an aligned frame over its photograph, and where lights were found that nobody lists, what each direction
-/// explained.
+/// Draws the lights of an aligned frame over its photograph, and, if lights were found without a
+/// list, the score of each direction.
 pub(crate) fn write_lights(
     pictures: &mut Pictures,
     shot: &Shot<'_>,

@@ -12,12 +12,12 @@ use thiserror::Error;
 
 /// Luma of encoded RGB, with the weights of ITU-R BT.709.
 const LUMA: [f64; 3] = [0.2126, 0.7152, 0.0722];
-/// How far a shadow reaches beyond what the mask holds, for filtering and noise.
+/// Reach of a shadow beyond the mask, for filtering and noise.
 const SHADOW_MARGIN_PX: usize = 6;
-/// How far the rim of the toy reaches outwards, and inwards.
+/// Width of the toy's rim outside and inside of its outline.
 const RIM_OUTSIDE_PX: usize = 2;
 const RIM_INSIDE_PX: usize = 1;
-/// Mask codes up to this one are the noise of the renderer.
+/// Largest code of the renderer's noise in a mask.
 const MASK_NOISE: u8 = 2;
 
 const N_REGIONS: usize = 4;
@@ -28,7 +28,7 @@ const N_REGIONS: usize = 4;
     "the {name} is {width_px} x {height_px} px, but the truth's mask is {mask_width_px} x {mask_height_px} px"
 )]
 pub struct SizeError {
-    /// Which picture it is.
+    /// The picture's name.
     pub name: &'static str,
     /// Its width.
     pub width_px: u32,
@@ -52,9 +52,9 @@ pub struct Score {
 /// Error of one picture.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Scores {
-    /// Where a shadow is or was and no toy covers it now.
+    /// Pixels of a former or present shadow outside of the moved toy.
     pub shadow: Score,
-    /// Inside the moved toy.
+    /// Pixels inside the moved toy.
     pub toy: Score,
     /// The rim of the moved toy, where old pixels would show.
     pub edge: Score,
@@ -62,7 +62,7 @@ pub struct Scores {
     pub frame: Score,
 }
 
-/// Which pixels belong to which region.
+/// The regions of each pixel.
 #[derive(Clone, Debug)]
 pub struct Regions {
     width_px: u32,
@@ -136,18 +136,18 @@ impl Regions {
     }
 }
 
-/// Compares a picture with the truth over the regions of its mask. Alpha is not looked at.
+/// Compares a picture with the truth over the regions of its mask. Alpha is ignored.
 ///
 /// # Errors
-/// When picture or truth is not of the mask's size.
+/// When the size of picture or truth differs from the mask's.
 pub fn score(picture: &Image, truth: &Truth) -> Result<Scores, SizeError> {
     measure(picture, &truth.image, &Regions::from_mask(&truth.mask))
 }
 
-/// Compares a picture with the truth, region by region. Alpha is not looked at.
+/// Compares a picture with the truth, region by region. Alpha is ignored.
 ///
 /// # Errors
-/// When one of the pictures is not of the mask's size.
+/// When the size of a picture differs from the mask's.
 pub fn measure(actual: &Image, truth: &Image, regions: &Regions) -> Result<Scores, SizeError> {
     regions.check_size("picture", actual)?;
     regions.check_size("truth", truth)?;
@@ -171,11 +171,11 @@ pub fn measure(actual: &Image, truth: &Image, regions: &Regions) -> Result<Score
     })
 }
 
-/// RMSE of a camera frame against the truth beyond shadows and toy, where they show the same: the noise of both and their
-/// rounding. None if the picture has no such place.
+/// RMSE of a camera frame against the truth outside of shadows and toy, where they show the same:
+/// the noise of both and their rounding. `None` if the picture has no such pixel.
 ///
 /// # Errors
-/// When frame or truth is not of the mask's size.
+/// When the size of frame or truth differs from the mask's.
 pub fn floor(frame: &Image, truth: &Truth) -> Result<Option<f64>, SizeError> {
     let regions = Regions::from_mask(&truth.mask);
     regions.check_size("frame", frame)?;
@@ -196,7 +196,7 @@ pub fn floor(frame: &Image, truth: &Truth) -> Result<Option<f64>, SizeError> {
     Ok((sum.n_pixels > 0).then(|| sum.score().rmse))
 }
 
-/// Mean over red, green and blue.
+/// Mean squared difference over red, green and blue.
 fn squared_error(actual: &[u8], truth: &[u8]) -> f64 {
     let channels = actual.iter().zip(truth).take(3);
     channels
@@ -238,8 +238,8 @@ fn luma(image: &Image) -> Vec<f64> {
         .collect()
 }
 
-/// Sets each pixel that has a set one within a square of `radius` around it. Nothing is set beyond
-/// the border.
+/// Sets each pixel that has a set one within a square of `radius` around it. Nothing is set outside
+/// of the picture.
 fn dilate(set: &[bool], width: usize, radius: usize) -> Vec<bool> {
     let mut rows = vec![false; set.len()];
     for (row, out) in set.chunks_exact(width).zip(rows.chunks_exact_mut(width)) {
@@ -253,7 +253,7 @@ fn dilate(set: &[bool], width: usize, radius: usize) -> Vec<bool> {
     both
 }
 
-/// Marks what lies within `radius` of a set element, each element at most once.
+/// Marks all elements within `radius` of a set element, each at most once.
 fn dilate_line(line: impl ExactSizeIterator<Item = bool>, radius: usize, mut mark: impl FnMut(usize)) {
     let n = line.len();
     let mut next = 0;

@@ -1,4 +1,4 @@
-//! A session as it is stored, or with the lens that its pictures tell.
+//! A session as it is stored, or with the lens as estimated from its pictures.
 
 use std::path::Path;
 
@@ -10,15 +10,15 @@ use crate::alignment::{Lights, Source};
 use crate::program::open_session;
 use crate::stored::Stored;
 
-/// A session, and what was found of its lens.
+/// A session, and the estimate of its lens.
 pub struct Opened {
-    /// Its photographs are free of the lens.
+    /// The session, with the lens removed from its photographs.
     pub capture: Capture,
-    /// None where nobody asked.
+    /// The estimate; `None` if it was not asked for.
     pub lens: Option<LensAlignment>,
 }
 
-/// Opens a folder or a recording. A lens that is looked for takes the place of the session's own.
+/// Opens a folder or a recording. An estimated lens replaces the session's own.
 ///
 /// # Errors
 /// When it cannot be opened, or a frame cannot be read or aligned.
@@ -40,7 +40,7 @@ fn with_found_lens(path: &Path, lights: Lights) -> anyhow::Result<Opened> {
     let capture = match found.outcome {
         RatioOutcome::Corrected => Capture::open_with_lens(Stored::open(path)?, Some(found.distortion))?,
         RatioOutcome::AsGiven => bent,
-        // The session knows better.
+        // The session's own lens is the better one.
         _ => Capture::open(Stored::open(path)?)?,
     };
     Ok(Opened {
@@ -49,7 +49,8 @@ fn with_found_lens(path: &Path, lights: Lights) -> anyhow::Result<Opened> {
     })
 }
 
-/// In the first frame that shows toy and shadows well enough; as in the last where none does.
+/// Estimates the lens in the first frame that shows toy and shadows well enough, or in the last
+/// frame.
 fn find(bent: &Capture, lights: Lights) -> anyhow::Result<LensAlignment> {
     let aligner = Aligner::new(lights.known(bent.scene()));
     let mut found = None;

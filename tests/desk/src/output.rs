@@ -1,5 +1,5 @@
-//! Files of a result: each is written under a temporary name beside its place and then renamed, so that it is there
-//! whole or not at all.
+//! Files of a result. Each is written under a temporary name beside its place and then renamed, so
+//! that it exists whole or not at all.
 
 pub mod folder;
 
@@ -15,9 +15,9 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[error("writing {}: {reason}", path.display())]
 pub struct WriteError {
-    /// What was to be written.
+    /// The path to write.
     pub path: PathBuf,
-    /// Why it was not.
+    /// The reason of the failure.
     pub reason: String,
 }
 
@@ -30,7 +30,7 @@ impl WriteError {
     }
 }
 
-/// Makes a folder and those above it, where they are missing.
+/// Makes a folder and its parents if they are missing.
 ///
 /// # Errors
 /// When the system refuses, or something else has that name.
@@ -38,7 +38,7 @@ pub fn make_folder(folder: &Path) -> Result<(), WriteError> {
     fs::create_dir_all(folder).map_err(|error| WriteError::new(folder, error))
 }
 
-/// Removes a file; one that is not there is no error.
+/// Removes a file; a missing file is no error.
 ///
 /// # Errors
 /// When the system refuses.
@@ -52,12 +52,12 @@ pub fn remove_file(path: &Path) -> Result<(), WriteError> {
 /// Writes a picture as PNG, alpha included.
 ///
 /// # Errors
-/// When its bytes do not fit its size, or the system refuses. What stood at `path` before then still does.
+/// When its bytes do not fit its size, or the system refuses; an older file at `path` stays then.
 pub fn write_png(path: &Path, image: &Image) -> Result<(), WriteError> {
     write_whole(path, &png_of(path, image)?)
 }
 
-/// A picture as the bytes of a PNG, alpha included, to be written at `path`.
+/// A picture as the bytes of a PNG, alpha included, for the file `path`.
 fn png_of(path: &Path, image: &Image) -> Result<Vec<u8>, WriteError> {
     let n_bytes = u64::from(image.width_px) * u64::from(image.height_px) * 4;
     if image.rgba8.len() as u64 != n_bytes {
@@ -79,16 +79,16 @@ fn png_of(path: &Path, image: &Image) -> Result<Vec<u8>, WriteError> {
 /// Writes a file.
 ///
 /// # Errors
-/// When the system refuses. What stood at `path` before then still does, and nothing new stands beside it.
+/// When the system refuses; an older file at `path` stays then, and no other file remains.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let mut name = path.file_name().unwrap_or_default().to_owned();
-    // Two runs into one folder must not write into one another's temporary file.
+    // Two runs with one folder must not share a temporary file.
     name.push(format!(".{}.partial", process::id()));
     let partial = path.with_file_name(name);
     fs::write(&partial, bytes)
         .and_then(|()| fs::rename(&partial, path))
         .map_err(|error| {
-            // The first error tells what is wrong; that the rest cannot be removed either adds nothing.
+            // The first error says what is wrong; another one about the remnant adds nothing.
             let _ = fs::remove_file(&partial);
             WriteError::new(path, error)
         })

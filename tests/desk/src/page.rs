@@ -1,4 +1,5 @@
-//! The report as a page: one file to open from disk, with its pictures beside it and nothing from a network.
+//! The report as a page: one file to open from disk, with its pictures beside it and no use of a
+//! network.
 
 pub mod film;
 pub(crate) mod pictures;
@@ -28,7 +29,7 @@ pub const MAPS_FOLDER: &str = "maps";
 
 const TEMPLATE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
-/// Each uses what those before it define; the last starts the page.
+/// Each script uses definitions of those before it; the last one starts the page.
 const SCRIPTS: [&str; 8] = [
     include_str!("page/base.js"),
     include_str!("page/values.js"),
@@ -40,18 +41,18 @@ const SCRIPTS: [&str; 8] = [
     include_str!("page/page.js"),
 ];
 
-/// Everything that the page's script needs to know.
+/// The data of the page's script.
 #[derive(Serialize)]
 struct Data<'a> {
     session: &'a str,
     size_px: [u32; 2],
     frames: Vec<Inputs>,
-    /// Pictures that differ from preset to preset, in the order they are offered.
+    /// Pictures that differ between presets, in the order of the menu.
     shown: Vec<Shown>,
     presets: Vec<PresetData<'a>>,
 }
 
-/// What all presets start from and are compared with.
+/// Pictures and data that all presets have in common.
 #[derive(Serialize)]
 struct Inputs {
     index: usize,
@@ -61,7 +62,7 @@ struct Inputs {
 
 #[derive(Serialize)]
 struct PresetData<'a> {
-    /// Goes before the paths in the report.
+    /// Prefix of the report's paths.
     folder: String,
     report: &'a Report,
 }
@@ -82,7 +83,7 @@ impl Page {
         }
     }
 
-    /// Writes what all presets start from in a frame, and what they are compared with.
+    /// Writes the pictures of a frame that all presets have in common.
     pub(crate) fn add(
         &mut self,
         index: usize,
@@ -125,7 +126,7 @@ impl Page {
     }
 }
 
-/// Where the files of a preset lie below the output folder: right there, if it is the only one.
+/// Folder of a preset below the output folder: the output folder itself for a single preset.
 pub(crate) fn folder_of(preset: &str, n_presets: usize) -> String {
     match n_presets {
         1 => String::new(),
@@ -134,9 +135,9 @@ pub(crate) fn folder_of(preset: &str, n_presets: usize) -> String {
 }
 
 fn html(data: &impl Serialize) -> Result<String, serde_json::Error> {
-    // No text from a session may end the element that the data stands in.
+    // No text of a session may end the element of the data.
     let json = serde_json::to_string(data)?.replace('<', "\\u003c");
-    // The data comes last: what it holds is not looked at for marks.
+    // The data comes last, so that no mark in it is replaced.
     Ok(TEMPLATE
         .replace("{{style}}", STYLE)
         .replace("{{script}}", &SCRIPTS.concat())

@@ -1,4 +1,4 @@
-//! How a desktop program opens its session, and how it ends.
+//! Start and end of a desktop program: its session, its exit code.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -10,23 +10,24 @@ use app_core::gpu::GpuError;
 
 use crate::stored::{Stored, StoredError};
 
-/// What helps where there is no graphics adapter.
+/// Advice for a machine without a graphics adapter.
 const SOFTWARE_DRIVER: &str =
     "; on Debian or Ubuntu `apt-get install mesa-vulkan-drivers` brings a software one";
 
-/// The top folder of the repository, below which programs write unless another folder is named.
+/// The top folder of the repository, below which programs write by default.
 #[must_use]
 pub fn repository() -> &'static Path {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     package.ancestors().nth(2).unwrap_or(package)
 }
 
-/// The folder below the repository that a session's results go to: `results`, and in it the name of the session's folder or recording.
+/// The default folder of a session's results below the repository: `results`, and in it the name of
+/// the session's folder or recording.
 ///
 /// # Errors
 /// When there is no such session.
 pub fn results_of(session: &Path, results: &str) -> anyhow::Result<PathBuf> {
-    // `.` and `..` have a name of their own only when they are followed.
+    // `.` and `..` have a name only after they are resolved.
     let session = session
         .canonicalize()
         .with_context(|| session.display().to_string())?;
@@ -39,7 +40,7 @@ pub fn results_of(session: &Path, results: &str) -> anyhow::Result<PathBuf> {
     Ok(results.join(name.unwrap_or("session".as_ref())))
 }
 
-/// Opens a folder or a recording, and says on standard error what is lost of it.
+/// Opens a folder or a recording, and reports a damaged recording's losses on standard error.
 ///
 /// # Errors
 /// When there is none.
@@ -54,20 +55,21 @@ pub fn open_session(path: &Path) -> Result<Stored, StoredError> {
 /// Writes a text to standard output.
 ///
 /// # Errors
-/// When nothing takes it, such as a closed pipe.
+/// When standard output is closed.
 pub fn print(text: &str) -> anyhow::Result<()> {
     io::stdout()
         .write_all(text.as_bytes())
         .context("writing to standard output")
 }
 
-/// Success, or failure with one line on standard error that tells the whole cause, and what helps where that is known.
+/// Success, or failure with one line on standard error: the whole cause, and advice if there is
+/// any.
 #[must_use]
 pub fn exit_code(result: anyhow::Result<()>) -> ExitCode {
     let Err(error) = result else {
         return ExitCode::SUCCESS;
     };
-    // Drivers and parsers may speak in several lines.
+    // Messages of drivers and parsers may have several lines.
     let message = format!("{error:#}")
         .lines()
         .map(str::trim)
@@ -77,7 +79,7 @@ pub fn exit_code(result: anyhow::Result<()>) -> ExitCode {
         Some(CoreError::Gpu(GpuError::NoAdapter { .. })) => SOFTWARE_DRIVER,
         _ => "",
     };
-    // Where even this cannot be written, the exit code still tells.
+    // If even this cannot be written, the exit code reports the failure.
     let _ = writeln!(io::stderr(), "error: {message}{advice}");
     ExitCode::FAILURE
 }

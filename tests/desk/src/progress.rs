@@ -1,4 +1,4 @@
-//! How a replay shows how far it is: a bar on a terminal, a line per frame in a log, or nothing.
+//! Progress of a replay: a bar on a terminal, a line per frame in a log, or nothing.
 
 use std::io::{self, IsTerminal, Write};
 
@@ -8,9 +8,9 @@ use app_core::preset::Preset;
 
 use crate::report::FrameEntry;
 
-/// Someone who wants to know how far a replay is.
+/// A listener for the progress of a replay.
 pub trait Progress {
-    /// A session begins, with this many pictures to come.
+    /// A session begins; `n_pictures` pictures will follow.
     fn start(&mut self, session: &str, n_pictures: usize);
     /// A frame is done with a preset.
     fn frame(&mut self, preset: Preset, entry: &FrameEntry);
@@ -18,7 +18,7 @@ pub trait Progress {
     fn finish(&mut self);
 }
 
-/// Tells a terminal by a bar, and a log by lines; both on standard error.
+/// Progress on standard error: a bar on a terminal, lines in a log.
 #[must_use]
 pub fn on_stderr() -> Box<dyn Progress> {
     if io::stderr().is_terminal() {
@@ -28,7 +28,7 @@ pub fn on_stderr() -> Box<dyn Progress> {
     }
 }
 
-/// Tells no one.
+/// Reports nothing.
 pub struct Quiet;
 
 impl Progress for Quiet {
@@ -87,7 +87,7 @@ impl Progress for Lines {
     fn finish(&mut self) {}
 }
 
-/// Progress that no one can read is no reason to stop.
+/// A closed standard error is no reason to stop.
 fn say(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }

@@ -1,4 +1,4 @@
-//! Replays a session: every camera frame through the core, each picture written and scored, the whole reported.
+//! Replays a session: the core makes a picture of every camera frame; each is written and scored, and all are reported.
 
 use std::iter;
 use std::path::{Path, PathBuf};
@@ -32,33 +32,33 @@ use crate::output::folder::OutputFolder;
 use crate::page::pictures::Pictures;
 use crate::page::{MAPS_FOLDER, Page, folder_of, values};
 use crate::progress::Progress;
-use crate::report::{AlignmentEntry, FitEntry, FrameEntry, MapEntry, Mean, Report};
+use crate::report::{AlignmentEntry, FitEntry, FrameEntry, GlossEntry, MapEntry, Mean, Report};
 
 pub use crate::replay_error::ReplayError;
 
 /// File name of the report in the output folder.
 pub const REPORT_FILE: &str = "report.json";
 
-/// What to replay and where to put it.
+/// Input and output of a replay.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// How much work a frame may cost: all frames with each, and no two the same.
+    /// The presets: each makes all frames, and no two are the same.
     pub presets: Vec<Preset>,
-    /// What is turned down of the presets, as the governor does it.
+    /// Quality steps taken off the presets, as by the governor.
     pub turned_down: &'static [QualityStep],
     /// The frames to replay.
     pub frames: Frames,
-    /// Folder for pictures, report and page, made where it is missing; without it nothing is written.
+    /// Folder for pictures, report and page, made if it is missing; without it nothing is written.
     ///
-    /// One preset writes its pictures and report right there, several each into a folder of its name.
+    /// One preset writes its pictures and report there, several presets into a folder of their name each.
     pub out: Option<PathBuf>,
     /// Whether cameras, toy and lights are first aligned by the pictures.
     pub is_aligned: bool,
-    /// Where the lights come from then.
+    /// The source of the lights for alignment.
     pub lights: Lights,
-    /// The number that is looked for then.
+    /// The number that alignment estimates.
     pub ratio: Ratio,
-    /// What was found of the lens that the session was opened with; none where nobody asked.
+    /// The estimate of the lens that the session was opened with; `None` if it was not asked for.
     pub lens: Option<LensAlignment>,
 }
 
@@ -78,7 +78,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// What alignment is asked for; none where frames stay as they were recorded.
+    /// The quantities to estimate; `None` if frames stay as they were recorded.
     fn asked(&self) -> Option<Asked> {
         self.is_aligned.then_some(Asked {
             lights: self.lights,
@@ -106,17 +106,19 @@ pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments
     Ok(found.with_lens(options.lens))
 }
 
-/// Replays `session` on the device of `core` with each preset, scores it against `truth`, and tells `progress` about each picture.
+/// Replays `session` on the device of `core` with each preset, scores it against `truth`, and reports each picture to
+/// `progress`.
 ///
-/// Each frame is read once, aligned, and made with one preset after the other. Only if a number is looked for that holds for the
-/// whole session, all frames are aligned before the first is made.
+/// Each frame is read once, aligned, and made with one preset after the other. Only if a number of the whole session is
+/// estimated, all frames are aligned before the first is made.
 ///
-/// The files of all pictures are looked at before the first frame. What an earlier run left in the output folder is removed, so that
-/// no old report lies beside new frames.
+/// The files of all pictures are checked before the first frame. Files of an earlier run in the output folder are
+/// removed, so that no old report lies beside new frames.
 ///
 /// # Errors
-/// When a frame cannot be read, made or written; those before it stay, with a report that says why it ended. When the output folder holds files that no run
-/// wrote, or another run writes into it.
+/// When a frame cannot be read, made or written; earlier frames stay, with a report that gives the
+/// reason of the end. When the output folder holds files that no run wrote, or another run writes
+/// into it.
 pub fn replay(
     session: &dyn Session,
     truth: Option<&dyn GroundTruth>,
@@ -134,8 +136,7 @@ pub fn replay(
     replay_aligned((session, truth), core, options, &mut alignments, progress)
 }
 
-/// The same with corrections that were found before, and more of them as frames come that have none. `core` makes the first
-/// preset's pictures.
+/// The same with given corrections; further frames are aligned as they come. `core` makes the first preset's pictures.
 ///
 /// # Errors
 /// As [`replay`].
@@ -229,7 +230,7 @@ impl Replay<'_> {
         Ok(reports)
     }
 
-    /// Writes what was made of the frames before, if that can be had.
+    /// Writes report and page of the frames before an error, if possible.
     fn ended(self, n_frames: usize, reason: ReplayError, alignments: &Alignments) -> ReplayError {
         if n_frames == 0 || self.page.is_none() {
             return reason;
@@ -244,21 +245,21 @@ impl Replay<'_> {
     }
 }
 
-/// A frame that all presets are shown.
+/// A frame as all presets receive it.
 pub(crate) struct Shot<'a> {
     pub(crate) session: &'a dyn Session,
     pub(crate) alignments: &'a Alignments,
     pub(crate) index: usize,
     pub(crate) frame: SessionFrame,
-    /// Of the camera's picture.
+    /// Grain of the camera's picture.
     pub(crate) grain: Option<Grain>,
     pub(crate) truth: Option<Truth>,
-    /// What an error has of noise and rounding alone.
+    /// The part of an error that is noise and rounding alone.
     floor_rmse: Option<f64>,
 }
 
 impl Shot<'_> {
-    /// What the core is given.
+    /// The core's input.
     pub(crate) fn input(&self, preset: Preset) -> FrameInput {
         self.alignments
             .input(self.index, &self.frame, preset)
@@ -273,10 +274,10 @@ impl Shot<'_> {
     }
 }
 
-/// Where one preset's pictures go.
+/// Destination of one preset's pictures.
 struct Out {
     output: Rc<OutputFolder>,
-    /// Goes before the names of files; empty, or ends in `/`.
+    /// Prefix of file names; empty, or ends in `/`.
     prefix: String,
     maps: Pictures,
 }
@@ -360,7 +361,7 @@ impl<'a> Run<'a> {
         Ok(entry)
     }
 
-    /// Makes the picture and what can be told of it without a truth.
+    /// Makes the picture and the part of its entry that needs no truth.
     fn make(&mut self, shot: &Shot<'_>) -> Result<(FrameEntry, Image), ReplayError> {
         let failed = |reason| shot.failed(reason);
         let input = shot.input(self.preset);
@@ -386,6 +387,8 @@ impl<'a> Run<'a> {
             report,
             alignment: shot.alignments.of(shot.index).map(AlignmentEntry::from),
             sharpness: input.sharpness.into(),
+            gloss: GlossEntry::of(&input.gloss),
+            reflection: input.reflection.map(Into::into),
             scores: None,
             floor_rmse: shot.floor_rmse,
             flicker: None,
@@ -393,7 +396,7 @@ impl<'a> Run<'a> {
         Ok((entry, through_lens(shot.session, shot.index, picture)?))
     }
 
-    /// Writes the picture, its error and the maps, where pictures are written.
+    /// Writes the picture, its error and the maps, if pictures are written.
     fn write(&mut self, shot: &Shot<'_>, entry: &mut FrameEntry, picture: &Image) -> Result<(), ReplayError> {
         let Some(out) = &mut self.out else {
             return Ok(());
@@ -479,7 +482,7 @@ fn warnings_of(session: &dyn Session, core: &Core, ended: Option<&str>) -> Resul
         .collect())
 }
 
-/// What a core says; nothing if it does not answer after the replay ended, as a device that is lost.
+/// The answer of a core; empty if it fails after the replay has ended, for example because the device is lost.
 fn of_core<T>(answer: Result<T, CoreError>, ended: Option<&str>) -> Result<Option<T>, CoreError> {
     answer.map(Some).or_else(|error| ended.map(|_| None).ok_or(error))
 }

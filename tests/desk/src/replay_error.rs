@@ -1,4 +1,4 @@
-//! What keeps a replay from its end.
+//! Errors that end a replay.
 
 use std::path::PathBuf;
 
@@ -12,14 +12,14 @@ use crate::frames::NoSuchFrames;
 use crate::metrics::SizeError;
 use crate::output::WriteError;
 
-/// A replay that did not come to its end.
+/// The reason of a replay that ended early.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReplayError {
     /// The session, or one of its frames, cannot be read.
     #[error(transparent)]
     Session(#[from] SessionError),
-    /// The core cannot take the session.
+    /// The core refuses the session.
     #[error(transparent)]
     Core(#[from] CoreError),
     /// The core cannot make a frame.
@@ -27,7 +27,7 @@ pub enum ReplayError {
     Frame {
         /// The frame, from 0.
         index: usize,
-        /// What the core said.
+        /// The core's error.
         reason: CoreError,
     },
     /// A frame cannot be aligned.
@@ -35,10 +35,10 @@ pub enum ReplayError {
     Align {
         /// The frame, from 0.
         index: usize,
-        /// What is wrong with it.
+        /// The reason.
         reason: Box<AlignError>,
     },
-    /// A frame cannot be had as planes.
+    /// A frame cannot be converted to planes.
     #[error(transparent)]
     Planes(#[from] PlaneError),
     /// A picture does not fit its truth.
@@ -46,15 +46,15 @@ pub enum ReplayError {
     Score {
         /// The frame, from 0.
         index: usize,
-        /// What differs.
+        /// The difference.
         reason: SizeError,
     },
-    /// It ended after some frames, whose report and page are written.
-    #[error("{reason}; what was made of the {n_frames} frames before it is in report and page")]
+    /// The replay ended after some frames, whose report and page are written.
+    #[error("{reason}; report and page hold the {n_frames} frames before it")]
     Ended {
-        /// How many frames were made.
+        /// Number of finished frames.
         n_frames: usize,
-        /// Why there are not more.
+        /// The reason of the end.
         reason: Box<ReplayError>,
     },
     /// A picture or the report cannot be written.
@@ -63,8 +63,8 @@ pub enum ReplayError {
     /// Frames that the session does not have.
     #[error(transparent)]
     NoSuchFrames(#[from] NoSuchFrames),
-    /// An output folder whose files are someone's photographs.
-    #[error("{}: holds a session, whose camera frames would be overwritten", folder.display())]
+    /// An output folder that is a session's.
+    #[error("{}: holds a session, whose camera frames would be overwritten: name another folder", folder.display())]
     OutIsSession {
         /// The folder.
         folder: PathBuf,

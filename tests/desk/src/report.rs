@@ -1,8 +1,10 @@
-//! What a replay found out, as it stands in `report.json`: the core's own reports, in their units. The order of the fields is the
-//! order in the file, and a number that is not finite is null there.
+//! The results of a replay as `report.json` has them: the core's own reports, in their units. The
+//! order of the fields is the order in the file, and a number that is not finite is null there.
 
 use app_core::alignment::{AlignmentReport, AlignmentWarning, LensAlignment};
 use app_core::frame::{FrameReport, PassGroup, PassTime};
+use app_core::gloss::{Gloss, N_GLOSSES};
+use app_core::reflection::Reflection;
 use app_core::scene::MAX_LIGHTS;
 use app_core::sharpness::{Sharpness, Spread};
 use app_pipeline::model::state::solution::Fit;
@@ -15,29 +17,31 @@ use crate::metrics::{Score, Scores};
 /// A replay of one session.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Name of the session; may be empty.
+    /// Name of the session, or empty.
     pub session: String,
     /// Name of the preset.
     pub preset: &'static str,
     /// Name of the adapter and of its driver.
     pub adapter: String,
-    /// Whether the adapter is a processor: its times then say nothing about a graphics card.
+    /// Whether the adapter is a software renderer, whose times do not apply to a graphics card.
     pub is_software: bool,
     /// Size of every picture, width first.
     pub size_px: [u32; 2],
-    /// What was odd about the session as a whole.
+    /// Warnings about the session as a whole.
     pub warnings: Vec<String>,
-    /// Why there are not all frames that were asked for; none if there are.
+    /// The reason why frames are missing; `None` if the replay is complete.
     pub ended: Option<String>,
-    /// The lens that photographs were freed of; none where nobody asked for it.
+    /// The estimate of the lens that is removed from photographs; `None` if it was not asked for.
     pub lens: Option<LensAlignment>,
     /// Means over frames.
     pub mean: Mean,
-    /// The same over frames that were worked on: those that passed through, whose error is none of ours, are left out.
+    /// Means over retargeted frames: frames that passed through have no error of ours, and are left
+    /// out.
     pub mean_of_moving: Mean,
-    /// What was learned from the real shadow, as of the last frame; none where nothing was learned.
+    /// Parameters learned from the real shadow, as of the last frame; `None` if nothing was
+    /// learned.
     pub fit: Option<FitEntry>,
-    /// One entry a replayed frame.
+    /// One entry per replayed frame.
     pub frames: Vec<FrameEntry>,
 }
 
@@ -46,21 +50,22 @@ pub struct Report {
 pub struct Mean {
     /// Frames that have a truth.
     pub n_scored: usize,
-    /// Mean of their scores; none where there are none.
+    /// Mean of their scores; `None` if there are none.
     pub scores: Option<Scores>,
-    /// Mean flicker over frames of which that before has a truth as well; none where there are none.
+    /// Mean flicker over frames of which the previous one has a truth as well; `None` if there are
+    /// none.
     pub flicker: Option<Flicker>,
-    /// Mean of their floors; none if there are none.
+    /// Mean of their floors; `None` if there are none.
     pub floor_rmse: Option<f64>,
-    /// Steady frames: a region was worked on and nothing was learned anew.
+    /// Number of steady frames: a region was retargeted and nothing was learned anew.
     pub n_steady: usize,
-    /// Mean of their device time, where each has one.
+    /// Mean of their device time, if each has one.
     pub gpu_ms: Option<f64>,
     /// Mean of their time on the processor.
     pub cpu_ms: Option<f64>,
     /// Mean of their time until the picture was read back.
     pub wall_ms: Option<f64>,
-    /// Mean time that alignment took on the processor, over all frames; none where nothing was aligned.
+    /// Mean processor time of alignment over all frames; `None` if nothing was aligned.
     pub align_ms: Option<f64>,
 }
 
@@ -69,47 +74,74 @@ pub struct Mean {
 pub struct FrameEntry {
     /// Its place in the session, from 0.
     pub index: usize,
-    /// When it was taken.
+    /// Time of the photograph.
     pub time_secs: f64,
-    /// File name of its picture; none where pictures are not written.
+    /// File name of its picture; `None` if pictures are not written.
     pub picture: Option<String>,
-    /// File of its false-colour error against the truth, where there is one and pictures are written.
+    /// File of its false-colour error against the truth, if there is one and pictures are written.
     pub error: Option<String>,
-    /// The maps between input and picture, where pictures are written and a region was worked on.
+    /// The maps between input and picture, if pictures are written and a region was retargeted.
     pub maps: Vec<MapEntry>,
-    /// Device time of all passes; none where the device cannot tell.
+    /// Device time of all passes; `None` if the device has no timestamps.
     pub gpu_ms: Option<f64>,
-    /// Time that the core took on the processor to hand the frame to the device.
+    /// Processor time of the core until the device has the frame.
     pub cpu_ms: f64,
-    /// Time until the picture was back in memory, waiting for the device and copying included.
+    /// Time until the picture was back in memory, including waiting for the device and copying.
     pub wall_ms: f64,
-    /// Device time of each pass; empty where the device cannot tell.
+    /// Device time of each pass; empty if the device has no timestamps.
     pub pass_times: Vec<PassTime>,
-    /// What was odd about the frame as it was recorded.
+    /// Warnings about the frame as it was recorded.
     pub session_warnings: Vec<String>,
     /// The core's report.
     #[serde(flatten)]
     pub report: FrameReport,
-    /// What alignment found; none where the session is replayed as recorded.
+    /// The alignment's results; `None` if the session is replayed as recorded.
     pub alignment: Option<AlignmentEntry>,
-    /// How soft the picture was measured to be.
+    /// Measured softness of the picture.
     pub sharpness: SharpnessEntry,
-    /// Error against the truth, where there is one.
+    /// How glossy the toy was measured to be; none of a matt one.
+    pub gloss: Option<GlossEntry>,
+    /// How the receiver that the toy stands on was found to reflect; none where it is taken for matt.
+    pub reflection: Option<ReflectionEntry>,
+    /// Error against the truth, if there is one.
     pub scores: Option<Scores>,
-    /// RMSE of the camera frame against the truth beyond both shadows, where they show the same: the noise of both and their
-    /// rounding, below which no error of a picture that is made of that frame can be expected; none without a truth.
+    /// RMSE of the camera frame against the truth outside of both shadows, where they show the
+    /// same: the noise of both and their rounding, which is a lower bound of the error of any
+    /// picture made from that frame; `None` without a truth.
     pub floor_rmse: Option<f64>,
-    /// Flicker since the frame before, where both have a truth.
+    /// Flicker since the previous frame, if both have a truth.
     pub flicker: Option<Flicker>,
 }
 
-/// How soft a picture is: deviations of the two axes of a spread, the wider first, in pixels.
+/// Softness of a picture: standard deviations along the two axes of the blur, the wider first, in
+/// pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SharpnessEntry {
-    /// What makes the plates as soft.
+    /// The blur that makes the plates as soft.
     pub plate_px: [f64; 2],
-    /// What makes a sharp outline as soft.
+    /// The blur that makes a sharp outline as soft.
     pub outline_px: [f64; 2],
+}
+
+/// How a receiver reflects.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ReflectionEntry {
+    /// Width of the lobe, as Beckmann's alpha.
+    pub roughness: f64,
+    /// Linear light of the surroundings that it reflects.
+    pub surroundings: [f32; 3],
+    /// What the toy's is above it.
+    pub toy_above_surroundings: [f32; 3],
+}
+
+impl From<Reflection> for ReflectionEntry {
+    fn from(reflection: Reflection) -> Self {
+        Self {
+            roughness: reflection.roughness,
+            surroundings: reflection.surroundings,
+            toy_above_surroundings: reflection.toy_above_surroundings,
+        }
+    }
 }
 
 impl From<Sharpness> for SharpnessEntry {
@@ -122,6 +154,24 @@ impl From<Sharpness> for SharpnessEntry {
     }
 }
 
+/// How glossy a toy is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct GlossEntry {
+    /// Of its surface: root mean square slope of its facets, times the square root of 2.
+    pub roughness: f32,
+    /// Of each of its first materials, the reflectance over that of smooth plastic.
+    pub strengths: [f32; N_GLOSSES],
+}
+
+impl GlossEntry {
+    /// None of a matt toy.
+    #[must_use]
+    pub fn of(gloss: &Gloss) -> Option<Self> {
+        let Gloss { roughness, strengths } = *gloss;
+        (!gloss.is_none()).then_some(Self { roughness, strengths })
+    }
+}
+
 /// A map as a picture of the whole frame.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct MapEntry {
@@ -131,34 +181,37 @@ pub struct MapEntry {
     pub file: String,
 }
 
-/// What the fit learned, each as linear red, green and blue.
+/// Parameters of the fit, each as linear red, green and blue.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FitEntry {
-    /// Frame over plate where nothing changed: the exposure between the two.
+    /// Frame over plate at unchanged places: the exposure ratio.
     pub gain: [f32; 3],
-    /// Light thrown back by the toy where it takes ambient light away, as a fraction of that light.
+    /// Light reflected by the toy at places where it blocks ambient light, as a fraction of the
+    /// blocked light.
     pub bounce: [f32; 3],
     /// Each light's share of the plate's radiance at the reference point.
     pub direct_fraction: Vec<[f32; 3]>,
-    /// Radiance of the toy over its base colour: from above, from below, and each light's where it falls straight on.
+    /// Radiance of the toy over its base colour: from above, from below, and from each light at
+    /// normal incidence.
     pub toy: Vec<[f32; 3]>,
 }
 
-/// What alignment found in one frame.
+/// Results of alignment in one frame.
 #[derive(Clone, Debug, Serialize)]
 pub struct AlignmentEntry {
-    /// Time that it took on the processor.
+    /// Processor time of alignment.
     pub cpu_ms: f64,
     /// The core's report.
     #[serde(flatten)]
     pub report: AlignmentReport,
-    /// What could not be aligned.
+    /// Failures of parts of the alignment.
     pub warnings: Vec<AlignmentWarning>,
-    /// Lights on the session's list, where that was put aside.
+    /// Number of lights on the session's list, if that was ignored.
     pub n_listed: usize,
-    /// Each light that a probe tells, against the nearest light of that list, as seen from the probe.
+    /// Each light estimated from a probe, against the nearest light of that list, as seen from the
+    /// probe.
     pub probe_against_listed: Vec<Option<LightError>>,
-    /// The same of the lights that were found by their shadows, as seen from the toy's middle.
+    /// The same for the lights that were found by their shadows, as seen from the toy's centre.
     pub discovered_against_listed: Vec<Option<LightError>>,
 }
 
@@ -181,7 +234,7 @@ impl From<&Aligned> for AlignmentEntry {
 }
 
 impl FrameEntry {
-    /// Everything that was odd: of the session, of alignment and of the core.
+    /// All warnings: of the session, of alignment and of the core.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
         let of_session = self.session_warnings.iter().cloned();
         let of_alignment = self.alignment.iter().flat_map(|aligned| &aligned.warnings);
@@ -190,13 +243,13 @@ impl FrameEntry {
             .chain(self.report.warnings.iter().map(ToString::to_string))
     }
 
-    /// Whether it was worked on rather than passed through.
+    /// Whether it was retargeted rather than passed through.
     #[must_use]
     pub fn is_retargeted(&self) -> bool {
         self.report.region.is_some()
     }
 
-    /// Why it was passed through; none if it was worked on.
+    /// The reason why it was passed through; `None` if it was retargeted.
     #[must_use]
     pub fn reason_to_pass(&self) -> Option<&'static str> {
         let reason = self.report.skipped.iter().map(|skipped| skipped.reason).next();
@@ -217,7 +270,7 @@ impl Mean {
         Self::of_all(&frames.iter().collect::<Vec<_>>())
     }
 
-    /// Means over those of `frames` that were worked on.
+    /// Means over the retargeted ones of `frames`.
     #[must_use]
     pub fn of_moving(frames: &[FrameEntry]) -> Self {
         let moving = frames.iter().filter(|frame| frame.is_retargeted());
@@ -246,7 +299,7 @@ impl Mean {
     }
 }
 
-/// The mean of scores, region by region; none of none.
+/// The mean of scores, region by region; `None` of an empty list.
 #[must_use]
 pub fn mean_scores(scores: &[Scores]) -> Option<Scores> {
     let region = |region: fn(&Scores) -> Score| {

@@ -1,4 +1,4 @@
-//! WGSL files from a folder in place of those that are built in, for those who change them.
+//! WGSL files of a folder in place of the built-in ones, for development.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,13 +15,14 @@ const MAX_FILE_BYTES: u64 = 1 << 20;
 /// The option that names a folder of shaders.
 #[derive(Clone, Debug, clap::Args)]
 pub struct ShaderArgs {
-    /// Draw with the WGSL files of this folder, which is laid out as `shaders` is, in place of those that are built in
+    /// Draw with the WGSL files of this folder, which has the layout of `shaders`, in place of the
+    /// built-in ones
     #[arg(long = "shaders", value_name = "DIR")]
     folder: Option<PathBuf>,
 }
 
 impl ShaderArgs {
-    /// The folder, to be watched.
+    /// The folder as one to watch.
     #[must_use]
     pub fn watched(self) -> Option<ShaderFolder> {
         self.folder.map(ShaderFolder::new)
@@ -40,40 +41,42 @@ impl ShaderArgs {
     }
 }
 
-/// A folder of shaders that is read again and again.
+/// A folder of shaders that is read repeatedly.
 #[derive(Debug)]
 pub struct ShaderFolder {
     path: PathBuf,
-    /// What was read last, or why it was not.
+    /// The latest texts, or the latest error.
     latest: Option<Result<ShaderTexts, String>>,
 }
 
 impl ShaderFolder {
-    /// A folder that nobody has read yet.
+    /// A folder that has not been read yet.
     #[must_use]
     pub fn new(path: PathBuf) -> Self {
         Self { path, latest: None }
     }
 
-    /// What it holds, or why that cannot be read; none if it is as at the last call.
+    /// Its texts, or the error of reading them; `None` if nothing changed since the last call.
     ///
-    /// All files are read: they are few and small, and a time of change may lie.
+    /// All files are read: they are few and small, and modification times are unreliable.
     pub fn changed(&mut self) -> Option<Result<ShaderTexts, String>> {
         let read = read_shaders(&self.path);
         let read = read.map_err(|error| format!("{}: {error:#}", self.path.display()));
         (self.latest.as_ref() != Some(&read)).then(|| self.latest.insert(read).clone())
     }
 
-    /// Has the next call take it for changed.
+    /// Makes the next call report a change.
     pub fn forget(&mut self) {
         self.latest = None;
     }
 }
 
-/// Reads the WGSL files of a folder that is laid out as `shaders` is; hidden ones, as editors leave them, are left out.
+/// Reads the WGSL files of a folder that has the layout of `shaders`; hidden files, as editors make
+/// them, are skipped.
 ///
 /// # Errors
-/// When folder or file cannot be read, a file is larger than 1 MiB or leads out of the folder, or none is a pass's.
+/// When folder or file cannot be read, a file is larger than 1 MiB or leads out of the folder, or
+/// no file is a pass's.
 pub fn read_shaders(folder: &Path) -> Result<ShaderTexts> {
     let files = Folder::open(folder)?;
     let mut texts = Vec::new();
@@ -104,7 +107,7 @@ fn read_text(files: &Folder, path: &str) -> Result<String> {
     String::from_utf8(bytes).with_context(|| path.to_owned())
 }
 
-/// Names of what lies in a folder and is not hidden.
+/// Names of the entries of a folder that are not hidden.
 fn names(folder: &Path) -> Result<Vec<String>> {
     let entries = fs::read_dir(folder)?.collect::<Result<Vec<_>, _>>()?;
     let names = entries

@@ -1,4 +1,4 @@
-//! A session wherever it is stored: in a folder, or in a recording.
+//! A session's storage: a folder or a recording.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -13,9 +13,9 @@ use crate::files::{Folder, FolderError};
 
 /// A session's files.
 pub enum Stored {
-    /// In a folder.
+    /// The files of a folder.
     Folder(Folder),
-    /// In a recording.
+    /// The files of a recording.
     Recording(Box<Recording>),
 }
 
@@ -26,12 +26,12 @@ pub enum StoredError {
     /// There is no such folder or file.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// The file is no recording, or nothing is left of it.
+    /// The file is no recording, or nothing of it can be read.
     #[error("{}: {reason}", path.display())]
     Recording {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The reason.
         reason: RecordingError,
     },
 }
@@ -40,7 +40,7 @@ impl Stored {
     /// Opens a folder, or a file as a recording.
     ///
     /// # Errors
-    /// When there is no such thing, or the recording cannot be read at all.
+    /// When the path does not exist, or nothing of the recording can be read.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, StoredError> {
         let path = path.as_ref();
         if !path.is_file() {
@@ -65,7 +65,7 @@ impl Stored {
         }
     }
 
-    /// What is lost of a recording.
+    /// The losses of a damaged recording.
     #[must_use]
     pub fn losses(&self) -> &[Loss] {
         match self {
@@ -84,7 +84,7 @@ impl Files for Stored {
     }
 }
 
-/// A file that is read at any place.
+/// A file that is read at any offset.
 struct OpenFile {
     file: Mutex<File>,
     n_bytes: u64,

@@ -1,4 +1,4 @@
-//! A toy's file on a desktop, with the files beside it that it refers to.
+//! A toy's file on a desktop, with the files that it refers to.
 
 use std::path::Path;
 
@@ -6,10 +6,10 @@ use anyhow::{Context, ensure};
 use app_core::session::{Files, Folder};
 use app_core::toy::packed;
 
-/// No toy is larger.
+/// Limit for a toy's size.
 const MAX_BYTES: u64 = 256 << 20;
 
-/// The bytes of one binary glTF: those of the file, with its neighbours in them if it has any.
+/// The bytes of one binary glTF: those of the file, with the files that it refers to included.
 ///
 /// # Errors
 /// When it cannot be read, is too large or no glTF, or refers to a buffer that is not beside it.
@@ -18,7 +18,7 @@ pub fn read_toy(path: &Path) -> anyhow::Result<Vec<u8>> {
     let n_bytes = std::fs::metadata(path).with_context(named)?.len();
     ensure!(
         n_bytes <= MAX_BYTES,
-        "{}: has {n_bytes} bytes; at most {MAX_BYTES} are read",
+        "{}: has {n_bytes} bytes; the limit is {MAX_BYTES}",
         path.display()
     );
     let bytes = std::fs::read(path).with_context(named)?;

@@ -1,4 +1,5 @@
-//! Replays that do not come to their end: what can be known is refused before the first frame, what cannot leaves what was made.
+//! Replays that end early: a foreseeable error is reported before the first frame, and any other
+//! error leaves the earlier frames.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -16,7 +17,7 @@ use desk::progress::Quiet;
 use desk::replay::{Options, REPORT_FILE, ReplayError, replay};
 use serde_json::{Value, json};
 
-/// Removes itself.
+/// A session that removes itself.
 struct Session(PathBuf);
 
 impl Drop for Session {
@@ -59,7 +60,7 @@ fn replayed(session: &Session) -> ReplayError {
 #[test]
 fn what_can_be_known_is_refused_before_the_first_frame() {
     let whole = fs::read(Path::new(BUNDLED_SESSION).join("frame_0000.png")).unwrap();
-    // Of another size: the header alone is changed, and its checksum.
+    // A picture of another size: the header alone is changed, and its checksum.
     let mut wide = whole.clone();
     wide[16..20].copy_from_slice(&641_u32.to_be_bytes());
     let checksum = crc32fast::hash(&wide[12..29]).to_be_bytes();
@@ -91,7 +92,7 @@ fn what_can_be_known_is_refused_before_the_first_frame() {
 #[test]
 fn what_was_made_before_a_frame_fails_has_report_and_page() {
     let whole = fs::read(Path::new(BUNDLED_SESSION).join("frame_0000.png")).unwrap();
-    // Its header is whole, its pixels are not.
+    // The header is intact, the pixels are cut off.
     let session = session("cut", Some(&whole[..whole.len() / 2]));
     let error = replayed(&session);
     assert!(matches!(error, ReplayError::Ended { n_frames: 2, .. }), "{error}");

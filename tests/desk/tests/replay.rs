@@ -70,7 +70,7 @@ fn the_bundled_session_becomes_pictures_and_a_report() {
         json["frames"][0]["flicker"].is_null() && json["frames"][1]["flicker"]["toy"].as_f64().unwrap() > 0.0
     );
     assert!(json["mean"]["flicker"]["shadow"].as_f64().unwrap() > 0.0);
-    // The frame that passes through has no error, which must not flatter those that move.
+    // The frame that passes through has no error, which must not improve the mean of those that move.
     let [all, moving] =
         [&report.mean, &report.mean_of_moving].map(|mean| (mean.n_scored, mean.scores.unwrap().shadow.rmse));
     assert_eq!((all.0, moving.0), (5, 4));
@@ -93,7 +93,7 @@ fn only_the_frames_asked_for_are_written_and_an_old_replay_goes_first() {
         ..Options::default()
     };
 
-    // Not empty, so that no file can take its place.
+    // A folder that is not empty, so that no file can replace it.
     let obstacle = out.join(picture_file(4));
     fs::create_dir_all(obstacle.join("full")).unwrap();
     let error = run(&session, &options(3..5)).unwrap_err().to_string();
@@ -123,7 +123,7 @@ fn a_folder_loses_only_what_a_run_wrote_and_takes_one_run_at_a_time() {
     let refusal = || OutputFolder::take(&out).unwrap_err().to_string();
     let own = out.join("holiday.png");
     fs::write(&own, "a user's").unwrap();
-    assert!(refusal().contains("holiday.png is not of an earlier run"));
+    assert!(refusal().contains("holiday.png was not written by an earlier run"));
     assert_eq!(out.names(), ["holiday.png"]);
     fs::remove_file(&own).unwrap();
 
@@ -134,7 +134,7 @@ fn a_folder_loses_only_what_a_run_wrote_and_takes_one_run_at_a_time() {
     assert!(out.join("report.json").exists());
     drop(folder);
 
-    // What a killed run leaves, and what a desktop does, are in nobody's way.
+    // Remnants of a killed run and files of a desktop are ignored.
     fs::write(out.join("report.json.4711.partial"), "half").unwrap();
     fs::write(out.join(".DS_Store"), "of a desktop").unwrap();
     fs::write(out.join("report.json"), "a user's notes").unwrap();
@@ -144,7 +144,7 @@ fn a_folder_loses_only_what_a_run_wrote_and_takes_one_run_at_a_time() {
         "a refusal removes nothing"
     );
     fs::write(out.join("report.json"), "ours").unwrap();
-    // A list that someone wrote cannot reach beyond its folder.
+    // A list that someone edited cannot reach beyond its folder.
     let list = fs::read_to_string(out.join(MANIFEST_FILE)).unwrap();
     fs::write(out.join(MANIFEST_FILE), format!("{list}00000000 ../outside\n")).unwrap();
     drop(OutputFolder::take(&out).unwrap());
@@ -205,7 +205,7 @@ fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
     for remote in [
         "http:", "https:", "src=\"", "href=", "url(", "@import", "fetch(", "{{",
     ] {
-        // A filter of the page's own is no file.
+        // A filter of the page's own is no remote file.
         assert!(!page.replace("url(#", "").contains(remote), "{remote}");
     }
     let data = data_of(&out);
@@ -234,7 +234,7 @@ fn the_page_needs_nothing_but_its_folder_and_runs_no_text_of_a_session() {
             check(&preset["folder"], &map["file"]);
         }
     }
-    // Inputs, then picture, error and maps of each preset, the lights over the photograph among them.
+    // Inputs, then picture, error and maps of each preset, including the lights over the photograph.
     assert_eq!((presets.len(), n_pictures), (2, 2 + 2 + 5 + 2 + 11));
 }
 
@@ -276,14 +276,14 @@ fn the_page_of_a_film_says_what_each_frame_is_made_of() {
     assert_eq!(report["mean_of_moving"]["scores"]["toy"]["rmse"], 2.0);
 }
 
-/// What a page hands to its script.
+/// The data of a page's script.
 fn data_of(out: &Path) -> serde_json::Value {
     let page = fs::read_to_string(out.join(PAGE_FILE)).unwrap();
     let (_, data) = page.split_once("id=\"data\">").unwrap();
     serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap()
 }
 
-/// The script that hands a picture's bytes to the page has all of them.
+/// The script that hands a picture's bytes to the page holds all of them.
 fn check_values(out: &Path, file: &str) {
     let script = fs::read_to_string(out.join(VALUES_FOLDER).join(format!("{file}.js"))).unwrap();
     let text = script
@@ -372,7 +372,7 @@ fn the_program_says_what_is_wrong() {
     let missing_arg = missing.to_str().unwrap();
     #[rustfmt::skip] // One case a line.
     let cases: [(&[&str], i32, &str); 8] = [
-        (&["--preset", "dazzling"], 2, "preset \"dazzling\" is not built; there are flat, paper, fast, balanced"),
+        (&["--preset", "dazzling"], 2, "preset \"dazzling\" does not exist; choose one of flat, paper, fast, balanced"),
         (&["--frames", "3..3"], 2, "3..3"),
         (&["--frames", "3-4"], 2, "3-4"),
         (&["--frames", "3..6"], 1, "frames 3..6 are asked for, but the session has 5"),
@@ -441,7 +441,7 @@ fn a_strict_replay_fails_by_a_warning() {
     );
 }
 
-/// All that a replay of these frames with one preset leaves in its folder.
+/// All files of a replay of these frames with one preset.
 fn names_of(frames: Range<usize>) -> Vec<String> {
     let mut names = vec![MANIFEST_FILE.to_owned()];
     names.extend(frames.map(picture_file));
@@ -463,7 +463,7 @@ fn program(args: &[&str]) -> Output {
         .unwrap()
 }
 
-/// An empty folder that goes with its test.
+/// A temporary folder that is removed after its test.
 struct TemporaryFolder(PathBuf);
 
 impl TemporaryFolder {
@@ -473,7 +473,7 @@ impl TemporaryFolder {
         Self(folder)
     }
 
-    /// What lies in it, in order.
+    /// Names in the folder, in order.
     fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.0).unwrap();
         let mut names: Vec<String> = entries

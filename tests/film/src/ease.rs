@@ -1,24 +1,24 @@
-//! How a way is gone over its time.
+//! Easing: the share of a movement at a share of its time.
 
 use serde::{Deserialize, Serialize};
 
-/// How a clip, or the way from key to key, speeds up and slows down.
+/// The easing of a clip, or of the way from key to key.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Ease {
-    /// Not at all.
+    /// Constant speed.
     #[default]
     Linear,
-    /// It speeds up.
+    /// Rising speed.
     In,
-    /// It slows down.
+    /// Falling speed.
     Out,
-    /// It speeds up and slows down.
+    /// Speed that rises, then falls.
     InOut,
 }
 
 impl Ease {
-    /// The part of the way at a part of the time, both from 0 to 1.
+    /// The share of the way at a share of the time, both from 0 to 1.
     #[must_use]
     pub fn way(self, time: f64) -> f64 {
         match self {

@@ -1,5 +1,5 @@
-//! What an animator does on a desktop: photographs become a session, a session and clips a film, and key poses that were
-//! photographed one by one get their in-between frames.
+//! Programs for animators: they make a session from photographs, a film from a session and clips,
+//! and in-between frames from photographed key poses.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,5 @@
-//! A photograph as a camera or a phone writes it: brought upright, to sRGB, and to a size that a session may have.
+//! Reads a photograph of a camera or a phone: upright, in sRGB, and in a size that a session may
+//! have.
 
 use std::fs;
 use std::io::{BufReader, Cursor};
@@ -16,7 +17,7 @@ use image::{DynamicImage, ImageDecoder, Limits, Rgb, Rgb32FImage};
 use moxcms::{ColorProfile, Layout, TransformOptions};
 use thiserror::Error;
 
-/// No file is read that is larger, and no more is allocated to decode it.
+/// Limit for a file's size, and for memory to decode it.
 const MOST_FILE_BYTES: u64 = 256 << 20;
 const MOST_DECODED_BYTES: u64 = 2 << 30;
 /// Diagonal of a frame of 35 mm film, in millimetres: focal lengths "in 35 mm film" have its angle of view along the diagonal.
@@ -34,36 +35,36 @@ const SRGB_TRANSFER: u8 = 13;
 pub struct PhotographError {
     /// The file.
     pub path: PathBuf,
-    /// What is wrong with it.
+    /// The reason.
     pub reason: PhotographReason,
 }
 
-/// Why a photograph cannot be used.
+/// The reason why a photograph cannot be used.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum PhotographReason {
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error("{0}")]
     Io(#[from] std::io::Error),
-    /// It is larger than any photograph.
-    #[error("is larger than {} MiB", MOST_FILE_BYTES >> 20)]
+    /// The file is larger than any photograph.
+    #[error("is larger than {} MiB, the limit: export it smaller", MOST_FILE_BYTES >> 20)]
     TooLarge,
-    /// A format that phones and cameras write, which is not read here.
-    #[error("is a {format} file, which is not read: {export}")]
+    /// A format of phones and cameras that is not supported.
+    #[error("is {format}, which is not read: {export}")]
     Foreign {
-        /// Its name.
+        /// Name of the format.
         format: &'static str,
-        /// The way out.
+        /// The way to convert it.
         export: &'static str,
     },
-    /// None of them.
+    /// The format is unknown.
     #[error("is neither PNG nor JPEG: export the photograph as one of them")]
     Unknown,
-    /// It is damaged.
+    /// The file is damaged.
     #[error("cannot be decoded: {0}")]
     Damaged(#[from] image::ImageError),
-    /// Its colours cannot be brought to sRGB.
-    #[error("its colour profile cannot be followed ({0}): export it in sRGB")]
+    /// The colour profile cannot be converted to sRGB.
+    #[error("its colour profile cannot be converted ({0}): export it in sRGB")]
     Profile(String),
 }
 
@@ -74,13 +75,13 @@ pub struct Photograph {
     pub path: PathBuf,
     /// Upright, in sRGB.
     pub image: Image,
-    /// Focal length in pixels of `image`; none if the file does not say it.
+    /// Focal length in pixels of `image`; `None` if the file does not state it.
     pub focal_px: Option<f64>,
-    /// What was done to it, as sentences.
+    /// Conversions, as sentences.
     pub notes: Vec<String>,
 }
 
-/// Focal length in pixels of a picture with the angle of view that a lens has on 35 mm film.
+/// Focal length in pixels of a picture with the angle of view of a lens's equivalent on 35 mm film.
 #[must_use]
 pub fn focal_px(focal_35mm: f64, image: &Image) -> f64 {
     let diagonal_px = f64::from(image.width_px).hypot(f64::from(image.height_px));
@@ -119,7 +120,7 @@ fn read(path: &Path) -> Result<Photograph, PhotographReason> {
     let mut rgba8 = picture.into_rgba8();
     if let Some(profile) = profile {
         let name = to_srgb(&mut rgba8, &profile)?;
-        notes.push(format!("its colours are brought from {name} to sRGB"));
+        notes.push(format!("its colours are converted from {name} to sRGB"));
     }
     let (width_px, height_px) = rgba8.dimensions();
     let rgba8 = match smaller_px([width_px, height_px]) {
@@ -151,7 +152,7 @@ fn read(path: &Path) -> Result<Photograph, PhotographReason> {
 
 struct Decoded {
     picture: DynamicImage,
-    /// None for sRGB, and for pictures that say nothing.
+    /// `None` for sRGB, and for pictures without a statement.
     profile: Option<ColorProfile>,
 }
 
@@ -165,7 +166,11 @@ fn decode(bytes: &[u8]) -> Result<Decoded, PhotographReason> {
         decoder.set_limits(limits)?;
         decoded(decoder, bytes)
     } else {
-        Err(foreign(bytes))
+        Err(
+            app_scene::picture::kind(bytes).map_or(PhotographReason::Unknown, |(format, export)| {
+                PhotographReason::Foreign { format, export }
+            }),
+        )
     }
 }
 
@@ -177,12 +182,12 @@ fn decoded(mut decoder: impl ImageDecoder, bytes: &[u8]) -> Result<Decoded, Phot
     })
 }
 
-/// The profile of a picture whose colours are not those of sRGB.
+/// The profile of a picture in other colours than sRGB.
 fn profile_of(bytes: &[u8], profile: Option<&[u8]>) -> Result<Option<ColorProfile>, PhotographReason> {
     let Some(what) = desk::check::foreign_colours(bytes, profile) else {
         return Ok(None);
     };
-    // A PNG's `cICP` wins over its profile.
+    // A PNG's `cICP` has priority over its profile.
     let cicp = png_chunks(bytes).find(|(name, _)| name == b"cICP");
     match (cicp, profile) {
         (Some((_, [DISPLAY_P3_PRIMARIES, SRGB_TRANSFER, ..])), _) => Ok(Some(ColorProfile::new_display_p3())),
@@ -193,7 +198,7 @@ fn profile_of(bytes: &[u8], profile: Option<&[u8]>) -> Result<Option<ColorProfil
     }
 }
 
-/// Brings codes of another profile to sRGB; returns the profile's name.
+/// Converts codes of another profile to sRGB; returns the profile's name.
 fn to_srgb(picture: &mut image::RgbaImage, profile: &ColorProfile) -> Result<String, PhotographReason> {
     let failed = |error: moxcms::CmsError| PhotographReason::Profile(error.to_string());
     let srgb = ColorProfile::new_srgb();
@@ -206,7 +211,7 @@ fn to_srgb(picture: &mut image::RgbaImage, profile: &ColorProfile) -> Result<Str
     Ok(desk::check::profile_name(profile).unwrap_or_else(|| "Display P3".to_owned()))
 }
 
-/// The size that a picture is made smaller to; none if it may stay.
+/// The reduced size of a picture that is too large; `None` if it may stay.
 fn smaller_px([width_px, height_px]: [u32; 2]) -> Option<[u32; 2]> {
     let n_pixels = u64::from(width_px) * u64::from(height_px);
     #[allow(clippy::cast_precision_loss, reason = "a ratio of pixels")]
@@ -220,7 +225,7 @@ fn smaller_px([width_px, height_px]: [u32; 2]) -> Option<[u32; 2]> {
     (ratio < 1.0).then(|| [smaller(width_px), smaller(height_px)])
 }
 
-/// Resampled in linear light.
+/// Resamples in linear light.
 fn resized(picture: &image::RgbaImage, [width, height]: [u32; 2]) -> image::RgbaImage {
     let linear = linear_of_codes();
     let light = Rgb32FImage::from_fn(picture.width(), picture.height(), |x, y| {
@@ -234,7 +239,7 @@ fn resized(picture: &image::RgbaImage, [width, height]: [u32; 2]) -> image::Rgba
     })
 }
 
-/// The focal length that EXIF states, as on 35 mm film.
+/// The focal length in EXIF, as on 35 mm film.
 fn focal_35mm(bytes: &[u8]) -> Option<f64> {
     let mut reader = BufReader::new(Cursor::new(bytes));
     let exif = exif::Reader::new().read_from_container(&mut reader).ok()?;
@@ -243,25 +248,6 @@ fn focal_35mm(bytes: &[u8]) -> Option<f64> {
         Value::Rational(values) => values.first()?.to_f64(),
         value => f64::from(value.get_uint(0)?),
     };
-    // 0 says that it is unknown.
+    // 0 means unknown.
     (focal_mm.is_finite() && focal_mm > 0.0).then_some(focal_mm)
-}
-
-/// What a file is that is neither PNG nor JPEG.
-fn foreign(bytes: &[u8]) -> PhotographReason {
-    const PHONE: &str =
-        "on an iPhone choose Settings, Camera, Formats, Most Compatible, or export the photograph as JPEG";
-    const CAMERA: &str = "develop it, and export it as PNG or JPEG in sRGB";
-    const OTHER: &str = "export it as PNG or JPEG";
-    let brand = bytes.get(4..12).filter(|box_| box_.starts_with(b"ftyp"));
-    let [format, export] = match brand.map(|brand| &brand[4..]) {
-        Some(b"heic" | b"heix" | b"hevc" | b"mif1" | b"msf1") => ["HEIC", PHONE],
-        Some(b"avif" | b"avis") => ["AVIF", OTHER],
-        Some(b"crx ") => ["CR3 raw", CAMERA],
-        _ if bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*") => ["TIFF, DNG or other raw", CAMERA],
-        _ if bytes.starts_with(b"RIFF") => ["WebP", OTHER],
-        _ if bytes.starts_with(b"FUJIFILM") => ["RAF raw", CAMERA],
-        _ => return PhotographReason::Unknown,
-    };
-    PhotographReason::Foreign { format, export }
 }

@@ -1,13 +1,13 @@
-//! A contact sheet: many pictures on one, each small.
+//! A contact sheet: many small pictures in one.
 
 use app_core::scene::Image;
 use app_scene::geometry::color::{code_of_linear, linear_of_codes};
 
 /// Width of a picture on a sheet.
 const CELL_PX: u32 = 320;
-/// Between pictures, and around them.
+/// Gap between pictures, and around them.
 const MARGIN_PX: u32 = 6;
-/// Behind the pictures, and around those that are marked.
+/// Colour behind the pictures, and of the frame of marked ones.
 const BACKGROUND: [u8; 4] = [32, 32, 32, 255];
 const MARKED: [u8; 4] = [240, 180, 40, 255];
 
@@ -19,7 +19,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Of a picture, which is made smaller by averages in linear light. A marked one gets a bright frame.
+    /// Makes a picture smaller, by averages in linear light. A marked one has a bright frame.
     #[must_use]
     pub fn new(picture: &Image, is_marked: bool) -> Self {
         Self {
@@ -29,7 +29,7 @@ impl Cell {
     }
 }
 
-/// Lays cells out in rows; all are taken to be of the first one's size. None without cells.
+/// Arranges cells in rows; all should have the first one's size. `None` without cells.
 #[must_use]
 pub fn contact_sheet(cells: &[Cell], columns: u32) -> Option<Image> {
     let first = &cells.first()?.image;
@@ -81,7 +81,8 @@ fn paste(sheet: &mut Image, corner: [u32; 2], image: &Image, most_px: [u32; 2]) 
     }
 }
 
-/// The picture with squares of `factor` pixels averaged; what is left at the right and at the bottom is dropped.
+/// The picture with squares of `factor` pixels averaged; the rest at the right and at the bottom is
+/// dropped.
 fn shrunk(picture: &Image, factor: u32) -> Image {
     let linear = linear_of_codes();
     let size_px = [picture.width_px, picture.height_px].map(|side| (side / factor).max(1));

@@ -1,4 +1,4 @@
-//! Pictures made smaller, and sheets of them.
+//! Reduces pictures, and arranges them on sheets.
 
 use app_scene::geometry::color::{code_of_linear, linear_of_codes};
 use image::{Rgb, RgbImage};

@@ -1,4 +1,4 @@
-//! A plain shaded picture of a toy, drawn on the processor.
+//! A plain shaded picture of a toy, rendered on the processor.
 
 use app_core::scene::Pose;
 use app_core::toy::{Material, PosedMesh, Toy, ToyError, Wrap};
@@ -8,29 +8,29 @@ use image::{Rgb, RgbImage};
 
 use crate::small::shrunk;
 
-/// Samples of a pixel along each side.
+/// Samples per pixel along each side.
 const N_SAMPLES: u32 = 3;
-/// How far the view is turned from the front, and lifted.
+/// Turn of the view from the front, and its elevation.
 const YAW_DEG: f64 = -35.0;
 const PITCH_DEG: f64 = 20.0;
-/// Empty part at each border.
+/// Empty share at each border.
 const MARGIN: f64 = 0.06;
-/// Codes of what is behind the toy.
+/// Code of the background.
 const BACKGROUND: u8 = 96;
-/// Light from all around.
+/// Ambient light.
 const AMBIENT: f32 = 0.35;
 
-/// Space that several pictures of a toy share.
+/// The view volume that several pictures of a toy share.
 pub struct Stand {
     view_from_object: DMat4,
-    /// Of what is drawn, in view space: +X right, +Y up, towards the viewer +Z.
+    /// Corners of the volume in view space: +X right, +Y up, towards the viewer +Z.
     min: DVec3,
     max: DVec3,
     linear: [f32; 256],
 }
 
 impl Stand {
-    /// One that holds the toy in all of `poses`.
+    /// A volume around the toy in all of `poses`.
     ///
     /// # Errors
     /// When a pose is none of the toy's.
@@ -115,7 +115,7 @@ impl Stand {
         }
         let [r, g, b, _] = material.base_color_linear;
         let albedo = color * Vec3::new(r, g, b) * self.texel(toy, material, uv);
-        // From the viewer's left, above.
+        // Light from the viewer's upper left.
         let towards_light = Vec3::new(-0.4, 0.7, 0.6).normalize();
         let direct = normal.normalize_or_zero().dot(towards_light).max(0.0);
         let light = albedo * (AMBIENT + (1.0 - AMBIENT) * direct);
@@ -158,7 +158,7 @@ fn texel_index(coordinate: f32, wrap: Wrap, side_px: u32) -> usize {
     }
 }
 
-/// A picture and how near to the viewer what it shows is.
+/// A picture with its depth buffer.
 struct Canvas {
     picture: RgbImage,
     nearness: Vec<f32>,
@@ -172,7 +172,7 @@ impl Canvas {
         }
     }
 
-    /// Draws a triangle where nothing nearer is: +X right, +Y down, towards the viewer +Z, in pixels.
+    /// Draws a triangle with a depth test: +X right, +Y down, towards the viewer +Z, in pixels.
     fn triangle(&mut self, [a, b, c]: [Vec3; 3], shade: impl Fn([f32; 3]) -> Rgb<u8>) {
         let cross = |u: Vec3, v: Vec3| u.x * v.y - u.y * v.x;
         let area = cross(b - a, c - a);

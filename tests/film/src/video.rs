@@ -1,4 +1,4 @@
-//! Pictures of a video, which ffmpeg takes out of it if it is installed.
+//! Extracts pictures from a video by ffmpeg, if it is installed.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -8,14 +8,14 @@ use std::process::Command;
 
 use anyhow::{Context, bail, ensure};
 
-/// Endings of files that are taken for videos.
+/// File name extensions of videos.
 const ENDINGS: [&str; 6] = ["mp4", "mov", "m4v", "mkv", "webm", "avi"];
-/// Pictures that are taken of each second: those of a film.
+/// Pictures per second: those of a film.
 pub const PICTURES_PER_SEC: u32 = 24;
-/// Pictures that are taken at most: a minute.
+/// Largest number of pictures: a minute.
 pub const MAX_PICTURES: u32 = 60 * PICTURES_PER_SEC;
 
-/// Whether a file is a video, by its ending.
+/// Whether a file is a video, by its extension.
 #[must_use]
 pub fn is_video(path: &Path) -> bool {
     let ending = path.extension().map(OsStr::to_ascii_lowercase);
@@ -30,10 +30,11 @@ pub struct Video {
 }
 
 impl Video {
-    /// Takes the first pictures of a video, [`PICTURES_PER_SEC`] of each second and at most `n_most`, into a folder that is made for them.
+    /// Extracts the first pictures of a video, [`PICTURES_PER_SEC`] of each second and at most
+    /// `n_most`, into a folder that is made for them.
     ///
     /// # Errors
-    /// When there is no ffmpeg, it finds no picture in the file, or the folder is there already.
+    /// When ffmpeg is not installed, it finds no picture in the file, or the folder exists already.
     pub fn open(path: &Path, folder: &Path, n_most: u32) -> anyhow::Result<Self> {
         let named = || path.display().to_string();
         ensure!(path.is_file(), "{}: is no file", named());
@@ -59,7 +60,7 @@ impl Video {
 
 impl Drop for Video {
     fn drop(&mut self) {
-        // Nobody is left to tell.
+        // Nobody is left to receive an error.
         let _ = fs::remove_dir_all(&self.folder);
     }
 }
@@ -74,7 +75,7 @@ fn extract(video: &Path, folder: &Path, n_most: u32) -> anyhow::Result<()> {
         .output();
     let output = match output {
         Err(error) if error.kind() == io::ErrorKind::NotFound => bail!(
-            "is a video, which ffmpeg opens, and that is not installed; give a photograph, or a picture of the video as PNG"
+            "is a video, which needs ffmpeg, and ffmpeg is not installed; give a photograph, or a picture of the video as PNG"
         ),
         output => output.context("ffmpeg")?,
     };

@@ -1,4 +1,4 @@
-//! A toy on a table as the ledger's examples have it: what it costs depends on numbers alone, which are varied.
+//! A toy on a table for the ledger's examples: its cost depends on a few numbers, which are varied.
 
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -14,11 +14,11 @@ use crate::glb::Glb;
 use crate::photographer::world::camera;
 use crate::planar::BT601_FULL;
 
-/// The screen of an iPhone X, across.
+/// The screen of an iPhone X, in landscape.
 pub const SCREEN_PX: [u32; 2] = [2436, 1125];
 
-/// Positions on the unit ball, and the corners of 2 `n_around` (`n_along` - 1) triangles that close it, counter-clockwise seen
-/// from outside; the last position is its lowest point.
+/// Positions on the unit sphere, and the corners of 2 `n_around` (`n_along` - 1) triangles that
+/// close it, counter-clockwise from outside; the last position is its lowest point.
 #[must_use]
 pub fn ball_mesh(n_around: u32, n_along: u32) -> (Vec<Vec3>, Vec<u32>) {
     let mut positions = vec![Vec3::Y];
@@ -45,7 +45,7 @@ pub fn ball_mesh(n_around: u32, n_along: u32) -> (Vec<Vec3>, Vec<u32>) {
     (positions, indices)
 }
 
-/// A closed ball of as many triangles, 40 mm in radius.
+/// A closed ball of that many triangles, 40 mm in radius.
 ///
 /// # Panics
 /// With fewer than three triangles around or along it.
@@ -60,7 +60,7 @@ pub fn ball(n_around: u32, n_along: u32) -> Toy {
 /// A toy that a clip lifts.
 ///
 /// # Panics
-/// When they are no toy.
+/// When the triangles are invalid.
 #[must_use]
 pub fn lifted(positions: &[f32], normals: &[f32], indices: &[u32]) -> Toy {
     let mut file = Glb::new();
@@ -77,7 +77,7 @@ pub fn lifted(positions: &[f32], normals: &[f32], indices: &[u32]) -> Toy {
     Toy::from_glb("toy.glb", &file.bytes()).expect("a toy of valid triangles")
 }
 
-/// A picture of what is grey, as a phone delivers it whose platform does not lend textures.
+/// A grey picture as a phone without texture sharing delivers it.
 fn planes(size_px: [u32; 2]) -> Option<PlanarImage> {
     let [width, height] = size_px.map(|side| side as usize);
     let (luma, chroma) = (vec![128; width * height], vec![128; width * height.div_ceil(2)]);
@@ -90,7 +90,7 @@ fn planes(size_px: [u32; 2]) -> Option<PlanarImage> {
     .ok()
 }
 
-/// A camera that sees the ball's region some 900 x 700 px large on that screen.
+/// A camera that shows the ball's region some 900 x 700 px large on that screen.
 #[must_use]
 pub fn phone() -> Camera {
     camera(
@@ -100,7 +100,7 @@ pub fn phone() -> Camera {
     )
 }
 
-/// A toy on a table, seen in pictures of a size.
+/// A toy on a table, in pictures of the given size.
 ///
 /// # Panics
 /// When the toy has no clip `lift`, or a side of the picture is 0.

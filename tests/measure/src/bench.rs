@@ -1,4 +1,5 @@
-//! Speed against error: presets over sessions, timed by what is new in a frame, and where nothing is compiled any more.
+//! Speed against error: presets over sessions, timed by the kind of change in a frame, without
+//! compilation.
 
 mod basin;
 mod exact;
@@ -37,54 +38,58 @@ pub(crate) use table::aligned;
 pub use table::{csv, json, table};
 pub use withheld::{Rebuilt, rebuild, rebuilt_table};
 
-/// Presets that are also measured with exact visibility, which tells errors of visibility from all others.
+/// Presets that are also measured with exact visibility, which separates errors of visibility from
+/// all others.
 const EXACT_PRESETS: &[Preset] = &[Preset::Paper, Preset::Balanced];
 
-/// What to measure.
+/// Options of a measurement.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The presets, in the order of the rows.
     pub presets: Vec<Preset>,
-    /// Whether to add rows of what the governor turns down of `balanced`, one step after the other.
+    /// Whether to add rows with the governor's quality steps off `balanced`, one after the other.
     pub with_front: bool,
-    /// How often each frame is timed; at least 1.
+    /// Number of timings of each frame; at least 1.
     pub n_repeats: usize,
-    /// The frames, all without it.
+    /// The frames to measure.
     pub frames: Frames,
-    /// Size of the pictures that are timed and counted, the session's own without it; errors are always of that.
+    /// Size of the pictures that are timed and counted, by default the session's own; errors are
+    /// always the session's.
     pub size_px: Option<SizePx>,
-    /// Whether they come as a phone's planes rather than as pixels.
+    /// Whether pictures are planes, as on phones, rather than pixels.
     pub as_planes: bool,
-    /// Whether to add rows with visibility from the ray-traced reference, which takes minutes.
+    /// Whether to add rows with ray-traced visibility, which takes minutes.
     pub with_exact: bool,
-    /// Whether cameras, toy and lights are first aligned by the pictures; with exact visibility they never are.
+    /// Whether cameras, toy and lights are first aligned by the pictures; never with exact
+    /// visibility.
     pub is_aligned: bool,
-    /// Where the lights come from then.
+    /// The source of the lights for alignment.
     pub lights: Lights,
-    /// The number that is looked for then.
+    /// The number that alignment estimates.
     pub ratio: Ratio,
 }
 
-/// One preset on one session.
+/// The result of one preset on one session.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Name of the session.
     pub session: String,
-    /// Name of the preset, `+exact` behind it where visibility is the reference's.
+    /// Name of the preset, followed by `+exact` for exact visibility.
     pub preset: String,
     /// Number of frames.
     pub n_frames: usize,
     /// Mean scores over those frames that have a truth.
     pub scores: Option<Scores>,
-    /// Mean flicker over those of which the frame before has one as well.
+    /// Mean flicker over those frames whose previous frame has a truth as well.
     pub flicker: Option<Flicker>,
-    /// Time on the processor that alignment took a frame, on average; none where nothing was aligned.
+    /// Mean processor time of alignment per frame; `None` if nothing was aligned.
     pub align_ms: Option<f64>,
     /// Width and height of the pictures.
     pub size_px: [u32; 2],
-    /// Times of each kind of frame; none where visibility is the reference's, or nothing was worked on.
+    /// Times of each kind of frame; `None` with exact visibility, or if no frame was retargeted.
     pub times: Vec<KindTimes>,
-    /// Candidates of the ring search for a texel that needed it, on average; none without a search.
+    /// Mean number of candidates of the ring search for a texel that needed it; `None` without a
+    /// search.
     pub n_taps: Option<f64>,
 }
 
@@ -115,7 +120,7 @@ pub fn bench(session: &Capture, core: &mut Core, options: &Options) -> Result<Ve
     Ok(rows)
 }
 
-/// Divides the time of each kind of frame by that of the published method's.
+/// Divides the time of each kind of frame by the published method's.
 fn compare_with_paper(rows: &mut [Row]) {
     let Some(paper) = rows.iter().find(|row| row.preset == Preset::Paper.name()) else {
         return;
@@ -139,7 +144,7 @@ fn measure(
         turned_down,
         ..replay_options(options)
     };
-    // Scores do not change from run to run. What it compiles on its way stays compiled for the times.
+    // Scores do not vary between runs. Pipelines compiled here stay compiled for the timings.
     let mut reports = replay_aligned((session, Some(session)), core, &asked, alignments, &mut Quiet)?;
     // One preset, one report.
     let report = reports.swap_remove(0);
@@ -157,7 +162,7 @@ fn measure(
     })
 }
 
-/// Times and costs in pictures of the size that is asked for.
+/// Times and costs in pictures of the requested size.
 fn times(
     session: &Capture,
     core: &mut Core,
@@ -188,7 +193,7 @@ fn times(
     Ok(times)
 }
 
-/// The same frames as phones deliver them.
+/// The same frames as planes.
 fn as_planes(inputs: Vec<FrameInput>) -> Result<Vec<FrameInput>, PlaneError> {
     let planes = |input: FrameInput| {
         let image = planar(input.image.rgba(), BT601_FULL)?;
@@ -214,7 +219,7 @@ fn replay_options(options: &Options) -> replay::Options {
     }
 }
 
-/// The replayed frames on which something was worked on, as the core was given them.
+/// The core's inputs of the retargeted frames.
 fn inputs(
     session: &Capture,
     (report, preset): (&Report, Preset),

@@ -11,14 +11,14 @@ use app_pipeline::core::inspect::Inspect;
 
 use crate::bench::{FRAME_KINDS, FrameKind, aligned, with_new};
 
-/// What a kind of frame costs, on a screen of the picture's size.
+/// The cost of a kind of frame, on a screen of the picture's size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Counted {
     /// The kind.
     pub kind: FrameKind,
-    /// What a frame moves and draws.
+    /// Memory traffic and draws of a frame.
     pub ledger: Ledger,
-    /// Most bytes of textures and buffers that there are.
+    /// Largest number of bytes of textures and buffers.
     pub peak_bytes: u64,
 }
 
@@ -30,10 +30,10 @@ impl Counted {
     }
 }
 
-/// Counts each kind of frame where all but what is new is known.
+/// Counts each kind of frame with all else known.
 ///
 /// # Errors
-/// When the core takes no such scene or frame.
+/// When the core refuses the scene or a frame.
 pub fn count(
     scene: &Scene,
     (preset, turned_down): (Preset, &[QualityStep]),
@@ -49,7 +49,7 @@ pub fn count(
             core.frame(known)?;
         }
         let screen_px = [scene.width_px, scene.height_px];
-        // Two pictures that follow one another add to different means: the dearer counts.
+        // Two successive pictures add to different means: the more expensive one counts.
         let mut next = |input: &FrameInput| -> Result<Ledger, CoreError> {
             let report = core.frame(input)?;
             let present = core.count_present(screen_px, Display::default());

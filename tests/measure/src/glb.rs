@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-/// A file in the making: one scene, one buffer.
+/// A glTF file under construction: one scene, one buffer.
 #[derive(Clone, Debug)]
 pub struct Glb {
-    /// The whole JSON tree, free to be broken.
+    /// The whole JSON tree, which tests may break.
     pub json: Value,
     bin: Vec<u8>,
 }
@@ -17,7 +17,7 @@ impl Default for Glb {
 }
 
 impl Glb {
-    /// A file whose scene shows node 0, which is still to be added.
+    /// A file whose scene shows node 0, which the caller must add.
     #[must_use]
     pub fn new() -> Self {
         let json = json!({ "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }] });
@@ -30,7 +30,7 @@ impl Glb {
     /// Appends to a list of the tree and returns the index.
     ///
     /// # Panics
-    /// When the tree has something else of that name.
+    /// When that key holds something other than a list.
     pub fn push(&mut self, list: &str, value: Value) -> usize {
         let list = &mut self.json[list];
         if list.is_null() {
@@ -56,7 +56,7 @@ impl Glb {
         self.accessor(bytemuck::cast_slice(values), accessor)
     }
 
-    /// An accessor of 32-bit integers, one an element.
+    /// An accessor of 32-bit integers, one per element.
     pub fn u32s(&mut self, values: &[u32]) -> usize {
         let accessor = json!({ "componentType": 5125, "type": "SCALAR", "count": values.len() });
         self.accessor(bytemuck::cast_slice(values), accessor)
@@ -68,7 +68,7 @@ impl Glb {
         self.accessor(bytemuck::cast_slice(values), accessor)
     }
 
-    /// An accessor of bytes that stand for fractions where `normalized`.
+    /// An accessor of bytes, which are fractions if `normalized`.
     pub fn u8s(&mut self, shape: &str, normalized: bool, values: &[u8]) -> usize {
         let count = values.len() / width(shape);
         let accessor =
@@ -129,10 +129,10 @@ pub fn container(json: &[u8], bin: &[u8]) -> Vec<u8> {
     [header, json_head, json, bin_head, bin].concat()
 }
 
-/// Tree and binary chunk of a file that [`container`] has put together, or one like it.
+/// Tree and binary chunk of a file made by [`container`] or a similar one.
 ///
 /// # Panics
-/// When it is none.
+/// When it is invalid.
 #[must_use]
 pub fn chunks(file: &[u8]) -> (Value, &[u8]) {
     let (length, chunks) = file[12..].split_first_chunk().expect("a file has a chunk");

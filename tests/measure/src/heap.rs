@@ -1,4 +1,4 @@
-//! Bytes that the Rust code of this process holds: what a driver allocates, in C, is not among them.
+//! Memory held by the Rust code of this process, without a driver's allocations in C.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -13,7 +13,7 @@ static HEAP: Counted = Counted {
     n_bytes: AtomicUsize::new(0),
 };
 
-/// MiB held now.
+/// MiB held at present.
 #[must_use]
 pub fn heap_mib() -> f64 {
     let n_bytes = HEAP.n_bytes.load(Ordering::Relaxed) as f64;
@@ -21,7 +21,7 @@ pub fn heap_mib() -> f64 {
 }
 
 impl Counted {
-    /// Counts a block in place of another, unless there was no memory for it.
+    /// Counts a block that replaces another, unless the allocation failed.
     fn count(&self, block: *mut u8, n_bytes: usize, n_bytes_before: usize) -> *mut u8 {
         if !block.is_null() {
             self.n_bytes.fetch_add(n_bytes, Ordering::Relaxed);

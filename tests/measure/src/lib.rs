@@ -1,4 +1,4 @@
-//! The measuring programs, and the photographer that makes their scenes.
+//! The measuring programs, and the photographer that renders their scenes.
 
 pub mod ball;
 pub mod bench;

@@ -1,4 +1,4 @@
-//! Pictures as a phone's camera hands them over.
+//! Pictures in the format of phones' cameras.
 
 use app_core::camera_frame::{CodeRange, LumaCoefficients, PlanarImage, PlaneError, Planes, YcbcrEncoding};
 use app_core::scene::Image;
@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use reference::camera_planes::encoded;
 
-/// What most phones' planes have.
+/// The encoding of most phones' planes.
 pub const BT601_FULL: YcbcrEncoding = YcbcrEncoding {
     coefficients: LumaCoefficients::Bt601,
     range: CodeRange::Full,
@@ -20,7 +20,7 @@ fn code(value: f64) -> u8 {
 /// `image` as planes: chroma is the mean over four pixels.
 ///
 /// # Errors
-/// When it has no pixel, or more than can be.
+/// When its size is invalid.
 pub fn planar(image: &Image, encoding: YcbcrEncoding) -> Result<PlanarImage, PlaneError> {
     let [width, height] = [image.width_px as usize, image.height_px as usize];
     let ycbcr = |x: usize, y: usize| {

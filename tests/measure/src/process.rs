@@ -1,47 +1,47 @@
-//! What this process has used so far, as Linux counts it.
+//! Resources used by this process so far, as Linux counts them.
 
 use std::fs;
 
 use anyhow::Context;
 
-/// Hertz of the kernel's clock ticks towards programs, on every platform of today. Source: proc(5), sysconf(3).
+/// Clock ticks per second in `/proc`, on every present platform. Source: proc(5), sysconf(3).
 const TICKS_PER_SEC: f64 = 100.0;
-/// What written to `clear_refs` sets the peak to what is held now. Source: proc(5).
+/// Value that, written to `clear_refs`, resets the peak to the present memory. Source: proc(5).
 const RESET_PEAK: &str = "5";
 
-/// Seconds on processors, of all threads.
+/// Processor seconds of all threads.
 ///
 /// # Errors
-/// Where there is no `/proc`.
+/// Without `/proc`.
 pub fn cpu_secs() -> anyhow::Result<f64> {
     let stat = fs::read_to_string("/proc/self/stat")?;
-    // The name may hold anything; what follows its bracket is numbers.
+    // The name may contain anything; the fields after its bracket are numbers.
     let (_, fields) = stat.rsplit_once(')').context("no name in /proc/self/stat")?;
     let ticks = fields.split_whitespace().skip(11).take(2);
     let ticks = ticks.map(str::parse::<f64>).sum::<Result<f64, _>>()?;
     Ok(ticks / TICKS_PER_SEC)
 }
 
-/// MiB in memory now.
+/// Present memory in MiB.
 ///
 /// # Errors
-/// Where there is no `/proc`.
+/// Without `/proc`.
 pub fn held_mib() -> anyhow::Result<f64> {
     status_mib("VmRSS:")
 }
 
-/// Most MiB in memory since the last [`reset_peak`].
+/// Largest memory in MiB since the last [`reset_peak`].
 ///
 /// # Errors
-/// Where there is no `/proc`.
+/// Without `/proc`.
 pub fn peak_mib() -> anyhow::Result<f64> {
     status_mib("VmHWM:")
 }
 
-/// Begins a new peak.
+/// Resets the peak.
 ///
 /// # Errors
-/// Where there is no `/proc`.
+/// Without `/proc`.
 pub fn reset_peak() -> anyhow::Result<()> {
     Ok(fs::write("/proc/self/clear_refs", RESET_PEAK)?)
 }

@@ -1,4 +1,4 @@
-//! Profiles of sessions, and of wherever else they come from, in the layout of the paper's Table 1.
+//! Profiles of sessions and of other sources, in the layout of the paper's Table 1.
 
 use std::time::Instant;
 
@@ -25,14 +25,14 @@ pub const TASKS: [(&str, f64); 9] = [
     ("Scene Rendering", 0.98),
 ];
 
-/// Why there is no profile.
+/// The reason why there is no profile.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ProfileError {
     /// The session cannot be read.
     #[error(transparent)]
     Session(#[from] SessionError),
-    /// The core cannot take it.
+    /// The core refuses it.
     #[error(transparent)]
     Core(#[from] CoreError),
     /// A profile of another version.
@@ -46,16 +46,17 @@ pub enum ProfileError {
     Json(#[from] serde_json::Error),
 }
 
-/// The task of Table 1 that a pass or a stage is a part of, or stands in the place of; none for what the paper does not list.
+/// The task of Table 1 to which a pass or a stage belongs; `None` for work that the paper does not
+/// list.
 #[must_use]
 pub fn task(name: &str) -> Option<&'static str> {
     let index = match name {
         "align" | "placement" => 0,
         "masks" | "eligible" | "census" | "gbuffer" | "validity" | "things" | "withhold" | "moved_mask"
         | "coverage" => 1,
-        "toy" | "appearance" | "rim" | "tint" | "tint_fill" | "self_shadow" => 2,
+        "toy" | "appearance" | "rim" | "gloss" | "tint" | "tint_fill" | "self_shadow" => 2,
         "warp" | "occlusion" => 3,
-        // What is sampled of the real shadow: by a search there, by a fit and a residual here.
+        // Sampling of the real shadow: by a search there, by a fit and a residual here.
         "search" | "lit" | "fit" | "fit_solve" | "residual" | "fill" | "detail" => 4,
         "box_filter" => 5,
         "pcss" => 6,
@@ -66,7 +67,8 @@ pub fn task(name: &str) -> Option<&'static str> {
     Some(TASKS[index].0)
 }
 
-/// Runs all frames of a session with a preset, and once more before, where nothing is compiled.
+/// Runs all frames of a session with a preset twice, and profiles the second run, in which nothing
+/// is compiled.
 ///
 /// # Errors
 /// When a frame cannot be read or made.
@@ -121,10 +123,10 @@ pub fn profile(session: &dyn Session, core: &mut Core, preset: Preset) -> Result
     Ok(profile)
 }
 
-/// Reads a profile of a phone, or one of another run.
+/// Reads a profile of a phone, or of another run.
 ///
 /// # Errors
-/// When it is none, or of another version.
+/// When it is invalid, or has another version.
 pub fn parse(text: &str) -> Result<Profile, ProfileError> {
     let profile: Profile = serde_json::from_str(text)?;
     if profile.about.version != app_core::profile::VERSION {
@@ -135,7 +137,8 @@ pub fn parse(text: &str) -> Result<Profile, ProfileError> {
     Ok(profile)
 }
 
-/// For each kind of frame the tasks of Table 1, beside those of the paper; then the stages on the processor, and the passes.
+/// For each kind of frame the tasks of Table 1, beside the paper's; then the stages on the
+/// processor, and the passes.
 #[must_use]
 pub fn tables(profile: &Profile) -> String {
     let about = &profile.about;
@@ -158,7 +161,8 @@ pub fn tables(profile: &Profile) -> String {
     text
 }
 
-/// How old the camera's pictures were when they were shown, and how many were not; nothing where no camera tells.
+/// Age of the camera's pictures when they were shown, and number of dropped ones; empty without a
+/// camera's data.
 fn camera_words(profile: &Profile) -> String {
     let frames = || profile.scopes(PROCESSOR).filter(|event| event.name == FRAME);
     let mut ages_ms: Vec<f64> = frames()
@@ -174,7 +178,7 @@ fn camera_words(profile: &Profile) -> String {
     )
 }
 
-/// Beginning and end of each frame of a kind, in microseconds.
+/// Start and end of each frame of a kind, in microseconds.
 fn frames_of(profile: &Profile, kind: &str) -> Vec<(f64, f64)> {
     let all: Vec<_> = profile
         .scopes(PROCESSOR)
@@ -184,7 +188,7 @@ fn frames_of(profile: &Profile, kind: &str) -> Vec<(f64, f64)> {
         .iter()
         .enumerate()
         .filter(|(_, event)| event.args.kind.as_deref() == Some(kind));
-    // What belongs to a frame begins before the next one does.
+    // Events of a frame begin before the next frame does.
     let end = |index: usize| all.get(index + 1).map_or(f64::INFINITY, |next| next.ts);
     of_kind.map(|(index, event)| (event.ts, end(index))).collect()
 }
@@ -195,7 +199,7 @@ fn task_rows(profile: &Profile, frames: &[(f64, f64)], heads: Vec<String>) -> Ve
     let mean_ms = |threads: &[u32], wanted: &dyn Fn(&str) -> bool| -> f64 {
         let events = threads.iter().flat_map(|tid| profile.scopes(*tid));
         let events = events.filter(|event| event.name != FRAME && is_within(event.ts) && wanted(&event.name));
-        // In that order no time is counted twice: stages and passes of a task stand side by side.
+        // In this order no time counts twice: stages and passes of a task are disjoint.
         events.fold(0.0, |sum, event| sum + event.dur) * per_frame
     };
     let of_task = |name: &str| mean_ms(&[PROCESSOR, DEVICE], &|scope| task(scope) == Some(name));

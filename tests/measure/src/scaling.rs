@@ -1,5 +1,5 @@
-//! How the cost of a frame grows with what it is of, by the ledger: with the picture around the region, with the region, with
-//! lights, with triangles.
+//! The growth of a frame's cost, by the ledger: with the picture around the region, with the
+//! region, with lights, with triangles.
 
 use app_core::Core;
 use app_core::core::CoreError;
@@ -12,15 +12,15 @@ use crate::bench::FrameKind;
 use crate::count::{Counted, count};
 use crate::stability::Sweep;
 
-/// The pass that shows a picture, whose cost is the screen's.
+/// The pass that shows a picture, whose cost depends on the screen.
 const SCREEN: &str = "screen";
 const PRESET: Preset = Preset::Balanced;
-/// Squares around and along a ball of 10,000 triangles.
+/// Divisions around and along a ball of 10,000 triangles.
 const FINE: [u32; 2] = [100, 51];
 /// Pixels of a region, in millions.
 const MEGAPIXEL: f64 = 1e6;
 
-/// A camera that shows as much in each pixel, in a picture of another size.
+/// A camera with the same angle per pixel, in a picture of another size.
 fn widened([width_px, height_px]: [u32; 2]) -> (Camera, [u32; 2]) {
     let camera = phone();
     let intrinsics = Intrinsics {
@@ -31,7 +31,7 @@ fn widened([width_px, height_px]: [u32; 2]) -> (Camera, [u32; 2]) {
     (Camera { intrinsics, ..camera }, [width_px, height_px])
 }
 
-/// A camera that shows everything so much smaller.
+/// A camera in which everything is smaller by the given ratio.
 fn zoomed(ratio: f64) -> (Camera, [u32; 2]) {
     let camera = phone();
     let intrinsics = Intrinsics {
@@ -42,7 +42,7 @@ fn zoomed(ratio: f64) -> (Camera, [u32; 2]) {
     (Camera { intrinsics, ..camera }, SCREEN_PX)
 }
 
-/// Mebibytes that the passes move but that which shows the picture.
+/// Memory traffic in mebibytes without the pass that shows the picture.
 #[must_use]
 pub fn moved_mib(counted: &Counted) -> f64 {
     let passes = counted.ledger.entries().iter();
@@ -60,10 +60,10 @@ fn kilotriangles(counted: &Counted) -> f64 {
     triangles / 1e3
 }
 
-/// What varies, and the scene that it makes.
+/// A parameter's value, and its scene.
 type Setup = (f64, (Scene, FrameInput));
 
-/// Of each kind of frame a line.
+/// A line for each kind of frame.
 fn sweep(
     name: &str,
     (along, measure): (&'static str, &'static str),
@@ -97,7 +97,7 @@ fn line_of(kind: FrameKind) -> &'static str {
     }
 }
 
-/// Pixels of the region that a scene works on, in millions.
+/// Pixels of a scene's work region, in millions.
 fn region_megapixels((scene, input): &(Scene, FrameInput)) -> Result<f64, CoreError> {
     let mut core = Core::counting();
     core.set_scene(scene.clone(), PRESET)?;
@@ -108,10 +108,10 @@ fn region_megapixels((scene, input): &(Scene, FrameInput)) -> Result<f64, CoreEr
 
 const MOVED: &str = "MiB moved, without showing the picture";
 
-/// By the picture's width, while the region stays the same.
+/// By the picture's width, with the same region.
 ///
 /// # Errors
-/// When the core takes no such scene.
+/// When the core refuses the scene.
 pub fn by_picture() -> Result<Sweep, CoreError> {
     let setups: Vec<Setup> = [[2000, 1400], [2436, 1400], [3200, 1600], [4000, 1800]]
         .map(|size_px: [u32; 2]| {

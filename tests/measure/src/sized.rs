@@ -1,4 +1,5 @@
-//! A session's scene and frames in pictures of another size: what they cost depends on it, what they show does not.
+//! A session's scene and frames in pictures of another size: their cost depends on it, their
+//! content does not.
 
 use std::sync::Arc;
 
@@ -9,10 +10,10 @@ use app_core::scene::{Camera, Image, Intrinsics, Plate, Scene};
 /// Width and height.
 pub type SizePx = [u32; 2];
 
-/// Reads `1280x720`.
+/// Parses `1280x720`.
 ///
 /// # Errors
-/// When it is none, or a side is not from 1 to 8192.
+/// When it is invalid, or a side is not from 1 to 8192.
 pub fn parse_size(text: &str) -> Result<SizePx, String> {
     let side = |side: &str| side.parse().ok().filter(|side| (1..=8192).contains(side));
     let (width, height) = text.split_once('x').ok_or("WIDTHxHEIGHT, such as 1280x720")?;
@@ -21,11 +22,12 @@ pub fn parse_size(text: &str) -> Result<SizePx, String> {
         .ok_or_else(|| format!("{text}: both sides are from 1 to 8192 px"))
 }
 
-/// Fills the other size, as a screen does: pictures are scaled alike both ways, and cropped evenly.
+/// The transform that fills the other size, like a screen: pictures are scaled uniformly, and
+/// cropped equally on both sides.
 #[derive(Clone, Copy, Debug)]
 struct Filling {
     scale: f64,
-    /// Of the larger picture that is cropped, cut off on each side.
+    /// Width of the crop on each side, in pixels of the larger picture.
     cut_px: [f64; 2],
     to_px: SizePx,
 }
@@ -55,7 +57,7 @@ impl Filling {
         }
     }
 
-    /// The nearest pixel of each.
+    /// Nearest-neighbour resampling.
     #[allow(clippy::cast_possible_truncation, reason = "within the picture")]
     fn image(&self, image: &Image) -> Image {
         let nearest = |at: u32, axis: usize, most: u32| {

@@ -1,10 +1,10 @@
-//! CPU reference of `appearance.wgsl`: the toy's own colours, carried a little past its outline.
+//! CPU reference of `appearance.wgsl`: the toy's own colours, extended a little beyond its outline.
 
 use glam::{DVec3, DVec4, IVec2, UVec2};
 
 use super::raster::Raster;
 
-/// Farthest that a pixel of one surface is looked for, in pixels along each side.
+/// Search range of a pixel of one surface, in pixels along each side.
 pub const REACH_PX: i32 = 3;
 /// Difference of reversed depth, as a fraction of the larger, beyond which two pixels show two surfaces.
 const DEPTH_STEP: f64 = 0.005;
@@ -16,23 +16,24 @@ pub struct ToyPixel {
     pub color: DVec3,
     /// Each light's cosine times its visibility.
     pub received: DVec4,
-    /// Base colour of the model, and the part of what it sees that lies above the horizon.
+    /// Base colour of the model, and the fraction of its hemisphere above the horizon.
     pub base: DVec4,
 }
 
-/// What is known of a pixel.
+/// The data of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// What it shows and is.
+    /// Its colours.
     pub pixel: ToyPixel,
-    /// Reversed depth of the toy; 0 where it is not.
+    /// Reversed depth of the toy; 0 beside it.
     pub depth: f64,
     /// Whether it shows one surface of the toy and nothing else.
     pub is_one_surface: bool,
 }
 
-/// What is found for `texel`: its own where it shows one surface, else that of the nearest that does, the first row by row of
-/// those as near, and of those at its own depth before others; of a part too thin to have one its own; none beside the toy.
+/// The result for `texel`: its own values if it shows one surface, else those of the nearest pixel
+/// that does, the first row by row among equally near ones, with those of its own depth before
+/// others; its own for a part too thin to have such a pixel; `None` beside the toy.
 #[must_use]
 pub fn clean(seen: &Raster<Seen>, texel: UVec2) -> Option<ToyPixel> {
     let here = seen.at(texel);
@@ -44,7 +45,7 @@ pub fn clean(seen: &Raster<Seen>, texel: UVec2) -> Option<ToyPixel> {
     let offsets = reach
         .clone()
         .flat_map(|y| reach.clone().map(move |x| IVec2::new(x, y)));
-    // Beyond the border the last pixel stands for those that are not there.
+    // Beyond the border the last pixel is repeated.
     let near = offsets.map(|offset| {
         let other = seen.at((texel.as_ivec2() + offset).clamp(IVec2::ZERO, last).as_uvec2());
         (offset.length_squared(), other)

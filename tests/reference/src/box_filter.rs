@@ -1,6 +1,6 @@
 //! CPU reference of `box_filter.wgsl`: the box filter of the shadow term.
 //!
-//! The shader sums rows, then columns; here each square is summed as it is.
+//! The shader sums rows, then columns; here each square is summed directly.
 
 use glam::{DVec3, DVec4, UVec2};
 
@@ -21,7 +21,7 @@ pub fn box_sums(terms: &Raster<Option<DVec3>>, radius_px: u32) -> Raster<DVec4> 
     })
 }
 
-/// The mean that a sum stands for; none of nothing.
+/// The mean of a sum; `None` of an empty one.
 #[must_use]
 pub fn mean(sum: DVec4) -> Option<DVec3> {
     (sum.w > 0.0).then(|| sum.truncate() / sum.w)

@@ -1,4 +1,4 @@
-//! CPU reference of `camera_planes.wgsl`: planes of luma and chroma, decoded.
+//! CPU reference of `camera_planes.wgsl`: decodes planes of luma and chroma.
 
 use app_core::camera_frame::{CodeRange, LumaCoefficients, YcbcrEncoding};
 use glam::DVec3;
@@ -41,8 +41,8 @@ pub fn encoded(encoding: YcbcrEncoding, srgb: DVec3) -> [f64; 3] {
     }
 }
 
-/// Chroma of one component at a pixel, from samples of half the size that lie amid four pixels each: bilinear, and as
-/// at the border beyond it.
+/// Chroma of one component at a pixel, from samples of half the size that lie in the centre of four
+/// pixels each: bilinear, with repeated border samples.
 #[must_use]
 pub fn chroma_at(sample: impl Fn(i64, i64) -> f64, [columns, rows]: [i64; 2], [x, y]: [u32; 2]) -> f64 {
     // A sample k has its centre at 2 k + 1 pixels, and pixel x at x + 1/2.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::raster::Raster;
 use super::sets::LightSet;
 
-/// The sets, each once; the empty one is none to sample from.
+/// The sets, each once; the empty set is nothing to sample from.
 #[must_use]
 pub fn seen_sets(eligible: &Raster<LightSet>) -> Vec<LightSet> {
     let seen: BTreeSet<LightSet> = eligible.texels().iter().copied().collect();

@@ -1,45 +1,48 @@
-//! CPU reference of `composite.wgsl`: the picture where it shows the receiver.
+//! CPU reference of `composite.wgsl`: the picture on the receiver.
 
 use glam::{DVec3, DVec4, UVec2};
 
 use super::grid::PlaneGrid;
-use super::model::{BRIGHTEST_USABLE, Pictures, ReceiverPoint, Region, Solution, centre_px, coarse_at};
+use super::model::{
+    BRIGHTEST_USABLE, DARKEST_USABLE, Pictures, ReceiverPoint, Region, Solution, centre_px, coarse_at,
+};
 use super::raster::Raster;
 use super::smoothstep;
 
-/// Change of the model, in plates, up to which a seen pixel keeps all of its own residual.
+/// Change of the model, in plates, up to which a visible pixel keeps all of its own residual.
 const KEEP_ALL: f64 = 0.02;
-/// Change of the model, in plates, from which a seen pixel keeps none of its own residual.
+/// Change of the model, in plates, from which a visible pixel keeps none of its own residual.
 const KEEP_NONE: f64 = 0.15;
-/// Change of the model, in plates, at which half of the pooled residual is left.
+/// Change of the model, in plates, at which half of the pooled residual remains.
 const RESIDUAL_HALF: f64 = 0.5;
-/// Pooled residual, in plates, up to which the model explains what is seen.
+/// Pooled residual, in plates, up to which the model explains the pixel.
 const OUTLIER_NONE: f64 = 0.15;
-/// Pooled residual, in plates, from which it explains nothing: what the camera saw stays.
+/// Pooled residual, in plates, from which it explains nothing: the camera's colour stays.
 const OUTLIER_ALL: f64 = 0.3;
-/// Least over most of a residual's channels from which it is taken for a shadow.
+/// Ratio of the smallest and the largest channel of a residual from which it counts as a shadow.
 const SHADOW_EVENNESS: f64 = 0.4;
-/// Least over most of a residual's channels up to which it is taken for a thing of its own colour.
+/// The same ratio, up to which it counts as a thing of its own colour.
 const OBJECT_EVENNESS: f64 = 0.2;
 
-/// The toy's shown pose, and what was learned.
+/// The toy's shown pose, and learned parameters.
 #[derive(Clone, Debug)]
 pub struct Shown {
     /// Visibility of each light with the shown toy.
     pub visibility: Raster<DVec4>,
     /// Visibility of the ambient light with the shown toy, of any size.
     pub ambient: Raster<f64>,
-    /// What the fit found.
+    /// The fit's result.
     pub solution: Solution,
     /// Filled residuals on each receiver, in plates.
     pub residuals: Vec<Raster<DVec3>>,
-    /// Where their cells lie.
+    /// Positions of their cells.
     pub grids: Vec<PlaneGrid>,
-    /// Up to 1 the share that the shadow takes of what it truly takes; beyond, how often the true one is laid over itself.
+    /// Up to 1 the fraction of the true shadow that is shown; beyond, the exponent of the true one.
     pub strength: f64,
 }
 
-/// What a shadow of a strength leaves of the light `open`, of which the true one leaves `left`.
+/// The light left by a shadow of a strength, from the light `open` of which the true one leaves
+/// `left`.
 fn strengthened(open: DVec3, left: DVec3, strength: f64) -> DVec3 {
     let of_channel = |open: f64, left: f64| {
         if strength <= 1.0 {
@@ -54,8 +57,8 @@ fn strengthened(open: DVec3, left: DVec3, strength: f64) -> DVec3 {
     DVec3::from_array([0, 1, 2].map(|channel| of_channel(open[channel], left[channel])))
 }
 
-/// Linear colour of the receiver at `texel` of the region, where nothing is as the camera saw it, and where all is: then a
-/// pixel too near to the toy to be evidence is its own.
+/// Linear colour of the receiver at `texel` of the region, between the camera's colour and the
+/// model's: a pixel too near to the toy to be evidence has the model's.
 #[must_use]
 pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel: UVec2) -> [DVec3; 2] {
     let at = centre_px(texel);
@@ -70,42 +73,54 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
     let model = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
         model_in(coarse_at(ambient, region, at), visibility.at(texel))
     };
+    let reflected = |visibility: DVec4, part: f64| {
+        let reflection = region.reflection.as_ref();
+        let light = reflection.map_or(DVec3::ZERO, |reflection| {
+            reflection.light(point, visibility, part)
+        });
+        shown.solution.gain * light
+    };
+    let old_image = reflected(pictures.visibility.at(texel), 1.0);
+    let new_image = reflected(shown.visibility.at(texel), shown.strength.min(1.0));
     let before = model(&pictures.ambient, &pictures.visibility);
     let open = model_in(1.0, DVec4::ONE);
     let after = strengthened(open, model(&shown.ambient, &shown.visibility), shown.strength);
     let [before, after] = [before, after].map(|model| shown_model(&shown.solution, point, model, plate));
-    let change = if shown.solution.intensities.is_empty() {
-        // How strong the shadow is stays open.
+    let darker = if shown.solution.intensities.is_empty() {
+        // The strength of the shadow is unconstrained.
         let ambient = [&pictures.ambient, &shown.ambient].map(|map| coarse_at(map, region, at));
         (strengthened(DVec3::ONE, DVec3::splat(ambient[1]), shown.strength).x - ambient[0]).abs()
     } else {
         (after - before).abs().max_element()
     };
+    let of_image = (new_image - old_image).abs() / lit.max(DVec3::splat(DARKEST_USABLE));
+    let change = darker.max(of_image.max_element());
 
     let grid = &shown.grids[point.receiver];
     let pooled = grid.value_at(&shown.residuals[point.receiver], point.in_plane);
     let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, change));
     let unknown = smoothstep(OUTLIER_NONE, OUTLIER_ALL, pooled.abs().max_element());
     let object = unknown * (1.0 - shadow_likeness(pooled));
-    let made = lit * (after + residual).max(DVec3::ZERO);
-    let kept = frame + lit * (1.0 - object) * (after - before);
+    let made = lit * (after + residual).max(DVec3::ZERO) + new_image;
+    let kept = frame + (1.0 - object) * (lit * (after - before) + new_image - old_image);
     let near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, change);
     let keep = seen * near.max(unknown);
 
-    // What hides the receiver must go even at the border.
+    // Whatever hides the receiver must be removed even at the border.
     let inside = inside_border(region, texel).max(1.0 - seen);
     let laid = frame.lerp(made.lerp(kept, keep), inside).max(DVec3::ZERO);
     [laid, laid.lerp(kept, (1.0 - seen) * near).max(DVec3::ZERO)]
 }
 
-/// The model, and 1 where the plate is clipped and nothing else is seen of its receiver.
+/// The model, and 1 if the plate is clipped and no other pixel of its receiver is visible.
 fn shown_model(solution: &Solution, point: ReceiverPoint, model: DVec3, plate: DVec3) -> DVec3 {
     let clipped = solution.receivers[point.receiver].clipped;
     let shown = model + clipped * (DVec3::ONE - model);
     DVec3::select(plate.cmpgt(DVec3::splat(BRIGHTEST_USABLE)), shown, model)
 }
 
-/// 1 inside, falling to 0 towards those edges of the region that are not edges of the camera's picture.
+/// 1 inside, falling to 0 towards those edges of the region that are not edges of the camera's
+/// picture.
 #[must_use]
 pub fn inside_border(region: &Region, texel: UVec2) -> f64 {
     let [x, y] = centre_px(texel).to_array();
@@ -118,7 +133,7 @@ pub fn inside_border(region: &Region, texel: UVec2) -> f64 {
     inner_edges.map(|(px, fade_px)| px / fade_px).fold(1.0, f64::min)
 }
 
-/// Whether a residual may be a shadow: darker in all channels, and in none much more than in the others.
+/// Whether a residual may be a shadow: darker in all channels, and by similar amounts.
 fn shadow_likeness(residual: DVec3) -> f64 {
     let (least, most) = (-residual.max_element(), -residual.min_element());
     if least <= 0.0 {

@@ -1,4 +1,4 @@
-//! CPU reference of `detail.wgsl`: what each pixel knows of its own residual, with the noise of the shadow taken out.
+//! CPU reference of `detail.wgsl`: each pixel's own residual, denoised in the shadow.
 
 use glam::{DVec3, IVec2, UVec2};
 
@@ -6,31 +6,31 @@ use super::model::{DARKEST_USABLE, Pictures, Region, Solution, centre_px, coarse
 use super::raster::Raster;
 use super::smoothstep;
 
-/// Half the side of the square that is smoothed over, in pixels, without its middle.
+/// Half the side of the smoothing square, in pixels, without its centre.
 const RADIUS_PX: i32 = 3;
-/// Detail, in plates, up to which it is noise.
+/// Largest detail, in plates, that is only noise.
 pub const NOISE: f64 = 0.03;
 /// Detail, in plates, from which none of it is noise.
 pub const DETAIL: f64 = 0.08;
-/// Light left, in plates, up to which a pixel is in shadow.
+/// Remaining light, in plates, up to which a pixel is in shadow.
 const SHADOW: f64 = 0.85;
-/// Light left, in plates, from which a pixel is in the light.
+/// Remaining light, in plates, from which a pixel is unshadowed.
 const LIT: f64 = 0.98;
 
-/// What a pixel that shows a receiver clear of the toy tells, where its plate was photographed.
+/// The evidence of a receiver pixel clear of the toy, with a photographed plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Told {
     /// Which receiver.
     pub receiver: usize,
-    /// What the model says that is left of the plate.
+    /// The model's remaining light, in plates.
     pub model: DVec3,
     /// Light that the model does not explain, over the gain.
     pub unexplained: DVec3,
-    /// The plate, 0 in channels that tell nothing.
+    /// The plate, 0 in unreliable channels.
     pub plate: DVec3,
 }
 
-/// What each pixel tells; `photographed` is 1 where the plate was.
+/// The evidence of each pixel; `photographed` is 1 where the plate was.
 #[must_use]
 pub fn told(
     region: &Region,
@@ -57,13 +57,13 @@ pub fn told(
 
 /// The residual of a pixel of `receiver`, in plates.
 ///
-/// In the light it is the pixel's own. In shadow it is that of the pixels around which show the same receiver, by least
-/// squares against the plate, and as much of what its own differs by as is more than noise.
+/// Unshadowed, it is the pixel's own. In shadow it is a least squares fit to the surrounding pixels
+/// of the same receiver against the plate, plus the part of the own difference that exceeds noise.
 #[must_use]
 pub fn separate(told: &Raster<Option<Told>>, (texel, receiver): (UVec2, usize)) -> DVec3 {
     let own = told.at(texel);
     let exact = least_squares(own.as_slice());
-    // One that tells nothing is as in the light.
+    // A pixel without evidence counts as unshadowed.
     let left = own.map_or(1.0, |own| own.model.max_element());
     let in_light = smoothstep(SHADOW, LIT, left);
     let reach = -RADIUS_PX..=RADIUS_PX;
@@ -84,7 +84,8 @@ pub fn separate(told: &Raster<Option<Told>>, (texel, receiver): (UVec2, usize)) 
     (smooth + kept * detail).lerp(exact, in_light)
 }
 
-/// The residual r that makes plate times r the unexplained light, of all pixels together; 0 where none tells.
+/// The residual r for which plate times r is the unexplained light, over all pixels together; 0
+/// without evidence.
 fn least_squares(pixels: &[Told]) -> DVec3 {
     let product: DVec3 = pixels.iter().map(|told| told.plate * told.unexplained).sum();
     let energy: DVec3 = pixels.iter().map(|told| told.plate * told.plate).sum();

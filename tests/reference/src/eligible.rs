@@ -5,10 +5,10 @@ use glam::{DVec4, IVec2};
 use super::raster::Raster;
 use super::sets::LightSet;
 
-/// Share of a light that may be hidden from a place that still counts as lit: nobody sees so little.
+/// Hidden share of a light up to which a place counts as lit: it is invisible.
 const FAINT: f64 = 0.01;
 
-/// Mask 3c, the set of lights to sample the shadow of, and mask 3b, the real shadow.
+/// Mask 3c, the set of lights whose shadow may be sampled, and mask 3b, the real shadow.
 #[must_use]
 pub fn masks(
     is_toy: &Raster<bool>,
@@ -17,7 +17,7 @@ pub fn masks(
     margin_px: i32,
 ) -> (Raster<LightSet>, Raster<bool>) {
     let is_lit = |v: f64| v >= 1.0 - FAINT;
-    // None where a light is neither hidden nor seen, or the toy is in front.
+    // `None` if a light is partly hidden, or the toy is in front.
     let umbra = Raster::from_fn(is_toy.size(), |texel| {
         let of_lights = &visibility.at(texel).to_array()[..n_lights];
         let is_clear = !is_toy.at(texel) && of_lights.iter().all(|v| *v == 0.0 || is_lit(*v));

@@ -1,4 +1,4 @@
-//! CPU reference of `estimate.wgsl`: the plate, with an estimate where none was photographed.
+//! CPU reference of `estimate.wgsl`: the plate, with an estimate for unphotographed parts.
 
 use glam::{DVec3, DVec4, UVec2};
 
@@ -9,25 +9,26 @@ use super::smoothstep;
 
 /// Alpha of an estimated pixel, which is its weight in the fit.
 pub const ESTIMATED: f64 = 0.25;
-/// Light left, in plates, from which a pixel tells its own plate in full.
+/// Remaining light, in plates, from which a pixel determines its own plate fully.
 const TELLS_ALL: f64 = 0.3;
-/// Light left, in plates, up to which a pixel does not tell its own plate at all.
+/// Remaining light, in plates, up to which a pixel does not determine its own plate at all.
 const TELLS_NONE: f64 = 0.1;
 
-/// What the estimate is made of.
+/// The inputs of the estimate.
 #[derive(Clone, Debug)]
 pub struct Known<'a> {
-    /// What is seen; `seen` is 1 well clear of the toy.
+    /// The pictures; `seen` is 1 well clear of the toy.
     pub pictures: &'a Pictures,
     /// 1 where the plate was photographed.
     pub photographed: &'a Raster<f64>,
-    /// What the fit found.
+    /// The fit's result.
     pub solution: &'a Solution,
-    /// For each receiver, filled colours in the light, and where their cells lie.
+    /// For each receiver, filled unshadowed colours, and the positions of their cells.
     pub lit: &'a [(PlaneGrid, Raster<DVec3>)],
 }
 
-/// Linear colour and alpha of the plate at `texel`: smooth as the fits read it, and at last each seen pixel's own.
+/// Linear colour and alpha of the plate at `texel`: smooth for the fits, and finally each visible
+/// pixel's own.
 #[must_use]
 pub fn complete(region: &Region, known: &Known<'_>, is_final: bool, texel: UVec2) -> DVec4 {
     let (at, pictures) = (centre_px(texel), known.pictures);

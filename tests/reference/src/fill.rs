@@ -1,4 +1,4 @@
-//! CPU reference of `fill.wgsl`: cells that are not known, from those around, by pull-push.
+//! CPU reference of `fill.wgsl`: unknown cells from their neighbours, by pull-push.
 //!
 //! Source: Gortler et al. 1996, section 3.4.
 
@@ -7,10 +7,11 @@ use glam::{DVec3, DVec4, UVec2};
 use super::grid::Cell;
 use super::raster::Raster;
 
-/// Levels of a pyramid, the finest included, of which the last may all be of one cell: 64 cells halve six times.
+/// Levels of a pyramid, the finest included; the last may have a single cell: 64 cells halve six
+/// times.
 const N_LEVELS: u32 = 7;
 
-/// Fills every cell as far as it is uncertain.
+/// Fills every cell according to its uncertainty.
 #[must_use]
 pub fn fill(cells: &Raster<Cell>) -> Raster<DVec3> {
     let finest = Raster::from_fn(cells.size(), |at| {
@@ -20,7 +21,7 @@ pub fn fill(cells: &Raster<Cell>) -> Raster<DVec3> {
     push(finest, N_LEVELS - 1).map(DVec4::truncate)
 }
 
-/// Values times certainties in, the same with every certainty made up from the coarser level out.
+/// From values times certainties to the same with every certainty completed from the coarser level.
 fn push(level: Raster<DVec4>, n_coarser: u32) -> Raster<DVec4> {
     if n_coarser == 0 {
         return level.map(|all| if all.w > 0.0 { all / all.w } else { all });
@@ -32,7 +33,7 @@ fn push(level: Raster<DVec4>, n_coarser: u32) -> Raster<DVec4> {
     })
 }
 
-/// Half the size, rounded up: sums of four, where four certain cells are no more certain than one.
+/// Half the size, rounded up: sums of four, in which four certain cells count as one.
 fn pull(fine: &Raster<DVec4>) -> Raster<DVec4> {
     Raster::from_fn((fine.size() + 1) / 2, |at| {
         let children = [UVec2::ZERO, UVec2::X, UVec2::Y, UVec2::ONE].map(|corner| 2 * at + corner);

@@ -1,5 +1,5 @@
-//! CPU reference of `fit.wgsl` and `fit_solve.wgsl`: what the real shadow and the real toy tell of the light, by iteratively
-//! reweighted least squares with weak priors.
+//! CPU reference of `fit.wgsl` and `fit_solve.wgsl`: the light, estimated from the real shadow and
+//! the real toy by iteratively reweighted least squares with weak priors.
 
 use std::iter;
 
@@ -14,42 +14,49 @@ use super::raster::Raster;
 
 /// Residual of a receiver, as a fraction of the plate, at which a pixel counts half.
 const CAUCHY_SCALE: f64 = 0.03;
-/// The same for the toy, as a fraction of its base colour: its light from itself and its curved faces are not modelled.
+/// The same for the toy, as a fraction of its base colour: its interreflection and its curved faces
+/// are not modelled.
 const TOY_CAUCHY_SCALE: f64 = 0.12;
 /// Weight of each prior, as a fraction of the first column's energy.
 const PRIOR_WEIGHT: f64 = 1e-4;
-/// Weight of the solution that all channels share, for the toy, as a fraction of their common energy.
+/// Weight of the common solution of all channels, for the toy, as a fraction of their common
+/// energy.
 const WHITE_WEIGHT: f64 = 0.003;
-/// Weight of what the receivers tell of the light on the toy, as a fraction of the toy's energy.
+/// Weight of the receivers' evidence about the light on the toy, as a fraction of the toy's energy.
 const RECEIVER_LIGHT_WEIGHT: f64 = 0.01;
-/// Part of what falls on a receiver that comes back up to the toy, as far as nothing else tells.
+/// Prior reflectance of a receiver, for the light from below on the toy.
 const PRIOR_REFLECTANCE: f64 = 0.25;
-/// Share of all lights below which what the receivers tell of a light has no more weight.
+/// Share of all lights below which the receivers' evidence about a light gains no more weight.
 const LEAST_SHARE: f64 = 0.05;
-/// Weight by which further receivers keep the first one's gain, as a fraction of the first column's energy.
+/// Weight with which further receivers keep the first one's gain, as a fraction of the first
+/// column's energy.
 const SAME_GAIN_WEIGHT: f64 = 10.0;
-/// Bounce that is expected, as a fraction of the ambient light that the toy takes: that of a toy of middle grey.
+/// Prior of the bounce, as a fraction of the ambient light that the toy blocks: that of a toy of
+/// middle grey.
 pub const PRIOR_BOUNCE: f64 = 0.27;
-/// Share of the plate's radiance that is expected of all lights together.
+/// Prior of the direct share of the plate's radiance, over all lights.
 pub const PRIOR_DIRECT_FRACTION: f64 = 0.5;
-/// Most of the plate's radiance that all lights together may have: some of it is always ambient.
+/// Largest direct share of the plate's radiance: some of it is always ambient.
 const MAX_DIRECT_FRACTION: f64 = 0.98;
-/// Most bounce, as a fraction of the ambient light that the toy takes; what is expected of it where no light is known.
+/// Largest bounce, as a fraction of the ambient light that the toy blocks; also its prior if no
+/// light is known.
 pub const MAX_BOUNCE: f64 = 1.0;
-/// Part of what the frame shows beside the plate that a shadow of the ambient light explains, where no light is known, below
-/// which there is none.
+/// Smallest fraction of the difference between frame and plate that an ambient shadow must explain
+/// if no light is known.
 const LEAST_EXPLAINED: f64 = 0.1;
 
-/// Those constants that a test may choose otherwise, to see what they do.
+/// Constants that a test may vary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitConstants {
     /// Residual of a receiver, as a fraction of the plate, at which a pixel counts half.
     pub cauchy_scale: f64,
     /// Weight of each prior against the energy of the first column.
     pub prior_weight: f64,
-    /// Weight of the common solution of all channels, for the toy, against their common energy.
+    /// Weight of the common solution of all channels, for the toy, as a fraction of their common
+    /// energy.
     pub white_weight: f64,
-    /// Weight of what the receivers tell of the light on the toy, against the toy's energy.
+    /// Weight of the receivers' evidence about the light on the toy, as a fraction of the toy's
+    /// energy.
     pub receiver_light_weight: f64,
 }
 
@@ -64,19 +71,21 @@ impl Default for FitConstants {
     }
 }
 
-/// A receiver pixel whose light is known.
+/// A receiver pixel of known light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReceiverSample {
     /// Linear colour of the camera's frame.
     pub frame: DVec3,
     /// Linear colour of the plate.
     pub plate: DVec3,
-    /// The point that is seen.
+    /// Its point.
     pub point: ReceiverPoint,
     /// Visibility of the ambient light.
     pub ambient: f64,
     /// Visibility of each light.
     pub visibility: DVec4,
+    /// What the receiver reflects, over the gain.
+    pub reflected: DVec3,
 }
 
 /// Every `stride_px`th pixel, along each side, that shows the receiver alone.
@@ -94,14 +103,16 @@ pub fn receiver_samples(region: &Region, pictures: &Pictures, stride_px: u32) ->
             point,
             ambient: coarse_at(&pictures.ambient, region, at),
             visibility: pictures.visibility.at(*texel),
+            reflected: region.reflected(point, pictures.visibility.at(*texel)),
         })
     };
     taken.texels().iter().filter_map(sample).collect()
 }
 
-/// Fits gain, bounce and shares of one receiver in `n_steps`, from `start`, which stays where there is no evidence.
+/// Fits gain, bounce and shares of one receiver in `n_steps`, from `start`, which stays without
+/// evidence.
 ///
-/// Receivers are fitted in turn: the first tells the gain and what is expected of the others.
+/// Receivers are fitted in turn: the first determines the gain and the priors of the others.
 #[must_use]
 pub fn fit_receiver(
     region: &Region,
@@ -119,7 +130,7 @@ pub fn fit_receiver(
             .collect();
         let of_channels = [0, 1, 2]
             .map(|channel| receiver_equations(region, &of_receiver, &before, constants, (step > 0, channel)));
-        // Judged at last.
+        // Judged at the end.
         let is_last = step + 1 == n_steps;
         let has_no_shadow = region.lights.is_empty()
             && is_last
@@ -140,7 +151,7 @@ pub fn fit_receiver(
     solution
 }
 
-/// The equations, and the energy of the first column that clipped pixels give.
+/// The equations, and the energy of the first column from clipped pixels.
 fn receiver_equations(
     region: &Region,
     samples: &[&ReceiverSample],
@@ -152,11 +163,11 @@ fn receiver_equations(
     let mut of_clipped = 0.0;
     for sample in samples {
         let [frame, plate] = [sample.frame, sample.plate].map(|color| color[channel]);
-        let value = frame / before.gain[channel];
+        let value = frame / before.gain[channel] - sample.reflected[channel];
         let total = before.plate_falloff(region, sample.point)[channel];
         let plane = region.plane_of(sample.point);
         let ambient = sample.ambient;
-        // As bright as in shadow, as far as such a pixel tells.
+        // As bright as in shadow, as far as such a pixel is reliable.
         let visibility = match is_clipped(frame, plate) {
             true => DVec4::ZERO,
             false => sample.visibility,
@@ -181,7 +192,7 @@ fn receiver_equations(
     (equations, of_clipped)
 }
 
-/// What is expected of bounce and shares before a receiver is seen in shadow.
+/// Priors of bounce and shares without a visible shadow on the receiver.
 fn receiver_priors(region: &Region, receiver: usize, before: &Solution, channel: usize) -> Vec<f64> {
     let n_lights = region.lights.len();
     let irradiance = |plane: &ReceiverPlane, i: usize| {
@@ -196,14 +207,14 @@ fn receiver_priors(region: &Region, receiver: usize, before: &Solution, channel:
         (to_light.normalize().y / falloff).max(0.0)
     };
     if receiver == 0 {
-        // As if each gave as much as the others at one metre.
+        // As if all had the same intensity at one metre.
         let each = (0..n_lights).map(|i| irradiance(&region.receivers[0], i));
         let total: f64 = each.clone().sum();
         let direct_fractions = each.map(|one| PRIOR_DIRECT_FRACTION * one / total);
         let bounce = if n_lights == 0 { MAX_BOUNCE } else { PRIOR_BOUNCE };
         return iter::once(bounce).chain(direct_fractions).collect();
     }
-    // The same lights amid as much ambient light.
+    // The same lights with the same ambient light.
     let first = &before.receivers[0];
     let of_first = |i| {
         let there = irradiance(&region.receivers[0], i);
@@ -223,11 +234,12 @@ fn receiver_priors(region: &Region, receiver: usize, before: &Solution, channel:
         .collect()
 }
 
-/// Whether a shadow of the ambient light explains enough of what a frame shows beside the plate, without lights.
+/// Whether an ambient shadow explains enough of the difference between frame and plate, without
+/// lights.
 fn is_ambient_shadow_told(channels: &[&NormalEquations; 3]) -> bool {
     let (mut beside, mut explained) = (0.0, 0.0);
     for equations in channels.iter().filter(|equations| equations.energy(0) > 0.0) {
-        // What is left of the ambient light and what is taken of it add up to the plate.
+        // Remaining and blocked ambient light add up to the plate.
         let plate = equations.of_equal_unknowns();
         let without = plate.squares_left(&plate.solve());
         let shadowed = equations.solve();
@@ -239,7 +251,7 @@ fn is_ambient_shadow_told(channels: &[&NormalEquations; 3]) -> bool {
     explained > LEAST_EXPLAINED * beside
 }
 
-/// Takes a receiver for as bright below the toy as in the open.
+/// Assumes that a receiver is unshadowed below the toy.
 fn take_unshadowed(
     observed: &NormalEquations,
     receiver: usize,
@@ -308,7 +320,7 @@ fn take_receiver(
 }
 
 /// A pixel of one surface of the toy.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ToySample {
     /// Linear colour of the camera's frame.
     pub frame: DVec3,
@@ -318,11 +330,13 @@ pub struct ToySample {
     pub normal: DVec3,
     /// Cosine to each light times its visibility.
     pub received: DVec4,
+    /// What a glossy surface reflects of each unknown's light, at the plate's level; empty of a matt one.
+    pub reflected: Vec<f64>,
 }
 
-/// Fits how the toy is lit in `n_steps`, from `start`, which stays where there is no evidence.
+/// Fits the light on the toy in `n_steps`, from `start`, which stays without evidence.
 ///
-/// All channels together decide what one of them does not show.
+/// All channels together constrain what a single one does not.
 #[must_use]
 pub fn fit_toy(
     region: &Region,
@@ -371,12 +385,12 @@ pub fn fit_toy(
     solution
 }
 
-/// What the receivers tell of the light on the toy: sums of coefficients times its unknowns that are 0, in the mean of
-/// `channels`.
+/// The receivers' evidence about the light on the toy: sums of coefficients times its unknowns that
+/// are 0, in the mean of `channels`.
 ///
-/// Of what a receiver shows in the open, each light's part is to the ambient part as its light at the toy times the cosine to
-/// the receiver is to the ambient light on a surface that lies like the receiver; and from below comes what the first
-/// receiver throws back.
+/// For an unshadowed receiver, the ratio of each light's part to the ambient part is that of its
+/// light at the toy times the cosine to the receiver to the ambient light on a surface parallel to
+/// the receiver; light from below is reflected by the first receiver.
 fn receiver_light(region: &Region, solution: &Solution, channels: DVec3) -> Vec<Vec<f64>> {
     let n_lights = region.lights.len();
     let cosine = |plane: &ReceiverPlane, i: usize| {
@@ -390,10 +404,10 @@ fn receiver_light(region: &Region, solution: &Solution, channels: DVec3) -> Vec<
         let plane = &region.receivers[receiver];
         let parts = &solution.receivers[receiver].direct_fractions;
         let ambient_part = 1.0 - parts.iter().map(|part| part.dot(channels)).sum::<f64>();
-        // How far up the receiver faces, in anchor space.
+        // The receiver's upward component, in anchor space.
         let upward = plane.plane_from_anchor.inverse().y_axis.y;
         let total = 1.0 - ambient_part;
-        // A light that is listed twice, with half of it each, weighs as it does once.
+        // A light that is listed twice at half intensity has the same weight.
         let weight = if total > 0.0 {
             1.0 / (parts[i].dot(channels) / total).max(LEAST_SHARE)
         } else {
@@ -424,10 +438,16 @@ fn toy_equations(
     for sample in samples {
         let [frame, base] = [sample.frame, sample.base].map(|color| color[channel]);
         let value = frame / before.gain[channel];
-        let columns: Vec<f64> = toy_columns(sample.normal, sample.received, &before.intensities)
+        let of_sky: f64 = sample.reflected.iter().take(2).sum();
+        let mut columns: Vec<f64> = toy_columns(sample.normal, sample.received, &before.intensities)
             .into_iter()
             .map(|column| base * column[channel])
             .collect();
+        let levels = [1.0, 1.0].into_iter();
+        let levels = levels.chain(before.intensities.iter().map(|intensity| intensity[channel]));
+        for ((column, reflected), level) in columns.iter_mut().zip(&sample.reflected).zip(levels) {
+            *column += level * reflected;
+        }
         let mut weight = evidence(frame, frame);
         if is_reweighted {
             let model: f64 = columns
@@ -435,14 +455,15 @@ fn toy_equations(
                 .zip(&before.toy)
                 .map(|(column, toy)| *column * toy[channel])
                 .sum();
-            weight *= cauchy_weight(value - model, TOY_CAUCHY_SCALE * base);
+            weight *= cauchy_weight(value - model, TOY_CAUCHY_SCALE * (base + of_sky));
         }
         equations.observe(&columns, value, weight);
     }
     equations
 }
 
-/// What the light on the toy is made of: from above, from below, and what is received of each light at its level.
+/// The components of the light on the toy: from above, from below, and from each light at its
+/// level.
 #[must_use]
 pub fn toy_columns(normal: DVec3, received: DVec4, intensities: &[DVec3]) -> Vec<DVec3> {
     let lights = intensities.iter().zip(received.to_array());

@@ -1,6 +1,6 @@
-//! CPU reference of `common/grain`: the noise that made pixels are given.
+//! CPU reference of `common/grain`: the noise of synthesised pixels.
 
-/// Four numbers that look random, of four that need not. Source: Jarzynski and Olano 2020 (pcg4d).
+/// Four pseudo-random numbers from four counters. Source: Jarzynski and Olano 2020 (pcg4d).
 fn hashed(seed: [u32; 4]) -> [u32; 4] {
     let mut v = seed.map(|number| number.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
     let stir = |v: &mut [u32; 4]| {
@@ -17,15 +17,16 @@ fn hashed(seed: [u32; 4]) -> [u32; 4] {
 /// Four numbers of mean 0 and variance 1.
 fn white(at: [i32; 2], picture: u32) -> [f64; 4] {
     let seed = [at[0].cast_unsigned(), at[1].cast_unsigned(), picture, 0];
-    // The variance of two even numbers below 1 is 1 / 6 together.
+    // The sum of two uniform numbers below 1 has a variance of 1 / 6.
     hashed(seed)
         .map(|bits| (f64::from(bits % 65536) + f64::from(bits / 65536) - 65535.0) / 65536.0 * 6.0_f64.sqrt())
 }
 
-/// Noise of a pixel's channels, of variance 1: pixels side by side have the correlation `beside`, channels `channels`.
+/// Noise of a pixel's channels, of variance 1: adjacent pixels have the correlation `beside`,
+/// channels `channels`.
 #[must_use]
 pub fn grain_at(at: [i32; 2], picture: u32, beside: f64, channels: f64) -> [f64; 3] {
-    // Of a mean with weights (w, 1, w): 2 w / (1 + 2 w^2) = beside.
+    // For a mean with weights (w, 1, w): 2 w / (1 + 2 w^2) = beside.
     let w = if beside > 0.0 {
         (1.0 - (1.0 - 2.0 * beside * beside).sqrt()) / (2.0 * beside)
     } else {

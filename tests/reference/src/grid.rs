@@ -1,4 +1,5 @@
-//! CPU reference of `common/grid.wgsl` and `common/pool.wgsl`: square cells over a receiver, and what is known of each.
+//! CPU reference of `common/grid.wgsl` and `common/pool.wgsl`: square cells over a receiver, and
+//! their accumulated values.
 
 use app_pipeline::model::state::grids::Grid;
 use glam::{DVec2, DVec3, DVec4, UVec2, Vec2};
@@ -6,19 +7,19 @@ use glam::{DVec2, DVec3, DVec4, UVec2, Vec2};
 use super::model::{Region, centre_px};
 use super::raster::Raster;
 
-/// Points of a cell along each side.
+/// Number of points of a cell along each side.
 const N_POINTS: u32 = 8;
-/// Share of a cell's points that must be evidence for the cell to be known in full.
+/// Fraction of a cell's points that must be evidence for full certainty.
 const FULL_SHARE: f64 = 0.25;
-/// Most that all frames before count together, in frames like the latest.
+/// Largest weight of all earlier frames together, in frames like the latest.
 const MAX_FRAMES: f64 = 8.0;
 
-/// Which of a cell's points are looked at.
+/// The selected points of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
     /// All of them.
     All,
-    /// Of each four neighbours one: its column and row.
+    /// One of each four neighbours: its column and row.
     Quarter(u32, u32),
 }
 
@@ -32,12 +33,12 @@ impl Taken {
     }
 }
 
-/// What is known of a cell.
+/// The value of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cell {
     /// Per channel.
     pub value: DVec3,
-    /// How far it is known, from 0 to 1.
+    /// Certainty, from 0 to 1.
     pub certainty: f64,
 }
 
@@ -63,8 +64,8 @@ impl From<&Grid> for PlaneGrid {
 }
 
 impl PlaneGrid {
-    /// The texels that show the points of a cell that are taken, once for each point that is within the region and that no
-    /// other receiver hides.
+    /// The texels of a cell's selected points, once for each point that is within the region and
+    /// that no other receiver hides.
     pub fn texels_of<'a>(
         &'a self,
         region: &'a Region,
@@ -83,14 +84,14 @@ impl PlaneGrid {
         })
     }
 
-    /// The value between cells at a point of the receiver.
+    /// The interpolated value at a point of the receiver.
     #[must_use]
     pub fn value_at(&self, cells: &Raster<DVec3>, in_plane: DVec2) -> DVec3 {
         cells.bilinear((in_plane - self.origin_in_plane) / self.cell_m)
     }
 }
 
-/// How far a cell is known of which `n_points` of the points taken are evidence.
+/// Certainty of a cell with `n_points` of the selected points as evidence.
 #[must_use]
 pub fn certainty(n_points: f64, taken: Taken) -> f64 {
     let n_taken = match taken {
@@ -100,8 +101,9 @@ pub fn certainty(n_points: f64, taken: Taken) -> f64 {
     (n_points / (FULL_SHARE * f64::from(n_taken))).min(1.0)
 }
 
-/// What a cell becomes when `fresh` is seen of it: the mean of all that was seen, by certainty, and the sums to keep, of
-/// values times certainties and of certainties, which count at most as much as `MAX_FRAMES` full ones.
+/// The new value of a cell: the mean of all observations, weighted by certainty, and the sums to
+/// keep, of values times certainties and of certainties, which are limited to `MAX_FRAMES` full
+/// ones.
 #[must_use]
 pub fn accumulate(accumulated: DVec4, fresh: Cell) -> (Cell, DVec4) {
     let sum = accumulated + (fresh.value * fresh.certainty).extend(fresh.certainty);

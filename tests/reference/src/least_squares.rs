@@ -12,7 +12,7 @@ pub struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// Of `n_columns` unknowns, without any observation.
+    /// Equations of `n_columns` unknowns, without any observation.
     #[must_use]
     pub fn new(n_columns: usize) -> Self {
         Self {
@@ -44,7 +44,7 @@ impl NormalEquations {
         self.squares += other.squares;
     }
 
-    /// The same observations of unknowns that are all equal.
+    /// The same observations with all unknowns equal.
     #[must_use]
     pub fn of_equal_unknowns(&self) -> Self {
         Self {
@@ -54,7 +54,7 @@ impl NormalEquations {
         }
     }
 
-    /// Weighted squares that some unknowns leave.
+    /// Sum of weighted squared residuals.
     #[must_use]
     pub fn squares_left(&self, unknowns: &DVector<f64>) -> f64 {
         self.squares + self.cost(unknowns)
@@ -66,9 +66,10 @@ impl NormalEquations {
         self.matrix[(column, column)]
     }
 
-    /// The unknowns that cost least of all those without one below 0: of every set of them that is 0 the others are solved for.
+    /// The non-negative least squares solution: for every set of zero unknowns the others are
+    /// solved for.
     ///
-    /// The work doubles with each unknown. Not finite where they are not determined.
+    /// The work doubles with each unknown. Not finite if they are not determined.
     #[must_use]
     pub fn solve_non_negative(&self) -> DVector<f64> {
         let n = self.right.len();
@@ -78,7 +79,7 @@ impl NormalEquations {
         best.unwrap_or_else(|| self.solve())
     }
 
-    /// The unknowns, where those that `is_zero` tells are 0.
+    /// The solution with those unknowns zero for which `is_zero` is true.
     fn solve_without(&self, is_zero: impl Fn(usize) -> bool) -> DVector<f64> {
         let mut left = self.clone();
         for column in (0..self.right.len()).filter(|column| is_zero(*column)) {
@@ -90,12 +91,12 @@ impl NormalEquations {
         left.solve()
     }
 
-    /// Weighted squares that are left, up to a constant.
+    /// Sum of weighted squared residuals, up to a constant.
     fn cost(&self, unknowns: &DVector<f64>) -> f64 {
         unknowns.dot(&(&self.matrix * unknowns - 2.0 * &self.right))
     }
 
-    /// The unknowns, by elimination with partial pivoting; not finite where they are not determined.
+    /// The solution by elimination with partial pivoting; not finite if it is not determined.
     #[must_use]
     pub fn solve(&self) -> DVector<f64> {
         let solution = self.matrix.clone().lu().solve(&self.right);

@@ -1,10 +1,12 @@
-//! The passes once more: plain functions on the processor, in 64 bits, without anything of the graphics device.
-//! Rays can be of 32 bits, too, to tell what rounding costs: they ask for a [`real::Real`].
+//! CPU references of the passes: plain functions on the processor, in 64 bits, without the graphics
+//! device. Rays also exist in 32 bits, to measure rounding errors: they are generic over
+//! [`real::Real`].
 //!
-//! Each file is the CPU reference of the shader of its name. Here clarity comes first: a loop over pixels rather than a blend mode, a
-//! ray against triangles rather than a flattened mesh, elimination with pivots rather than without.
-//! What a scene fixes comes as arguments; what a shader fixes is written down once more, at the top of its reference: one
-//! that took its constants from the shader would find none that is wrong.
+//! Each file is the CPU reference of the shader of its name. Here clarity comes first: a loop over
+//! pixels rather than a blend mode, a ray against triangles rather than a flattened mesh,
+//! elimination with pivots rather than without. Properties of a scene are arguments; constants of a
+//! shader are repeated at the top of its reference: a reference with the shader's own constants
+//! could not find a wrong one.
 
 pub mod appearance;
 pub mod box_filter;
@@ -16,6 +18,7 @@ pub mod eligible;
 pub mod estimate;
 pub mod fill;
 pub mod fit;
+pub mod gloss;
 pub mod grain;
 pub mod grid;
 pub mod least_squares;
@@ -26,6 +29,7 @@ pub mod pcss;
 pub mod plate;
 pub mod raster;
 pub mod real;
+pub mod reflection;
 pub mod residual;
 pub mod retarget;
 pub mod rim;

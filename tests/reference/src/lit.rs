@@ -1,4 +1,4 @@
-//! CPU reference of `lit.wgsl`: what the receivers look like in the light, pooled on coarse grids.
+//! CPU reference of `lit.wgsl`: unshadowed colours of the receivers, pooled on coarse grids.
 
 use glam::DVec3;
 
@@ -6,11 +6,12 @@ use super::grid::{Cell, PlaneGrid, Taken, certainty};
 use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
 
-/// Power of the light that is left, by which a pixel counts: little in shadow, whose depth may not be known yet.
+/// Exponent of the remaining light in a pixel's weight: small in shadow, whose depth may not be
+/// known yet.
 const LIT_POWER: f64 = 8.0;
 
-/// Pools B = frame / (gain M) of one receiver over the cells of its grid. `pictures.seen` is 1 well clear of the toy; the
-/// plate is not looked at.
+/// Pools B = frame / (gain M) of one receiver over the cells of its grid. `pictures.seen` is 1 well
+/// clear of the toy; the plate is ignored.
 #[must_use]
 pub fn pool(
     region: &Region,

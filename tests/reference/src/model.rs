@@ -1,5 +1,5 @@
-//! What every pass knows of the scene, the model of the receiver, and which values carry evidence: CPU reference of
-//! `common/globals.wgsl`, `common/model.wgsl` and `common/pixel.wgsl`.
+//! Common data of all passes, the model of the receiver, and the reliability of pixel values: CPU
+//! reference of `common/globals.wgsl`, `common/model.wgsl` and `common/pixel.wgsl`.
 
 use app_pipeline::geometry::rect::{PixelRect, PlaneRect};
 use app_pipeline::geometry::scene_layout::SceneLayout;
@@ -8,13 +8,14 @@ use app_pipeline::passes::globals::globals;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
 use super::raster::Raster;
+use super::reflection::Reflection;
 
 /// Linear value of the 8-bit code 10: darker ones are mostly quantisation.
 pub(super) const DARKEST_USABLE: f64 = 0.003_035_27;
 /// Linear value of the 8-bit code 250: brighter ones may be clipped.
 pub(super) const BRIGHTEST_USABLE: f64 = 0.955_973_35;
 
-/// What a pixel counts that may be clipped in both pictures.
+/// Weight of a pixel that may be clipped in both pictures.
 const CLIPPED_WEIGHT: f64 = 1e-3;
 
 /// The work region over the receivers, and the lights.
@@ -24,10 +25,12 @@ pub struct Region {
     pub receivers: Vec<ReceiverPlane>,
     /// Size of the region, in pixels.
     pub size_px: UVec2,
-    /// Width of the fade at the left, top, right and bottom edge, in pixels; 0 where there is none.
+    /// Width of the fade at the left, top, right and bottom edge, in pixels; 0 for none.
     pub border_px: [f64; 4],
     /// Homogeneous, in anchor space: (position, 1) or (unit direction to the light, 0).
     pub lights: Vec<DVec4>,
+    /// How the first receiver reflects; none where it is matt.
+    pub reflection: Option<Reflection>,
 }
 
 /// One receiver as the camera sees it.
@@ -39,9 +42,9 @@ pub struct ReceiverPlane {
     pub plane_from_region_px: DMat3,
     /// The lights in plane space, homogeneous.
     pub lights: Vec<DVec4>,
-    /// Where the lights' shares are stated, (x, z) in plane space.
+    /// Reference point of the lights' shares, (x, z) in plane space.
     pub reference_in_plane: DVec2,
-    /// Where the receiver ends.
+    /// Extent of the receiver.
     pub rect: PlaneRect,
 }
 
@@ -55,27 +58,29 @@ pub struct ReceiverPoint {
 }
 
 impl ReceiverPlane {
-    /// The point of the endless plane, (x, z) in metres, that is seen at `region_px`.
+    /// The point of the infinite plane, (x, z) in metres, at `region_px`.
     #[must_use]
     pub fn plane_point(&self, region_px: DVec2) -> Option<DVec2> {
         let at = self.plane_from_region_px * region_px.extend(1.0);
         (at.z > 0.0).then(|| at.truncate() / at.z)
     }
 
-    /// Where a point of the plane is seen.
+    /// The image of a point of the plane.
     #[must_use]
     pub fn region_px(&self, in_plane: DVec2) -> Option<DVec2> {
         let at = self.plane_from_region_px.inverse() * in_plane.extend(1.0);
         (at.z > 0.0).then(|| at.truncate() / at.z)
     }
 
-    /// Whether the camera is before the receiver: then x and z turn in the picture as right and down do.
+    /// Whether the camera is in front of the receiver: then x and z have the orientation of right
+    /// and down in the picture.
     #[must_use]
     pub fn shows_front(&self) -> bool {
         self.plane_from_region_px.determinant() > 0.0
     }
 
-    /// Irradiance of light `i` at a point over that at the reference point: cos / d^2; none from behind the receiver.
+    /// Irradiance of light `i` at a point over that at the reference point: cos / d^2; 0 from
+    /// behind the receiver.
     #[must_use]
     pub fn falloff(&self, i: usize, in_plane: DVec2) -> f64 {
         let light = self.lights[i];
@@ -119,17 +124,25 @@ impl Region {
             size_px: rect.size_px,
             border_px: globals.border_px.map(f64::from),
             lights: lights_in(&world_from_anchor.inverse()),
+            reflection: None,
         }
     }
 
-    /// The nearest receiver seen at `region_px`, and the point of it; none where that is the receiver's back.
+    /// Light that a receiver reflects at a point, over the gain.
+    #[must_use]
+    pub fn reflected(&self, point: ReceiverPoint, visibility: DVec4) -> DVec3 {
+        let reflection = self.reflection.as_ref();
+        reflection.map_or(DVec3::ZERO, |reflection| reflection.light(point, visibility, 1.0))
+    }
+
+    /// The nearest receiver at `region_px`, and its point; `None` if that is the receiver's back.
     #[must_use]
     pub fn receiver_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
         self.surface_point(region_px)
             .filter(|point| self.plane_of(*point).shows_front())
     }
 
-    /// The nearest receiver seen at `region_px`, from whichever side, and the point of it.
+    /// The nearest receiver at `region_px`, from either side, and its point.
     #[must_use]
     pub fn surface_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
         let hits = self.receivers.iter().enumerate().filter_map(|(receiver, plane)| {
@@ -143,40 +156,42 @@ impl Region {
         hits.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, point)| point)
     }
 
-    /// The receiver that a point is of.
+    /// The receiver of a point.
     #[must_use]
     pub fn plane_of(&self, point: ReceiverPoint) -> &ReceiverPlane {
         &self.receivers[point.receiver]
     }
 }
 
-/// What is learned from the real shadow and the real toy, per colour channel.
+/// Parameters learned from the real shadow and the real toy, per colour channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// Frame over plate where nothing changed.
+    /// Frame over plate at unchanged pixels.
     pub gain: DVec3,
-    /// Each light's power over that when the plate was taken.
+    /// Each light's intensity over that in the plate.
     pub intensities: Vec<DVec3>,
-    /// What is learned of each receiver.
+    /// Parameters of each receiver.
     pub receivers: Vec<ReceiverSolution>,
-    /// Radiance of the toy over base colour and gain: constant, vertical gradient, and one factor for what is received of
-    /// each light at the power it had for the plate.
+    /// Radiance of the toy over base colour and gain: constant, vertical gradient, and one factor
+    /// for each light at its intensity in the plate.
     pub toy: Vec<DVec3>,
 }
 
-/// What is learned of one receiver.
+/// Parameters of one receiver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReceiverSolution {
-    /// Light thrown back by the toy, as a fraction of the ambient light it takes away.
+    /// Light reflected by the toy, as a fraction of the ambient light that it blocks.
     pub bounce: DVec3,
     /// Each light's share of the plate's radiance at the reference point.
     pub direct_fractions: Vec<DVec3>,
-    /// Part of the energy of the plate's column that pixels give which are clipped in frame and plate.
+    /// Fraction of the energy of the plate's column from pixels that are clipped in frame and
+    /// plate.
     pub clipped: DVec3,
 }
 
 impl Solution {
-    /// Plate's irradiance at a receiver point over that at the reference point, were the ambient light even.
+    /// Plate's irradiance at a receiver point over that at the reference point, for uniform ambient
+    /// light.
     #[must_use]
     pub fn plate_falloff(&self, region: &Region, point: ReceiverPoint) -> DVec3 {
         let direct_fractions = self.receivers[point.receiver].direct_fractions.iter().enumerate();
@@ -216,21 +231,21 @@ impl Solution {
     }
 }
 
-/// How much of the toy's bounce a point sees that gets so much of the ambient light.
+/// Share of the toy's bounce at a point with that ambient visibility.
 #[must_use]
 pub fn bounced(ambient: f64, n_lights: usize) -> f64 {
     let hidden = 1.0 - ambient;
     if n_lights == 0 { hidden } else { ambient * hidden }
 }
 
-/// What the passes see of a frame, over the region. Colours are linear.
+/// The passes' view of a frame, over the region. Colours are linear.
 #[derive(Clone, Debug)]
 pub struct Pictures {
     /// The camera's frame.
     pub frame: Raster<DVec3>,
     /// The place without the toy.
     pub plate: Raster<DVec3>,
-    /// 1 where the frame shows the receiver alone.
+    /// 1 if the frame shows the receiver alone.
     pub seen: Raster<f64>,
     /// Visibility of each light with the physical toy.
     pub visibility: Raster<DVec4>,
@@ -256,7 +271,7 @@ pub fn is_clipped(a: f64, b: f64) -> bool {
     a.min(b) > BRIGHTEST_USABLE
 }
 
-/// How much a pixel of frame and plate tells of the light there, in one channel.
+/// Weight of a pixel of frame and plate as evidence about the light there, in one channel.
 #[must_use]
 pub fn evidence(frame: f64, plate: f64) -> f64 {
     if is_clipped(frame, plate) {
@@ -266,7 +281,7 @@ pub fn evidence(frame: f64, plate: f64) -> f64 {
     }
 }
 
-/// 1 where both linear values carry evidence, else 0.
+/// 1 if both linear values are reliable, else 0.
 pub(super) fn usable(a: f64, b: f64) -> f64 {
     let is_within = |value: f64| (DARKEST_USABLE..=BRIGHTEST_USABLE).contains(&value);
     if is_within(a) && is_within(b) { 1.0 } else { 0.0 }

@@ -1,29 +1,31 @@
-//! CPU reference of `occlusion.wgsl`: which light points a posed mesh hides from a point of the receiver.
+//! CPU reference of `occlusion.wgsl`: the light points that a posed mesh hides from a point of the
+//! receiver.
 //!
-//! The shader flattens the mesh onto the receiver; here a ray goes from the receiver to the light.
+//! The shader projects the mesh onto the receiver; here a ray goes from the receiver to the light.
 
 use glam::{DVec2, DVec3, DVec4, UVec2};
 
 use super::model::Region;
 use super::real::{Real, Vector};
 
-/// Where light point `i` of `n_points` is seen from within a pixel, from its top left corner, in pixels: a lattice of as many
-/// rows and columns.
+/// Sample position of light point `i` of `n_points` within a pixel, from its top left corner, in
+/// pixels: a lattice of equal numbers of rows and columns.
 #[must_use]
 pub fn sample_position(i: usize, n_points: usize) -> DVec2 {
     let [column, row] = [47, 53].map(|step| (i * step % n_points) as f64);
     (DVec2::new(column, row) + 0.5) / n_points as f64
 }
 
-/// The same in a picture that spreads a point by the lower triangle (xx, yx, yy) of a root of its covariance, the pixel's own with it: where the
-/// parts below the lattice's rows and columns are those of a normal distribution.
+/// The same in a blurred picture, given the lower triangle (xx, yx, yy) of a root of the blur's
+/// covariance, the pixel's own included: the lattice's rows and columns become quantiles of a
+/// normal distribution.
 #[must_use]
 pub fn spread_position(lattice: DVec2, [xx, yx, yy]: [f64; 3]) -> DVec2 {
     let [across, down] = lattice.to_array().map(normal_quantile);
     0.5 + DVec2::new(xx * across, yx * across + yy * down)
 }
 
-/// What a number of a normal distribution is above, by the part of all numbers that are below. Source: Winitzki 2008, whose one constant is .147.
+/// Quantile of the normal distribution. Source: Winitzki 2008, whose one constant is .147.
 #[must_use]
 pub fn normal_quantile(part: f64) -> f64 {
     const A: f64 = 0.147;
@@ -36,17 +38,17 @@ pub fn normal_quantile(part: f64) -> f64 {
 
 type Triangle<R> = [Vector<R>; 3];
 
-/// A posed mesh in plane space, and the precision in which rays meet it.
+/// A posed mesh in plane space, with the precision of its ray intersections.
 #[derive(Clone, Debug)]
 pub struct Occluder<R = f64> {
     triangles: Vec<Triangle<R>>,
     tree: Tree<R>,
 }
 
-/// Where a ray meets a mesh.
+/// The intersection of a ray and a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Multiples of the ray's direction up to the point.
+    /// Distance in multiples of the ray's direction.
     pub distance: f64,
     /// The triangle, in the order of the mesh.
     pub triangle: usize,
@@ -106,7 +108,8 @@ impl<R: Real> Occluder<R> {
     }
 }
 
-/// A mesh and what it hides, in a receiver's plane space: the points of a light, or directions of the ambient light.
+/// A mesh with its light samples, in a receiver's plane space: points of a light, or directions of
+/// the ambient light.
 #[derive(Clone, Debug)]
 pub struct Caster<R = f64> {
     /// The posed mesh.
@@ -115,11 +118,12 @@ pub struct Caster<R = f64> {
     pub light_points: Vec<DVec4>,
 }
 
-/// Share of the light points, each seen from its position, that the mesh hides from `texel` of a map of `map_px` texels
-/// over the region, or `None` where that texel looks past the receivers. There is a caster for each of them.
+/// Share of the light points, each sampled at its position, that the mesh hides from `texel` of a
+/// map of `map_px` texels over the region, or `None` if that texel shows no receiver. There is a
+/// caster for each receiver.
 ///
-/// Light point i is seen from [`sample_position`]. Of several receivers a texel shows the one at its centre;
-/// a single one is taken to go on for ever.
+/// Light point i is sampled at [`sample_position`]. Of several receivers a texel shows the one at
+/// its centre; a single one counts as infinite.
 #[must_use]
 pub fn hidden_share<R: Real>(
     casters: &[Caster<R>],
@@ -130,7 +134,8 @@ pub fn hidden_share<R: Real>(
     hidden_share_from(casters, region, (map_px, texel), position)
 }
 
-/// The same where each light point is seen from a place of its own, in texels from the top left corner of the texel.
+/// The same with a separate position for each light point, in texels from the top left corner of
+/// the texel.
 #[must_use]
 pub fn hidden_share_from<R: Real>(
     casters: &[Caster<R>],
@@ -150,7 +155,7 @@ pub fn hidden_share_from<R: Real>(
     for (i, light_point) in caster.light_points.iter().enumerate() {
         let position = texel.as_dvec2() + place(i, caster.light_points.len());
         let in_plane = plane.plane_point(position * region_px_per_texel)?;
-        // A point behind the receiver lights nothing of it.
+        // A point behind the receiver does not illuminate it.
         let is_hidden = light_point.y > 0.0 && caster.occluder.hides(in_plane, *light_point);
         n_hidden += f64::from(u8::from(is_hidden));
     }
@@ -158,7 +163,7 @@ pub fn hidden_share_from<R: Real>(
     Some(n_hidden / n_points)
 }
 
-/// Triangles within a box, halved until few are left.
+/// A bounding volume hierarchy of triangles.
 #[derive(Clone, Debug)]
 struct Tree<R> {
     min: Vector<R>,
@@ -203,19 +208,20 @@ impl<R: Real> Tree<R> {
             }
     }
 
-    /// Slab test against the bounding box: most rays pass by.
+    /// Slab test against the bounding box: most rays miss it.
     fn reaches_box(&self, origin: Vector<R>, direction: Vector<R>, end: R) -> bool {
         let to_min = (self.min - origin) / direction;
         let to_max = (self.max - origin) / direction;
         let enter = to_min.min(to_max).max_element();
         let leave = to_min.max(to_max).min_element();
-        // A ray within a face gives 0 / 0, for which no comparison holds: it must pass on to the triangles.
+        // A ray within a face gives 0 / 0, for which no comparison holds: it must be tested against
+        // the triangles.
         let is_past = enter.max(R::ZERO) > leave.min(end);
         !is_past
     }
 }
 
-/// Multiples of `direction` after which a ray meets a triangle, from either side.
+/// Distance, in multiples of `direction`, at which a ray meets a triangle, from either side.
 ///
 /// Source: Moller and Trumbore 1997.
 fn meets<R: Real>(origin: Vector<R>, direction: Vector<R>, corners: &Triangle<R>) -> Option<R> {

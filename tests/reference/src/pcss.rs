@@ -7,24 +7,24 @@ use glam::{DVec2, DVec3, DVec4, UVec2, Vec3Swizzles};
 use super::model::{ReceiverPlane, Region, centre_px};
 use super::raster::Raster;
 
-/// The light and the open constants.
+/// The light and the method's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Softness {
     /// The light's centre, homogeneous, in plane space.
     pub light: DVec4,
     /// Radius of the light's disc: metres for a sphere, slope for a directional light.
     pub light_radius: f64,
-    /// Bounds the height of the toy.
+    /// Upper bound of the toy's height.
     pub tallest_m: f64,
-    /// Taps of the blocker search.
+    /// Number of taps of the blocker search.
     pub n_blocker_taps: u32,
-    /// Taps of the filter.
+    /// Number of taps of the filter.
     pub n_filter_taps: u32,
 }
 
 impl Softness {
-    /// Where a point of a disc around the ray from `in_plane` to the light, across that ray, lies on the receiver when it is
-    /// moved along the ray.
+    /// A point of a disc around the ray from `in_plane` to the light, perpendicular to it,
+    /// projected along the ray to the receiver.
     #[must_use]
     pub fn slanted(&self, disc: DVec2, in_plane: DVec2) -> DVec2 {
         let to_light = self.light.truncate() - self.light.w * DVec3::new(in_plane.x, 0.0, in_plane.y);
@@ -37,8 +37,9 @@ impl Softness {
         disc + (on_axis / sine - on_axis) * along
     }
 
-    /// Radius on the receiver of the shadow that a point at `height_m` casts of the light's disc: at most that height,
-    /// which is where a disc fills more than 45 degrees around the vertical, or hangs no higher than the point.
+    /// Radius on the receiver of the shadow that a point at `height_m` casts of the light's disc:
+    /// at most that height, the value for a disc that fills more than 45 degrees around the
+    /// vertical, or that is no higher than the point.
     #[must_use]
     pub fn penumbra_radius_m(&self, height_m: f64) -> f64 {
         let above_m = if self.light.w == 0.0 {
@@ -56,8 +57,9 @@ impl Softness {
     }
 }
 
-/// Visibility at a texel of the region. `heights_m` has the height of the occluder whose shadow, seen from the light's
-/// centre, falls on a texel; none where there is none. `of_receivers` has the light for each receiver.
+/// Visibility at a texel of the region. `heights_m` has the height of the occluder whose shadow,
+/// seen from the light's centre, falls on a texel; `None` without one. `of_receivers` has the light
+/// for each receiver.
 #[must_use]
 pub fn soft_visibility(
     heights_m: &Raster<Option<f64>>,
@@ -100,7 +102,7 @@ pub fn soft_visibility(
     1.0 - count(&blocked) / f64::from(softness.n_filter_taps)
 }
 
-/// Where a point of the plane is seen, whichever receiver that shows.
+/// The height at the image of a point of the plane, whichever receiver that pixel shows.
 fn height_near(heights_m: &Raster<Option<f64>>, plane: &ReceiverPlane, in_plane: DVec2) -> Option<f64> {
     let px = plane.region_px(in_plane)?;
     let is_inside = px.cmpge(DVec2::ZERO).all() && px.cmplt(heights_m.size().as_dvec2()).all();

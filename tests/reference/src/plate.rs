@@ -1,26 +1,27 @@
-//! CPU reference of `plate.wgsl`: the place as this camera would have taken it, from plates of other cameras.
+//! CPU reference of `plate.wgsl`: the plate of this camera, from plates of other cameras.
 
 use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
 
 use super::model::{ReceiverPoint, Region, centre_px};
 use super::raster::Raster;
 
-/// Distance from a plate's border, in pixels, over which another one takes its place.
+/// Distance from a plate's border, in pixels, over which it is blended with another one.
 const FEATHER_PX: f64 = 32.0;
-/// Power of the cosine between two directions of view, by which a plate from farther round is the worse.
+/// Power of the cosine between two viewing directions in a plate's quality.
 const ANGLE_POWER: f64 = 4.0;
-/// Power of the quality in a plate's weight: high, so that two are hardly ever mixed, which would blur.
+/// Power of the quality in a plate's weight: high, so that two are hardly ever mixed, which would
+/// blur.
 pub const CHOICE_POWER: f64 = 6.0;
-/// Cosine of the angle of view beyond which a plate gets no worse: it may be all there is.
+/// Lower bound of that cosine: such a plate may be the only one.
 const LEAST_COSINE: f64 = 0.1;
-/// Share of the best plate's weight below which another is left out.
+/// Weight relative to the best plate's below which another is skipped.
 const LEAST_WEIGHT: f64 = 0.02;
-/// Step of the difference quotient that tells how finely a plate shows a place.
+/// Step of the difference quotient for a plate's resolution.
 const STEP_PX: f64 = 1e-3;
-/// Relative difference of depths that rounding makes.
+/// Relative difference of depths by rounding.
 const SAME_DEPTH: f64 = 1e-9;
 
-/// A camera: what it sees of the receivers, and where it is.
+/// A camera with the receivers in its view, and its position.
 #[derive(Clone, Debug)]
 pub struct Viewpoint {
     /// Its picture, or a part of it.
@@ -36,7 +37,7 @@ pub struct PlatePhoto {
     pub camera: Viewpoint,
     /// Linear colours.
     pub picture: Raster<DVec3>,
-    /// What brings it to the exposure of the first.
+    /// Factor to the exposure of the first plate.
     pub gain: DVec3,
 }
 
@@ -48,7 +49,8 @@ impl Viewpoint {
             .transform_point3(self.centre_in_anchor)
     }
 
-    /// The surface at a pixel, front or back of a receiver; beyond all of them the first one's plane without end.
+    /// The surface at a pixel, front or back of a receiver; beyond all of them the first one's
+    /// infinite plane.
     fn surface_point(&self, region_px: DVec2) -> Option<ReceiverPoint> {
         let beyond = || {
             let in_plane = self.region.receivers[0].plane_point(region_px)?;
@@ -60,7 +62,8 @@ impl Viewpoint {
         self.region.surface_point(region_px).or_else(beyond)
     }
 
-    /// Where the camera sees a point; none where it does not face it, or another receiver is nearer there.
+    /// The image of a point; `None` if the camera sees its back, or another receiver is nearer
+    /// there.
     fn sees(&self, point: ReceiverPoint) -> Option<DVec2> {
         let inverse_depth = |receiver: usize, px: DVec2| {
             (self.region.receivers[receiver].plane_from_region_px * px.extend(1.0)).z
@@ -75,10 +78,11 @@ impl Viewpoint {
     }
 }
 
-/// Linear colour of the plate at `texel` of the view's region, alpha 1 where one of `plates` shows it.
+/// Linear colour of the plate at `texel` of the view's region, alpha 1 if one of `plates` shows it.
 ///
-/// A plate's quality is its pixels per pixel of the view, by area and at most one, times a power of the cosine between the
-/// two directions of view. Its weight is a power of that against the best one's, less towards its border.
+/// A plate's quality is its pixels per pixel of the view, by area and at most one, times a power of
+/// the cosine between the two viewing directions. Its weight is a power of that relative to the
+/// best one's, reduced towards its border.
 #[must_use]
 pub fn choose(view: &Viewpoint, plates: &[PlatePhoto], texel: UVec2) -> DVec4 {
     let at = centre_px(texel);
@@ -107,7 +111,7 @@ pub fn choose(view: &Viewpoint, plates: &[PlatePhoto], texel: UVec2) -> DVec4 {
     }
 }
 
-/// A plate that shows a point, and where.
+/// A plate that shows a point, and the point's image.
 struct Candidate<'a> {
     plate: &'a PlatePhoto,
     px: DVec2,
@@ -146,8 +150,7 @@ fn candidate<'a>(
     })
 }
 
-/// A picture between its pixels, by the cubic through four in a row that has the slope of their chords; not negative.
-/// Source: Catmull and Rom 1974.
+/// Catmull-Rom interpolation of a picture; not negative. Source: Catmull and Rom 1974.
 fn sharp(picture: &Raster<DVec3>, px: DVec2) -> DVec3 {
     let low = (px - 0.5).floor();
     let t = px - 0.5 - low;
@@ -160,7 +163,7 @@ fn sharp(picture: &Raster<DVec3>, px: DVec2) -> DVec3 {
     hermite([-1, 0, 1, 2].map(row), t.y).max(DVec3::ZERO)
 }
 
-/// From the second to the third of four values, with the slopes of the chords beside them.
+/// From the second to the third of four values, with the slopes of the adjacent chords.
 fn hermite([before, from, to, after]: [DVec3; 4], t: f64) -> DVec3 {
     let (leaving, arriving) = (0.5 * (to - before), 0.5 * (after - from));
     let (s, c) = (t * t, t * t * t);

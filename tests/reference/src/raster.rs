@@ -17,7 +17,7 @@ pub fn texels_of(size: UVec2) -> impl Iterator<Item = UVec2> {
 }
 
 impl<T: Copy> Raster<T> {
-    /// Asks `value` for each texel.
+    /// Computes `value` for each texel.
     pub fn from_fn(size: UVec2, mut value: impl FnMut(UVec2) -> T) -> Self {
         Self {
             size,
@@ -25,7 +25,7 @@ impl<T: Copy> Raster<T> {
         }
     }
 
-    /// Another value for each texel.
+    /// Maps each texel.
     #[must_use]
     pub fn map<U>(&self, value: impl FnMut(T) -> U) -> Raster<U> {
         Raster {
@@ -46,7 +46,7 @@ impl<T: Copy> Raster<T> {
         &self.texels
     }
 
-    /// The texel at (column, row), of which there is none outside.
+    /// The texel at (column, row).
     ///
     /// # Panics
     /// Outside the rectangle.
@@ -58,7 +58,7 @@ impl<T: Copy> Raster<T> {
 }
 
 impl<T: Copy + Add<Output = T> + Mul<f64, Output = T>> Raster<T> {
-    /// What lies between the values at the four nearest centres, of which those outside are moved to the border.
+    /// Bilinear interpolation between the four nearest centres, with repeated border texels.
     #[must_use]
     pub fn bilinear(&self, at: DVec2) -> T {
         let last = self.size.as_dvec2() - 1.0;

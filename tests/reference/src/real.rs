@@ -1,7 +1,7 @@
-//! Real numbers of either precision: rays are of 64 bits, and of 32 to tell what rounding costs.
+//! Real numbers of either precision: rays have 64 bits, or 32 to measure rounding errors.
 //!
-//! What goes in and out stays in 64 bits, which hold all numbers of 32: only the arithmetic in between is of the precision
-//! that is asked for.
+//! Inputs and outputs stay in 64 bits, which represent all 32-bit numbers: only the arithmetic in
+//! between has the requested precision.
 
 use std::array;
 use std::cmp::Ordering;
@@ -24,7 +24,7 @@ pub trait Real:
     + AddAssign
     + Sum
 {
-    /// Nothing.
+    /// Zero.
     const ZERO: Self;
     /// One.
     const ONE: Self;
@@ -44,7 +44,7 @@ pub trait Real:
     /// The smaller one.
     #[must_use]
     fn min(self, other: Self) -> Self;
-    /// An order that holds numbers that are none, too.
+    /// A total order, including NaN.
     fn total_cmp(&self, other: &Self) -> Ordering;
 }
 
@@ -99,12 +99,12 @@ impl<R: Real> Vector<R> {
         Self([value; 3])
     }
 
-    /// `of` each component and the one of `other`.
+    /// Applies `of` to each component and that of `other`.
     fn zip(self, other: Self, of: impl Fn(R, R) -> R) -> Self {
         Self(array::from_fn(|i| of(self[i], other[i])))
     }
 
-    /// Length times length times cosine.
+    /// Dot product.
     #[must_use]
     pub fn dot(self, other: Self) -> R {
         self.zip(other, |a, b| a * b).0.into_iter().sum()
@@ -116,33 +116,33 @@ impl<R: Real> Vector<R> {
         self.dot(self).sqrt()
     }
 
-    /// The smaller of each two components; that of `other` where they have no order.
+    /// The smaller of each two components; that of `other` if one is NaN.
     #[must_use]
     pub fn min(self, other: Self) -> Self {
         self.zip(other, |a, b| if a < b { a } else { b })
     }
 
-    /// The larger of each two components; that of `other` where they have no order.
+    /// The larger of each two components; that of `other` if one is NaN.
     #[must_use]
     pub fn max(self, other: Self) -> Self {
         self.zip(other, |a, b| if a > b { a } else { b })
     }
 
-    /// The smallest component; those after one that has no order decide.
+    /// The smallest component; a NaN is skipped in favour of later ones.
     #[must_use]
     pub fn min_element(self) -> R {
         let backwards = self.0.into_iter().rev();
         backwards.fold(self[2], |least, one| if one < least { one } else { least })
     }
 
-    /// The largest component; those after one that has no order decide.
+    /// The largest component; a NaN is skipped in favour of later ones.
     #[must_use]
     pub fn max_element(self) -> R {
         let backwards = self.0.into_iter().rev();
         backwards.fold(self[2], |most, one| if one > most { one } else { most })
     }
 
-    /// At right angles to both, as long as the area between them.
+    /// Cross product.
     #[must_use]
     pub fn cross(self, other: Self) -> Self {
         let ([x, y, z], [u, v, w]) = (self.0, other.0);

@@ -1,4 +1,4 @@
-//! CPU reference of `residual.wgsl`: what the model leaves unexplained, pooled on coarse grids.
+//! CPU reference of `residual.wgsl`: the model's residual, pooled on coarse grids.
 
 use glam::{DVec3, UVec2};
 
@@ -6,10 +6,11 @@ use super::grid::{Cell, PlaneGrid, Taken, certainty};
 use super::model::{Pictures, Region, Solution, centre_px, coarse_at, evidence};
 use super::raster::Raster;
 
-/// Residual, as a fraction of the plate, at which a pixel counts half: more is of what the model does not know.
+/// Residual, as a fraction of the plate, at which a pixel has half weight: larger ones are not part
+/// of the model.
 const CAUCHY_SCALE: f64 = 0.03;
 
-/// Pools the residual of one receiver over the cells of its grid, from nothing known before.
+/// Pools the residual of one receiver over the cells of its grid, without earlier values.
 #[must_use]
 pub fn pool(
     region: &Region,
@@ -34,7 +35,7 @@ struct Sums {
     product: DVec3,
     /// Weighted squares of the plate.
     energy: DVec3,
-    /// Points that are evidence, whether the model explains them or not.
+    /// Number of points that are evidence, whether the model explains them or not.
     n_points: f64,
 }
 
@@ -50,7 +51,8 @@ impl Sums {
         }
         let ambient = coarse_at(&pictures.ambient, region, centre_px(texel));
         let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
-        let unexplained = frame / solution.gain - plate * model;
+        let reflected = region.reflected(point, pictures.visibility.at(texel));
+        let unexplained = frame / solution.gain - reflected - plate * model;
         let relative = unexplained.length_squared() / (brightness * CAUCHY_SCALE.powi(2));
         for channel in 0..3 {
             let evidence = evidence(frame[channel], plate[channel]) * pictures.seen.at(texel);

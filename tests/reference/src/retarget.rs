@@ -1,4 +1,4 @@
-//! CPU reference of `retarget.wgsl`: the published picture where it shows the receiver.
+//! CPU reference of `retarget.wgsl`: the published method's picture on the receiver.
 
 use glam::{DVec3, DVec4, IVec2, UVec2};
 
@@ -6,10 +6,10 @@ use super::box_filter::mean;
 use super::raster::Raster;
 use super::sets::LightSet;
 
-/// How a shadow is shaded.
+/// The shading of a shadow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shade {
-    /// A constant ratio to the plate for each light that is hidden.
+    /// A constant ratio to the plate for each hidden light.
     Constant(f64),
     /// Sampled: ratios to the plate on a textured receiver, colours on a uniform one.
     Sampled {
@@ -18,12 +18,12 @@ pub enum Shade {
     },
 }
 
-/// What the picture is made of, over the region. Colours are linear.
+/// The inputs of the picture, over the region. Colours are linear.
 #[derive(Clone, Debug)]
 pub struct Layers {
     /// The camera's frame.
     pub frame: Raster<DVec3>,
-    /// The plate; none where no plate shows the place.
+    /// The plate; `None` if no plate shows the place.
     pub plate: Raster<Option<DVec3>>,
     /// Masks 3a and 3b together: the real toy and the real shadow.
     pub mask: Raster<bool>,
@@ -42,7 +42,7 @@ pub fn receiver_color(layers: &Layers, n_lights: usize, shade: Shade, seam_px: i
     };
     let lit = frame.lerp(plate, cropped(&layers.mask, seam_px, texel));
     let visibility = layers.visibility.at(texel);
-    // Each set as often as just its lights are hidden, were they independent.
+    // Probability of each set if the lights were hidden independently.
     let share = |set: LightSet| -> f64 {
         (0..n_lights)
             .map(|i| {
@@ -96,8 +96,8 @@ impl Shaded {
     }
 }
 
-/// The shadow of a set of lights: its own terms or, where it has none near, those of the set least unlike it, the first of
-/// those that are as unlike; none where no set has any.
+/// The shadow of a set of lights: its own terms or, if it has none near, those of the most similar
+/// set, the first of equally similar ones; `None` if no set has any.
 fn shaded(layers: &Layers, shade: Shade, set: LightSet, texel: UVec2) -> Option<Shaded> {
     match shade {
         Shade::Constant(ratio) => {

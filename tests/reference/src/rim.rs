@@ -1,4 +1,4 @@
-//! CPU reference of `rim.wgsl`: what a soft picture mixes into the toy's colours.
+//! CPU reference of `rim.wgsl`: the receiver's share in the toy's colours in a blurred picture.
 
 use glam::{DVec2, DVec3, UVec2};
 
@@ -7,13 +7,13 @@ use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
 use super::occlusion::spread_position;
 use super::raster::Raster;
 
-/// Places that are looked at, in as many rows and columns.
+/// Number of sampled places, in equal numbers of rows and columns.
 const N_PLACES: u32 = 64;
 /// Rows and columns from one place to the next.
 const STEPS: [u32; 2] = [47, 53];
 
-/// Part of what a texel shows that is the toy's, whose depth is 0 where it is not; `root` is that of the picture's spread, places lie by
-/// `beside_px` more beside that, to all four sides in turn.
+/// The toy's share of a texel, where depth 0 means no toy; `root` is that of the picture's blur,
+/// and places are shifted by `beside_px` to all four sides in turn.
 #[must_use]
 pub fn part_of_toy(depth: &Raster<f64>, (root, beside_px): ([f64; 3], f64), texel: UVec2) -> f64 {
     let places = (0..N_PLACES).map(|k| {
@@ -28,16 +28,16 @@ pub fn part_of_toy(depth: &Raster<f64>, (root, beside_px): ([f64; 3], f64), texe
     places.filter(shows_toy).count() as f64 / f64::from(N_PLACES)
 }
 
-/// What was learned of the receivers.
+/// Parameters learned about the receivers.
 #[derive(Clone, Copy, Debug)]
 pub struct Learned<'a> {
-    /// Of the fits.
+    /// The fits' result.
     pub solution: &'a Solution,
-    /// Filled residuals on each receiver, in plates, and where their cells lie.
+    /// Filled residuals on each receiver, in plates, and the positions of their cells.
     pub residuals: &'a [(PlaneGrid, Raster<DVec3>)],
 }
 
-/// What the receiver shows at a texel of the region in the real shadow, over the gain.
+/// The receiver's colour at a texel of the region in the real shadow, over the gain.
 #[must_use]
 pub fn shown_receiver(region: &Region, pictures: &Pictures, learned: &Learned<'_>, texel: UVec2) -> DVec3 {
     let (at, plate) = (centre_px(texel), pictures.plate.at(texel));

@@ -7,14 +7,14 @@ use glam::{DVec2, DVec3, IVec2, UVec2};
 use super::raster::Raster;
 use super::sets::LightSet;
 
-/// The open constants of the search.
+/// The search's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rings {
     /// Distance between rings.
     pub step_px: f64,
-    /// Candidates of a ring, even around it; those of odd rings are turned by half of their distance.
+    /// Number of candidates of a ring, evenly spaced; odd rings are turned by half of the spacing.
     pub n_directions: u32,
-    /// Rings until the search gives up, if it has not left the region before.
+    /// Number of rings until the search gives up, if it has not left the region before.
     pub n_rings: u32,
 }
 
@@ -31,27 +31,27 @@ impl Rings {
     }
 }
 
-/// What a search came to.
+/// The result of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Found {
-    /// The texel to sample; none within reach where there is none.
+    /// The texel to sample; `None` without one in range.
     pub texel: Option<IVec2>,
-    /// Candidates that were looked at after the first.
+    /// Number of candidates after the first.
     pub n_taps: u32,
 }
 
-/// Where the shadow of each light of a texel's set came from, and that set.
+/// The sources of a texel's shadows, one for each light of its set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
-    /// Lights whose new shadows the texel lies in; not empty.
+    /// Lights whose new shadows cover the texel; not empty.
     pub set: LightSet,
     /// One point of the region for each of these lights, in their order.
     pub sources_px: Vec<DVec2>,
 }
 
-/// The texel to sample: a source's own, or the closest candidate of the first ring that has one, where just the lights
-/// of the set are shadowed; if there is none, the same for the sets that are less and less like it, of which `seen` has
-/// those that occur. Of candidates as close as each other the first wins.
+/// The texel to sample: a source's own, or the closest candidate of the first ring with one that
+/// has exactly the set's shadows; if there is none, the same for less and less similar sets, of
+/// which `seen` has the existing ones. The first of equally close candidates wins.
 #[must_use]
 pub fn search(eligible: &Raster<LightSet>, seen: &[LightSet], start: &Start, rings: &Rings) -> Found {
     let mut n_taps = 0;
@@ -104,7 +104,7 @@ fn search_sets(eligible: &Raster<LightSet>, accepted: &[LightSet], start: &Start
     }
 }
 
-/// The texels that a ring looks at.
+/// The candidates of a ring.
 fn candidates(at_px: DVec2, ring: u32, rings: &Rings) -> impl Iterator<Item = IVec2> {
     let radius_px = f64::from(ring) * rings.step_px;
     let offset = if ring % 2 == 1 { 0.5 } else { 0.0 };
@@ -120,9 +120,10 @@ fn away_px(texel: IVec2, at_px: DVec2) -> f64 {
     (texel.as_dvec2() + 0.5).distance(at_px)
 }
 
-/// What a sample tells of the shadow: its colour on a uniform receiver, its ratio to the plate on a textured one.
+/// A sample of the shadow: its colour on a uniform receiver, its ratio to the plate on a textured
+/// one.
 ///
-/// Where the plate is black, a ratio tells nothing and is 1; a shadow never adds light.
+/// For a black plate, the ratio is undefined and set to 1; a shadow never adds light.
 #[must_use]
 pub fn term(frame: DVec3, plate: DVec3, is_textured: bool) -> DVec3 {
     if is_textured {

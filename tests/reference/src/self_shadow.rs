@@ -1,15 +1,15 @@
-//! CPU reference of `self_shadow.wgsl` and `common/self_shadow.wgsl`: what a point of the toy receives of each light, by rays
-//! rather than depth maps.
+//! CPU reference of `self_shadow.wgsl` and `common/self_shadow.wgsl`: irradiance of a point of the
+//! toy from each light, by rays rather than depth maps.
 
 use glam::{DVec3, DVec4};
 
 use super::model::Region;
 use super::occlusion::Occluder;
 
-/// By how much a ray starts above its surface, in metres: rounding, and nothing that can be seen.
+/// Offset of a ray's start from its surface, in metres: above rounding, below visibility.
 const LIFT_M: f64 = 1e-6;
 
-/// Cosine to each light times the share of its points in sight.
+/// Cosine to each light times the visible share of its points.
 #[must_use]
 pub fn received(
     region: &Region,

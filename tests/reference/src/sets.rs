@@ -1,6 +1,6 @@
 //! CPU reference of the sets of lights in `common/baseline.wgsl`.
 
-/// The lights that do not reach a place: bit i stands for light i. Empty where it is lit by all.
+/// The lights that do not reach a place: bit i stands for light i. Empty for a fully lit place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LightSet(pub u32);
 
@@ -11,7 +11,7 @@ impl LightSet {
         Self(lights.iter().fold(0, |set, light| set | 1 << light))
     }
 
-    /// Whether it has a light.
+    /// Whether it contains a light.
     #[must_use]
     pub fn has(self, light: usize) -> bool {
         self.0 >> light & 1 == 1
@@ -22,7 +22,8 @@ impl LightSet {
         (0..u32::BITS as usize).filter(move |light| self.has(*light))
     }
 
-    /// How unlike another set is to this one: first by how many lights they differ, then whether it has one too many.
+    /// Dissimilarity of another set: first the number of different lights, then whether it has an
+    /// additional one.
     #[must_use]
     pub fn unlikeness(self, other: Self) -> (usize, bool) {
         let missing = self.lights().filter(|light| !other.has(*light)).count();
@@ -30,7 +31,7 @@ impl LightSet {
         (missing + surplus, surplus > 0)
     }
 
-    /// Of some sets, in groups of those that are as unlike to this one, the least unlike first.
+    /// The given sets in groups of equal dissimilarity, the most similar first.
     #[must_use]
     pub fn closest_first(self, among: &[Self]) -> Vec<Vec<Self>> {
         let mut groups: Vec<Vec<Self>> = Vec::new();

@@ -1,23 +1,23 @@
-//! CPU reference of `soften.wgsl`: a plate, spread as light is.
+//! CPU reference of `soften.wgsl`: a plate, blurred in linear light.
 
 use glam::{DVec2, DVec4, UVec2};
 
 use super::model::centre_px;
 use super::raster::Raster;
 
-/// Taps along the axes of a spread.
+/// Taps along the axes of a blur.
 #[derive(Clone, Copy, Debug)]
 pub struct Taps {
-    /// From one to the next along each axis, in pixels.
+    /// Steps between taps along each axis, in pixels.
     pub steps_px: [DVec2; 2],
     /// The same in standard deviations.
     pub spacing: f64,
-    /// To either side of the middle.
+    /// Number of taps on either side of the centre.
     pub n_beside: u32,
 }
 
-/// Colour and alpha of a texel: the mean of what lies around, by the weights of a normal distribution. Colours are those of the texels
-/// times their alpha, and what has none gives and gets nothing.
+/// Colour and alpha of a texel: the mean of its surroundings, with Gaussian weights. Colours are
+/// weighted by their alpha, and texels without alpha do not take part.
 #[must_use]
 pub fn soften(plate: &Raster<DVec4>, taps: &Taps, texel: UVec2) -> DVec4 {
     let own = plate.at(texel);

@@ -1,32 +1,34 @@
-//! CPU reference of `things.wgsl`: the validity mask with what stands in the picture beside the toy.
+//! CPU reference of `things.wgsl`: the validity mask with other things in the picture.
 
 use glam::{DMat3, DVec2, DVec4, UVec2};
 
 use super::model::centre_px;
 use super::raster::Raster;
 
-/// Codes of marks, beside 0 for none.
+/// Code of a thing; 0 means none.
 pub const THING: u8 = 1;
-/// Of a thing before the toy.
+/// Code of a thing in front of the toy.
 pub const BEFORE_TOY: u8 = 2;
-/// Of a plate that shows something else.
+/// Code of a plate that shows something else.
 pub const WRONG_PLATE: u8 = 3;
 /// Alpha of the marks of things, in the same order.
 const ALPHAS: [f64; 2] = [0.8, 0.6];
-/// How far a pixel of the toy mixes with a thing before it, in pixels along each side.
+/// Distance over which a pixel of the toy mixes with a thing in front of it, in pixels along each
+/// side.
 const MIXED_PX: f64 = 2.0;
 
-/// Codes of a picture's pixels, and where a pixel of the region is in that picture, as (u w, v w, w).
+/// Codes of a picture's pixels, and the homography from the region to that picture, as (u w, v w,
+/// w).
 #[derive(Clone, Debug)]
 pub struct Things {
-    /// One of each pixel.
+    /// One code per pixel.
     pub codes: Raster<u8>,
     /// Homography.
     pub codes_px_from_region_px: DMat3,
 }
 
 impl Things {
-    /// The code at a place of the region; none beyond the picture, and behind its camera.
+    /// The code at a place of the region; 0 outside of the picture, and behind its camera.
     #[must_use]
     pub fn at(&self, region_px: DVec2) -> u8 {
         let at = self.codes_px_from_region_px * region_px.extend(1.0);

@@ -1,4 +1,5 @@
-//! CPU reference of `tint.wgsl` and `tint_fill.wgsl`: how the real toy's paint differs from its model's, on one grid a material.
+//! CPU reference of `tint.wgsl` and `tint_fill.wgsl`: the difference between the real toy's paint
+//! and its model's, on one grid per material.
 //!
 //! Source: Gortler et al. 1996, section 3.4, here in a volume.
 
@@ -7,9 +8,9 @@ use glam::{DVec3, DVec4, UVec3, Vec3};
 
 use super::model::{BRIGHTEST_USABLE, DARKEST_USABLE};
 
-/// Most linear light that is expected of a channel: a photograph is clipped long before, whatever the paint.
+/// Largest expected linear light of a channel: a photograph is clipped far below.
 const MOST_EXPECTED: f64 = 3.0;
-/// Pixels from which on a cell counts in full.
+/// Number of pixels from which a cell has full weight.
 const FULL_PIXELS: f64 = 16.0;
 
 /// A pixel that shows one surface of the toy.
@@ -19,9 +20,9 @@ pub struct SeenPaint {
     pub in_anchor: DVec3,
     /// Which of the toy's materials.
     pub material: usize,
-    /// What the pixel shows, linear.
+    /// The pixel's colour, linear.
     pub shown: DVec3,
-    /// What base colour, gain and fitted light give there.
+    /// Its expected colour, from base colour, gain and fitted light.
     pub expected: DVec3,
 }
 
@@ -48,13 +49,14 @@ impl Volume {
         &self.cells
     }
 
-    /// One of them.
+    /// A cell.
     #[must_use]
     pub fn at(&self, cell: UVec3) -> DVec4 {
         self.cells[((cell.z * self.side + cell.y) * self.side + cell.x) as usize]
     }
 
-    /// Between cells; the centre of the first lies at (.5, .5, .5), and the outermost go on beyond the cube.
+    /// Interpolated between cells; the centre of the first is at (.5, .5, .5), and the outermost
+    /// are repeated outside.
     fn trilinear(&self, at: DVec3) -> DVec4 {
         let last = DVec3::splat(f64::from(self.side - 1));
         let at = (at - 0.5).clamp(DVec3::ZERO, last);
@@ -69,7 +71,8 @@ impl Volume {
     }
 }
 
-/// The tint in each cell of each material's grid, with alpha 1, from one frame and nothing known before.
+/// The tint in each cell of each material's grid, with alpha 1, from one frame without earlier
+/// values.
 #[must_use]
 pub fn tints(grid: &TintGrid, seen: &[SeenPaint]) -> Vec<Volume> {
     let side = u32::try_from(TINT_SIDE).unwrap_or(u32::MAX);
@@ -100,7 +103,7 @@ pub fn tints(grid: &TintGrid, seen: &[SeenPaint]) -> Vec<Volume> {
 fn pooled<'a>(seen: impl Iterator<Item = &'a SeenPaint>) -> DVec4 {
     let (mut shown, mut expected, mut n_pixels) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for paint in seen {
-        // As if each pixel also showed what is too dark to tell, just as expected.
+        // As if each pixel also had an amount too dark to measure, exactly as expected.
         shown += paint.shown + DARKEST_USABLE;
         expected += paint.expected.min(DVec3::splat(MOST_EXPECTED)) + DARKEST_USABLE;
         n_pixels += 1.0;
@@ -111,7 +114,7 @@ fn pooled<'a>(seen: impl Iterator<Item = &'a SeenPaint>) -> DVec4 {
     (n_pixels / FULL_PIXELS).min(1.0) * (shown / expected).extend(1.0)
 }
 
-/// Every cell made certain from the coarser level, the coarsest from the model's own colour.
+/// Every cell completed from the coarser level, the coarsest from the model's own colour.
 fn filled(level: Volume) -> Volume {
     if level.side == 1 {
         return Volume::from_fn(1, |cell| {
@@ -126,7 +129,7 @@ fn filled(level: Volume) -> Volume {
     })
 }
 
-/// Sums of eight, where eight certain cells are no more certain than one.
+/// Sums of eight, in which eight certain cells count as one.
 fn halved(fine: &Volume) -> Volume {
     Volume::from_fn(fine.side / 2, |cell| {
         let children = (0..8).map(|k| 2 * cell + UVec3::new(k & 1, (k >> 1) & 1, k >> 2));

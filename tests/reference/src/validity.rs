@@ -1,19 +1,20 @@
-//! CPU reference of `validity.wgsl`: which pixels of the frame show what.
+//! CPU reference of `validity.wgsl`: the content of the frame's pixels.
 
 use glam::{IVec2, UVec2};
 
 use super::raster::Raster;
 
-/// Distance kept from the toy on a receiver, in pixels along each side: no pose is quite right.
+/// Margin around the toy on a receiver, in pixels along each side: no pose is exact.
 const EDGE_PX: i32 = 2;
-/// The same, in pixels, where a pixel is to tell its own plate: a compressed picture's colours bleed.
+/// The same for a pixel that determines its own plate: a compressed picture's colours bleed.
 const BLEED_PX: i32 = 8;
-/// Pixels from one that is looked at to the next, over the larger distance.
+/// Step between sampled pixels, over the larger distance.
 const BLEED_STEP_PX: usize = 2;
-/// Second difference of reversed depth, as a fraction of that in the middle, up to which a surface goes on.
+/// Second difference of reversed depth, as a fraction of the central one, up to which a surface is
+/// continuous.
 const DEPTH_BEND: f64 = 0.002;
 
-/// What a pixel shows.
+/// The marks of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Marks {
     /// It is clear of the toy.
@@ -24,8 +25,8 @@ pub struct Marks {
     pub is_well_clear: bool,
 }
 
-/// Marks a texel by the reversed depth of the physical toy around it, which is 0 where the toy is not and goes on beyond
-/// the border as it is there. The picture spreads the toy by `soft_px` pixels.
+/// Marks a texel by the reversed depth of the physical toy around it, which is 0 beside the toy and
+/// repeated outside of the picture. The picture blurs the toy by `soft_px` pixels.
 #[must_use]
 pub fn mark(depth: &Raster<f64>, soft_px: i32, texel: UVec2) -> Marks {
     let last = depth.size().as_ivec2() - 1;
@@ -36,7 +37,7 @@ pub fn mark(depth: &Raster<f64>, soft_px: i32, texel: UVec2) -> Marks {
     };
     let is_free = |x: i32, y: i32| at(IVec2::new(x, y)) == 0.0;
     let here = at(IVec2::ZERO);
-    // A slope is straight in reversed depth, a step between two surfaces is not.
+    // A slope is linear in reversed depth, a step between two surfaces is not.
     let is_straight = |side: IVec2| {
         let (before, after) = (at(-side), at(side));
         before > 0.0 && after > 0.0 && (before + after - 2.0 * here).abs() <= DEPTH_BEND * here

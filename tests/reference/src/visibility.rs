@@ -1,4 +1,5 @@
-//! CPU reference of the maps of `occlusion.wgsl`, and the same without its approximations: how much of a light a receiver point sees.
+//! CPU reference of the maps of `occlusion.wgsl`, and the same without its approximations:
+//! visibility of a light from a receiver point.
 
 use app_core::scene::Light;
 use app_scene::geometry::disc::vogel_disc;
@@ -9,16 +10,16 @@ use super::occlusion::{Caster, Occluder, hidden_share, hidden_share_from, sample
 use super::raster::Raster;
 use super::real::{Real, Vector};
 
-/// Visibility over a map of `map_px` texels of the region, from what a caster for each receiver leaves of a light.
+/// Visibility over a map of `map_px` texels of the region, with a caster for each receiver.
 ///
-/// A texel that looks past the receivers is wholly visible.
+/// A texel without receiver is fully visible.
 #[must_use]
 pub fn visibility_map<R: Real>(casters: &[Caster<R>], region: &Region, map_px: UVec2) -> Raster<f64> {
     let hidden = |texel| hidden_share(casters, region, (map_px, texel));
     Raster::from_fn(map_px, |texel| 1.0 - hidden(texel).unwrap_or(0.0))
 }
 
-/// The same of a picture that spreads a point, by a root of its covariance.
+/// The same for a blurred picture, given a root of the blur's covariance.
 #[must_use]
 pub fn soft_visibility_map<R: Real>(
     casters: &[Caster<R>],
@@ -31,11 +32,12 @@ pub fn soft_visibility_map<R: Real>(
     Raster::from_fn(map_px, |texel| 1.0 - hidden(texel).unwrap_or(0.0))
 }
 
-/// Share of a light's irradiance that reaches the receiver point (x, z), from `n_rays` rays over its outline.
+/// Share of a light's irradiance that reaches the receiver point (x, z), from `n_rays` rays over
+/// its outline.
 ///
-/// `light` is in plane space, and shines evenly in all directions. Rays are even in solid angle and weigh by their
-/// cosine. A light around the point, or one under the receiver, is wholly visible.
-/// Source: Shirley, Wang and Zimmerman 1996, section 3.2 (sampling the cone that a sphere fills).
+/// `light` is in plane space, and radiates uniformly. Rays are uniform in solid angle and weighted
+/// by their cosine. A light around the point, or one under the receiver, is fully visible. Source:
+/// Shirley, Wang and Zimmerman 1996, section 3.2 (sampling the cone of a sphere).
 #[must_use]
 pub fn exact_visibility<R: Real>(
     occluder: &Occluder<R>,

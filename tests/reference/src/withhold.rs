@@ -5,10 +5,11 @@ use glam::DVec4;
 use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
 use super::raster::Raster;
 
-/// Light left, in plates, below which a pixel is in the real shadow.
+/// Remaining light, in plates, below which a pixel is in the real shadow.
 const LIT: f64 = 0.95;
 
-/// The marks of `validity`, but none where a receiver is seen in shadow: there alpha is 0, and a half beside the toy.
+/// The marks of `validity`, without receiver pixels in shadow: alpha is 0 there, and a half beside
+/// the toy.
 #[must_use]
 pub fn withhold(
     region: &Region,

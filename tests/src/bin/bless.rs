@@ -1,6 +1,5 @@
-//! Makes the picture that each preset makes now the one that is expected of it, and the schema that the session reader
-//! has now the one that is kept, with the tables of its document; for the self-test the means of blocks. Never ends in
-//! success.
+//! Rewrites the goldens: the expected picture of each preset, the schema of sessions with the
+//! tables of its document, and the block means of the self-test. Never ends in success.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -16,11 +15,12 @@ use desk::output::{make_folder, write_png, write_whole};
 use harness::golden::{Goldens, SOFTWARE_ADAPTER, name_of, render};
 use harness::session_format::{DOCUMENT_FILE, SCHEMA_FILE, document_text, schema_text};
 
-/// Rewrite the golden pictures from what the presets make on the software adapter, session.schema.json, and the tables of session.md.
+/// Rewrite the golden pictures by the presets on the software adapter, session.schema.json, and the
+/// tables of session.md.
 #[derive(Parser)]
 #[command(name = "bless", bin_name = "cargo xtask bless")]
 struct Args {
-    /// Only those whose name contains this [default: all]
+    /// Only those whose name contains this text [default: all]
     #[arg(default_value = "")]
     filter: String,
 }
@@ -30,7 +30,7 @@ fn main() -> ExitCode {
         Ok(()) => eprintln!("blessed, look at what has changed, then run the tests again"),
         Err(error) => eprintln!("error: {error:#}"),
     }
-    // Success would let a script bless and go on, with no one having looked.
+    // Success would let a script go on without anyone having looked.
     ExitCode::FAILURE
 }
 
@@ -80,7 +80,7 @@ fn bless_pictures(named: Vec<(Preset, String)>) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What the core is to expect of a preset in its self-test, and the picture to look at.
+/// The expected block means of a preset's self-test, and its picture.
 fn bless_self_test(core: &mut Core, preset: Preset) -> anyhow::Result<()> {
     let picture = self_test::render(core, preset).with_context(|| preset.name())?;
     let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

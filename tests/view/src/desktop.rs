@@ -1,4 +1,5 @@
-//! A shell on a desktop: it does what the app asks for, with a session as its camera and a folder for what people keep.
+//! A desktop shell: it executes the app's commands, with a session as its camera and a folder for
+//! the user's files.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,14 +18,14 @@ use app_shell::worker::{Outcome, Pace, Platform, Worker};
 use super::feed::Feed;
 use super::moment::Moment;
 
-/// What a person keeps, and how.
+/// The user's files, and their options.
 #[derive(Clone, Debug)]
 pub struct Keeping {
-    /// Where photos, videos and recordings go.
+    /// Folder of photos, videos and recordings.
     pub out: PathBuf,
-    /// Quality of a recording's pictures; lossless without one.
+    /// Quality of a recording's pictures; `None` for lossless.
     pub jpeg_quality: Option<u8>,
-    /// The toy that a person chooses when asked, or a folder of toys to choose from in place of `out`.
+    /// The user's choice of a toy, or a folder of toys to choose from in place of `out`.
     pub toy_to_pick: Option<PathBuf>,
 }
 
@@ -54,16 +55,16 @@ impl Keeping {
 pub struct Desk {
     /// The app.
     pub live: Live,
-    /// Its camera.
+    /// Its camera feed.
     pub feed: Feed,
-    /// What a person answers when the camera is asked for.
+    /// The user's answer to the request for the camera.
     pub answer: Permission,
-    /// What a person keeps.
+    /// The user's files.
     pub keeping: Keeping,
     worker: Worker,
     is_tracking: bool,
     n_moments: usize,
-    /// Whether the device is to be opened anew.
+    /// Whether the device must be reopened.
     pub wants_device: bool,
 }
 
@@ -83,13 +84,13 @@ impl Desk {
         }
     }
 
-    /// Tells the app, and does what it asks for.
+    /// Passes an event to the app, and executes its commands.
     pub fn tell(&mut self, event: ShellEvent) {
         let commands = self.live.event(event);
         self.obey(commands);
     }
 
-    /// The camera goes on by `elapsed_s`, if it was asked to, and what threads have done is told.
+    /// Advances the camera by `elapsed_s`, if it is running, and passes on the results of threads.
     pub fn tick(&mut self, elapsed_s: f64) {
         self.settle();
         if self.is_tracking {
@@ -98,24 +99,26 @@ impl Desk {
         }
     }
 
-    /// Runs the alignments that wait, at a pace that has them wait.
+    /// Runs the waiting alignments, at a pace at which they wait.
     pub fn align(&mut self) {
         self.worker.align_waiting();
         self.settle();
     }
 
-    /// Passes on what came of work.
+    /// Passes on the results of work.
     fn settle(&mut self) {
         while let Some(outcome) = self.worker.outcome() {
             match outcome {
                 Outcome::Tell(event) => self.tell(event),
+                // No platform here recognises anything.
+                Outcome::Scan(_) => {}
                 Outcome::Written(file) => println!("{}", file.display()),
                 Outcome::Share(files) => files.iter().for_each(|file| println!("{}", file.display())),
             }
         }
     }
 
-    /// Draws on a screen that nobody sees, and returns what it shows.
+    /// Draws on an invisible screen, and returns its picture.
     ///
     /// # Errors
     /// As [`Live::screenshot`].
@@ -150,7 +153,7 @@ impl Desk {
         }
     }
 
-    /// Takes the toy that was named, if it is no folder of several.
+    /// Uses the named toy, unless it is a folder of several.
     fn pick_toy(&mut self) {
         match self.keeping.toy_to_pick.clone().filter(|path| !path.is_dir()) {
             Some(file) => self.pick(&file),
@@ -168,13 +171,13 @@ impl Desk {
             PlatformCommand::PauseTracking => self.is_tracking = false,
             PlatformCommand::Underexpose(is_on) => self.feed.is_dark = is_on,
             PlatformCommand::ReopenDevice => self.wants_device = true,
-            // A desktop has no screen that goes off, no lens to hold and no settings of its own.
+            // A desktop has no screen that turns off, no lens to fix and no settings of its own.
             _ => {}
         }
     }
 
-    /// Writes a page of the moment that is shown, with every preset, on a thread that tells where it is; none while the toy does not
-    /// move.
+    /// Writes a page of the present moment, with every preset, on a thread that reports its path;
+    /// `None` while the toy does not move.
     pub fn look_into(&mut self) -> Option<JoinHandle<()>> {
         let moment = Moment::of(self.live.app())?;
         let folder = self.keeping.out.join(format!("moment_{:04}", self.n_moments));
@@ -188,20 +191,20 @@ impl Desk {
         }))
     }
 
-    /// A person chose a toy's file.
+    /// The user chose a toy's file.
     pub fn pick(&mut self, path: &Path) {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         self.worker.read_toy(folder, name.into_owned());
     }
 
-    /// Waits until a recording that was ended is written, and tells.
+    /// Waits until an ended recording is written, and passes on the result.
     pub fn wait_for_recording(&mut self) {
         self.worker.wait_for_recording();
         self.settle();
     }
 
-    /// Leaves nothing unwritten behind.
+    /// Completes all writing.
     pub fn close(&mut self) {
         self.tell(ShellEvent::Foreground(false));
         self.wait_for_recording();

@@ -1,4 +1,4 @@
-//! What can go wrong around an app, to be tried on a desktop.
+//! Faults around an app, to be tried on a desktop.
 
 use app_core::app::{ArSession, GraphicsState, Permission, ShellEvent, Thermal};
 use app_core::camera_frame::Tracking;
@@ -6,7 +6,7 @@ use clap::ValueEnum;
 
 use super::feed::Feed;
 
-/// What goes wrong.
+/// A fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
 pub enum Fault {
     /// The camera is not allowed
@@ -25,7 +25,7 @@ pub enum Fault {
     TooPlain,
     /// It is too dark
     TooDark,
-    /// The place is looked for
+    /// The place is being searched
     Relocalising,
     /// The tracker begins another world
     NewWorld,
@@ -35,12 +35,12 @@ pub enum Fault {
     Hot,
     /// Memory is short
     MemoryLow,
-    /// The app leaves the front
+    /// The app goes to the background
     Background,
 }
 
 impl Fault {
-    /// What the shell tells of it; the camera is changed where that shows it.
+    /// The event at the beginning of the fault; the camera feed changes if it shows the fault.
     #[must_use]
     pub fn strikes(self, feed: &mut Feed) -> Option<ShellEvent> {
         let tracking = |feed: &mut Feed, tracking| {
@@ -68,7 +68,7 @@ impl Fault {
         }
     }
 
-    /// What the shell tells when it has passed.
+    /// The event at the end of the fault.
     #[must_use]
     pub fn passes(self, feed: &mut Feed) -> Option<ShellEvent> {
         match self {

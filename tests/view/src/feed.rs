@@ -1,4 +1,4 @@
-//! A session in place of a camera: its plate while the place is empty, then its frames, over and over.
+//! A session as a camera: its plate while the place is empty, then its frames in a loop.
 
 use std::sync::Arc;
 
@@ -14,14 +14,14 @@ use serde::Deserialize;
 use desk::files::SESSION_FILE;
 use desk::stored::Stored;
 
-/// Receivers whose normals are nearer than this to straight up are level planes: cosine of 10 degrees.
+/// Cosine of 10 degrees, the largest inclination of a level receiver.
 const LEVEL: f64 = 0.985;
 
-/// As the format has it.
+/// The format's limit.
 const MAX_INDEX_BYTES: u64 = 16 << 20;
 const MAX_TOY_BYTES: u64 = 256 << 20;
 
-/// Of the index no more than the name of the toy's file.
+/// The part of the index with the name of the toy's file.
 #[derive(Deserialize)]
 struct Index {
     toy: ToyEntry,
@@ -38,17 +38,17 @@ pub struct Feed {
     frames: Vec<SessionFrame>,
     planes: Arc<[FoundPlane]>,
     toy_file: Arc<[u8]>,
-    /// Whether the toy stands there.
+    /// Whether the toy is in the picture.
     pub is_toy_there: bool,
-    /// Whether the platform has found no plane yet.
+    /// Whether the platform has not found a plane yet.
     pub hides_planes: bool,
-    /// Whether the camera is darkened: it then sees what a session has of a probe.
+    /// Whether the camera is darkened: it then shows the session's probe picture.
     pub is_dark: bool,
-    /// How well the camera is followed; other than `Normal` it has no pose.
+    /// Quality of the tracking; without `Normal` there is no pose.
     pub tracking: Tracking,
-    /// How the picture is shown.
+    /// Presentation of the picture.
     pub display: Display,
-    /// Another number is another world.
+    /// Another number means another world.
     pub world_epoch: u32,
     next: usize,
     n_delivered: u64,
@@ -80,7 +80,7 @@ impl Feed {
         })
     }
 
-    /// All frames of a session that is stored somewhere, and its toy's file.
+    /// All frames of a stored session, and its toy's file.
     ///
     /// # Errors
     /// When one cannot be read.
@@ -93,7 +93,7 @@ impl Feed {
         })
     }
 
-    /// The toy's file; empty where the session came without it.
+    /// The toy's file; empty if the session came without it.
     #[must_use]
     pub fn toy_file(&self) -> Arc<[u8]> {
         Arc::clone(&self.toy_file)
@@ -137,7 +137,7 @@ impl Feed {
                 time_ns: self.time_ns,
                 world_epoch: self.world_epoch,
             },
-            // It is handed over as it is made.
+            // It is delivered as soon as it is made.
             age_ms: Some(0.0),
             image,
             intrinsics: camera.intrinsics,
@@ -159,7 +159,7 @@ impl Feed {
         }
     }
 
-    /// The card that the lens of a session would lie on.
+    /// The card under the lens of a session.
     fn world_from_card(&self) -> Option<DMat4> {
         let probe = self.scene.probe.as_ref()?;
         let is_lens = matches!(probe.shape, ProbeShape::FresnelLens { .. });
@@ -167,7 +167,7 @@ impl Feed {
         Some(first.world_from_probe * card_from_lens().inverse())
     }
 
-    /// Where the toy really stands, and the camera that sees it first.
+    /// Pose of the real toy, and the first camera that shows it.
     #[must_use]
     pub fn toy(&self) -> (&DMat4, &Camera) {
         let frame = &self.frames[0];
@@ -181,7 +181,7 @@ impl Feed {
     }
 }
 
-/// The receivers that a platform would find: all where none is level.
+/// The receivers that a platform would find: all if none is level.
 fn level_planes(scene: &Scene) -> Arc<[FoundPlane]> {
     let planes = (0..).zip(&scene.receivers).map(|(id, receiver)| FoundPlane {
         id,

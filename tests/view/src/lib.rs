@@ -1,4 +1,5 @@
-//! The app on a desktop: the same logic, interface, core and work as on a phone, fed by a session in place of a camera.
+//! The app on a desktop: the same logic, interface, core and background work as on a phone, with a
+//! session as its camera.
 
 pub mod desktop;
 pub mod fault;

@@ -1,5 +1,5 @@
-//! The moment that the app shows, as a session of one frame: replayed, it is a page with all presets side by side, the maps on the
-//! way and times, and a picture of the lights.
+//! The app's present moment as a session of one frame: its replay is a page with all presets side
+//! by side, the maps and times, and a picture of the lights.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -30,7 +30,7 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// What is shown now; none while the toy does not move.
+    /// The present moment; `None` while the toy does not move.
     #[must_use]
     pub fn of(app: &App) -> Option<Self> {
         let Show::Toy { scene, input, .. } = app.show() else {
@@ -40,7 +40,7 @@ impl Moment {
         if let Some(lights) = &input.lights {
             scene.lights = lights.to_vec();
         }
-        // Lights are known by now; a probe would tell them again.
+        // The lights are known already; a probe would be evaluated again.
         scene.probe = None;
         let frame = SessionFrame {
             time_secs: 0.0,
@@ -56,7 +56,8 @@ impl Moment {
         Some(Self { scene, frame })
     }
 
-    /// Draws it with every preset on a device of its own, as it is, and writes the page into a folder; its place.
+    /// Draws it with every preset on its own device, without alignment, and writes the page into a
+    /// folder; returns the page's path.
     ///
     /// # Errors
     /// When there is no device, a preset refuses, or nothing can be written.
@@ -74,7 +75,7 @@ impl Moment {
         Ok(folder.join(PAGE_FILE))
     }
 
-    /// The lights that the picture was made with, as rays from the toy's middle.
+    /// The lights of the picture, as rays from the toy's centre.
     fn draw_lights(&self, folder: &OutputFolder) -> anyhow::Result<()> {
         let mut picture = Image::clone(&self.frame.image);
         let input = FrameInput::from(&self.frame);

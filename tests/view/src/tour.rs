@@ -1,11 +1,13 @@
-//! A tour through every screen of the app, by a person who is simulated: what they see is written as pictures.
+//! A tour through every screen of the app by a simulated person: the screens are written as
+//! pictures.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-use app_core::app::{Permission, PhoneQuestion, ShellEvent, Step};
+use app_core::app::{Permission, PhoneQuestion, Placing, ShellEvent, Step};
 use app_core::core::CoreError;
 use app_core::interface::{Screen, Touch, TouchPhase};
-use glam::{DMat4, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 use thiserror::Error;
 
 use super::desktop::Desk;
@@ -14,25 +16,22 @@ use desk::output::{WriteError, make_folder, write_png};
 
 /// Time between two frames, in seconds.
 const FRAME_S: f64 = 1.0 / 30.0;
-/// Frames that a screen takes to settle: menus open, messages come.
+/// Number of frames until a screen is stable: menus open, messages appear.
 const N_SETTLE: usize = 4;
-/// Frames after which a step that did not come is not waited for.
+/// Number of frames to wait for a step.
 const N_PATIENCE: usize = 60;
-/// Frames that are recorded, and as many as screens take meanwhile.
+/// Number of recorded frames, which the screens meanwhile take.
 const N_RECORDED: usize = 24;
 /// Frames of a video.
 const N_VIDEO: usize = 15;
-/// How far off the simulated person leaves the ghost: in metres, and in radians.
-const GHOST_OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
-const GHOST_OFF_RAD: f64 = 0.1;
-/// Drags after which a button that is still out of sight is touched where it is.
+/// Number of frames after which the search for the toy has failed.
+const N_SEARCHED: usize = 150;
+/// Number of drags after which a button that is still out of sight is touched at its place.
 const N_SCROLLS: usize = 6;
-/// What a sheet leaves free below what can be touched in it, in points.
+/// Free margin of a sheet below its controls, in points.
 const SHEET_MARGIN_POINTS: f64 = 28.0;
-/// What a step of the wheel turns, in radians, as the interface has it.
-const WHEEL_RAD: f64 = 0.05;
 
-/// A tour that did not come to its end.
+/// A tour that ended early.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum TourError {
@@ -42,24 +41,27 @@ pub enum TourError {
     /// A picture cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// There is no such button.
+    /// A button is missing.
     #[error("at {at}: no button «{label}»; there are {found:?}")]
     NoButton {
         /// The step.
         at: String,
         /// The label.
         label: String,
-        /// Those that there are.
+        /// The existing buttons.
         found: Vec<String>,
     },
-    /// The app did not go where it should.
+    /// The toy that was put down was not found.
+    #[error("the toy was not found: {0:?}")]
+    NotFound(Placing),
+    /// The app is at the wrong step.
     #[error("after {after}: the step is {is:?}, not {expected:?}")]
     Astray {
-        /// What was done.
+        /// The last action.
         after: String,
-        /// Where it is.
+        /// The present step.
         is: Step,
-        /// Where it should be.
+        /// The expected step.
         expected: Step,
     },
 }
@@ -70,7 +72,20 @@ pub struct Tour<'a> {
     screen: Screen,
     out: PathBuf,
     time_s: f64,
+    n_touches: u32,
     written: Vec<PathBuf>,
+}
+
+/// The straight way from the first screen to the toy that moves.
+#[derive(Clone, Copy, Debug)]
+pub struct Way {
+    /// Touches of the screen.
+    pub n_touches: u32,
+    /// Time of the camera's pictures until then, in seconds: a thread's work takes none of it here.
+    pub camera_s: f64,
+    /// What threads and pictures took on this machine, in seconds: from the toy that was put down to the first ghost, from there to the
+    /// end of the search, and from there to the toy that moves.
+    pub machine_s: [f64; 3],
 }
 
 impl<'a> Tour<'a> {
@@ -87,14 +102,15 @@ impl<'a> Tour<'a> {
             screen,
             out: out.to_owned(),
             time_s: 0.0,
+            n_touches: 0,
             written: Vec::new(),
         })
     }
 
-    /// Goes all the way, and returns the pictures in their order.
+    /// Makes the whole tour, and returns the pictures in their order.
     ///
     /// # Errors
-    /// When the app does not go where it should.
+    /// When the app reaches a wrong step.
     pub fn go(mut self) -> Result<Vec<PathBuf>, TourError> {
         self.welcome()?;
         self.find_table()?;
@@ -103,6 +119,56 @@ impl<'a> Tour<'a> {
         self.play()?;
         self.faults()?;
         Ok(self.written)
+    }
+
+    /// Goes straight to the toy that moves.
+    ///
+    /// # Errors
+    /// When the app does not go where it should.
+    pub fn straight(mut self) -> Result<Way, TourError> {
+        self.desk.answer = Permission::Granted;
+        self.shoot_nothing()?;
+        self.press("Begin")?;
+        // A device compiles while the person looks around.
+        for _ in 0..N_PATIENCE {
+            if self.button("Here").is_ok() {
+                break;
+            }
+            self.frame()?;
+        }
+        self.press("Here")?;
+        self.wait_for(Step::PlaceToy, "the place was photographed")?;
+        let mut since = Instant::now();
+        let mut lap_s = || {
+            std::mem::replace(&mut since, Instant::now())
+                .elapsed()
+                .as_secs_f64()
+        };
+        let mut machine_s = [0.0; 3];
+        self.desk.feed.is_toy_there = true;
+        self.search(|placing| matches!(placing, Placing::Asked { .. }))?;
+        machine_s[0] = lap_s();
+        self.search(|placing| placing == Placing::Asked { is_searching: false })?;
+        machine_s[1] = lap_s();
+        self.press("Yes")?;
+        self.wait_for(Step::Play, "the toy was found")?;
+        machine_s[2] = lap_s();
+        Ok(Way {
+            n_touches: self.n_touches,
+            camera_s: self.time_s,
+            machine_s,
+        })
+    }
+
+    /// Waits until the search is so far.
+    fn search(&mut self, is_so_far: impl Fn(Placing) -> bool) -> Result<(), TourError> {
+        for _ in 0..N_SEARCHED {
+            if is_so_far(self.desk.live.app().placing()) {
+                return Ok(());
+            }
+            self.frame()?;
+        }
+        Err(TourError::NotFound(self.desk.live.app().placing()))
     }
 
     fn welcome(&mut self) -> Result<(), TourError> {
@@ -141,7 +207,7 @@ impl<'a> Tour<'a> {
         self.expect(Step::TakePlate, "the table was tapped")
     }
 
-    /// Each question of a new phone.
+    /// All questions of a new phone.
     fn check_phone(&mut self) -> Result<(), TourError> {
         self.press("Check this phone")?;
         for number in 1..=PhoneQuestion::ALL.len() {
@@ -157,16 +223,20 @@ impl<'a> Tour<'a> {
     }
 
     fn place_toy(&mut self) -> Result<(), TourError> {
+        self.shoot("put_toy")?;
         self.desk.feed.is_toy_there = true;
-        self.shoot("place_toy")?;
-        self.turn_ghost()?;
-        let at = self.toy_px(GHOST_OFF_M);
-        self.tap(at)?;
-        self.shoot("toy_placed")?;
+        self.search(|placing| matches!(placing, Placing::Asked { .. }))?;
+        self.shoot("first_ghost")?;
+        self.search(|placing| placing == Placing::Asked { is_searching: false })?;
+        self.shoot("asked")?;
+        self.press("Turn it")?;
+        self.shoot("turned")?;
+        self.press("Find it for me")?;
+        self.search(|placing| placing == Placing::Asked { is_searching: false })?;
         if self.desk.live.app().sees_card() {
             self.take_lens()?;
         }
-        self.press("It fits")?;
+        self.press("Yes")?;
         self.frame()?;
         self.expect(Step::Align, "the ghost was placed")?;
         self.shoot("align")?;
@@ -174,7 +244,7 @@ impl<'a> Tour<'a> {
         self.wait_for(Step::Play, "the toy was found")
     }
 
-    /// Of a session that has a picture of a lens.
+    /// For a session that has a picture of a lens.
     fn take_lens(&mut self) -> Result<(), TourError> {
         // A camera takes some frames to darken.
         self.press("Light from the lens")?;
@@ -197,7 +267,7 @@ impl<'a> Tour<'a> {
         }
         self.press("More")?;
         self.shoot("menu")?;
-        // Each of these changes what the sheet is made of, and with it where its buttons are.
+        // Each of these changes the contents of the sheet, and so the places of its buttons.
         for label in ["Show times", "Record the session", "Close", "Play"] {
             self.press(label)?;
             self.shoot_nothing()?;
@@ -266,7 +336,7 @@ impl<'a> Tour<'a> {
         self.during(Fault::NoAr)
     }
 
-    /// The screen while something goes wrong, and on until it has passed.
+    /// The screen during a fault, until it has passed.
     fn during(&mut self, fault: Fault) -> Result<(), TourError> {
         if let Some(event) = fault.strikes(&mut self.desk.feed) {
             self.desk.tell(event);
@@ -281,22 +351,12 @@ impl<'a> Tour<'a> {
         Ok(())
     }
 
-    /// Pixels of the picture where the toy's origin is seen, moved in the world.
+    /// The image of the toy's origin, moved in the world, in pixels.
     fn toy_px(&self, moved_m: DVec3) -> DVec2 {
         let (world_from_object, camera) = self.desk.feed.toy();
         let at = world_from_object.w_axis.truncate() + moved_m;
         let in_camera = camera.world_from_camera.inverse().transform_point3(at);
         camera.intrinsics.pixel_of(in_camera).unwrap_or(DVec2::ZERO)
-    }
-
-    /// Turns the ghost with the wheel until it faces as the toy does, but for a little.
-    fn turn_ghost(&mut self) -> Result<(), TourError> {
-        let (world_from_object, camera) = self.desk.feed.toy();
-        let yaw = |pose: &DMat4| pose.z_axis.x.atan2(pose.z_axis.z);
-        let to_camera = camera.world_from_camera.w_axis - world_from_object.w_axis;
-        let angle_rad = yaw(world_from_object) - to_camera.x.atan2(to_camera.z) + GHOST_OFF_RAD;
-        self.desk.live.wheel(angle_rad / WHEEL_RAD);
-        self.frame()
     }
 
     /// Touches a pixel of the camera's picture.
@@ -312,6 +372,7 @@ impl<'a> Tour<'a> {
     }
 
     fn touch(&mut self, at_px: [f64; 2]) -> Result<(), TourError> {
+        self.n_touches += 1;
         for phase in [TouchPhase::Began, TouchPhase::Ended] {
             self.desk.live.touch(Touch { id: 1, phase, at_px });
             self.frame()?;
@@ -319,7 +380,7 @@ impl<'a> Tour<'a> {
         Ok(())
     }
 
-    /// Touches a button by what a screen reader calls it, which may have to be scrolled to.
+    /// Touches a button by its accessibility label, after scrolling if needed.
     fn press(&mut self, label: &str) -> Result<(), TourError> {
         for _ in 0..N_SCROLLS {
             let [left, _, right, bottom] = self.button(label)?;
@@ -334,7 +395,8 @@ impl<'a> Tour<'a> {
         self.touch([0.5 * (left + right), 0.5 * (top + bottom)])
     }
 
-    /// Scrolls what is below a finger, which then rests for a while so that nothing rolls on.
+    /// Scrolls the contents below a finger, which then rests for a while so that the scrolling
+    /// stops.
     fn drag_up(&mut self, [x, y]: [f64; 2], by_px: f64) -> Result<(), TourError> {
         let phases = [
             (TouchPhase::Began, 0.0),
@@ -404,7 +466,7 @@ impl<'a> Tour<'a> {
         Ok(())
     }
 
-    /// Writes what the screen shows.
+    /// Writes the screen as a picture.
     fn shoot(&mut self, name: &str) -> Result<(), TourError> {
         self.shoot_nothing()?;
         self.time_s += FRAME_S;

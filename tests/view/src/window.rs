@@ -28,30 +28,30 @@ use super::feed::Feed;
 
 /// Time between two camera frames.
 const FRAME: Duration = Duration::from_millis(33);
-/// How long a fault lasts.
+/// Duration of a fault.
 const FAULT_S: f64 = 5.0;
-/// Time between two looks at the shaders' files.
+/// Interval between two checks of the shaders' files.
 const LOOK: Duration = Duration::from_secs(1);
 /// The mouse as a finger.
 const MOUSE: u64 = 0;
 
-/// What the window is opened with.
+/// Options of the window.
 pub struct Options {
     /// How much work a frame may cost.
     pub preset: Preset,
     /// Width and height in points.
     pub size_points: [u32; 2],
-    /// What goes wrong, and when, in seconds.
+    /// Faults, and their times in seconds.
     pub faults: Vec<(Fault, f64)>,
-    /// How large letters are; 1 is usual.
+    /// Scale of letters; 1 is usual.
     pub text_scale: f64,
-    /// Frames a second that are to be held.
+    /// Frames per second to keep.
     pub hold: Option<u32>,
-    /// What a person keeps.
+    /// The user's files.
     pub keeping: Keeping,
-    /// Shaders that are drawn with in place of those that are built in, as they are changed.
+    /// Shaders in place of the built-in ones, reloaded when they change.
     pub shaders: Option<ShaderFolder>,
-    /// Close by itself after so many seconds.
+    /// Number of seconds after which the window closes by itself.
     pub seconds: Option<f64>,
 }
 
@@ -90,7 +90,7 @@ struct Shell {
     last_frame: Option<Instant>,
     last_look: Option<Instant>,
     feed: Option<Feed>,
-    /// Where the mouse is, and whether it is down.
+    /// Position of the mouse, and whether it is pressed.
     pressed_at: Option<(PhysicalPosition<f64>, bool)>,
     options: Options,
     opened: Option<Opened>,
@@ -107,7 +107,7 @@ impl Shell {
             .with_title("Shadow retargeting")
             .with_inner_size(LogicalSize::new(width, height));
         let window = Arc::new(event_loop.create_window(attributes)?);
-        // Before a driver is asked for anything.
+        // Before any call of a driver.
         let history = starts::begin(&self.options.keeping.out, false);
         let core = self.core_on(&window)?;
         let mut live = Live::new(core, Arc::clone(&feed.scene().toy), self.options.preset);
@@ -134,7 +134,7 @@ impl Shell {
         ))?)
     }
 
-    /// One picture.
+    /// Draws one picture.
     fn draw(&mut self) -> Result<()> {
         self.strike_faults();
         self.reopen_device()?;
@@ -146,7 +146,7 @@ impl Shell {
         let elapsed = self.last_frame.map_or(FRAME, |last| now - last);
         if elapsed >= FRAME || self.last_frame.is_none() {
             self.last_frame = Some(now);
-            // The session's own empty place ends where the person puts the toy there.
+            // The session's own empty place ends when the person puts the toy there.
             desk.feed.is_toy_there |= desk.live.app().step() == app_core::app::Step::PlaceToy;
             desk.tick(elapsed.as_secs_f64());
         }
@@ -177,13 +177,13 @@ impl Shell {
         if let Some(opened) = &mut self.opened {
             opened.desk.live.reopen(core);
         }
-        // Another device begins with those that are built in.
+        // Another device begins with the built-in shaders.
         self.last_look = None;
         self.options.shaders.iter_mut().for_each(ShaderFolder::forget);
         Ok(())
     }
 
-    /// Draws with shaders that were changed; those that are refused are told of, and the latest good ones stay.
+    /// Draws with changed shaders; refused ones are reported, and the latest good ones stay.
     fn follow_shaders(&mut self) {
         let (Some(folder), Some(Opened { desk, .. })) = (&mut self.options.shaders, &mut self.opened) else {
             return;
@@ -213,7 +213,7 @@ impl Shell {
             if *at_s > 0.0 && time_s >= *at_s {
                 let event = fault.strikes(&mut desk.feed);
                 event.into_iter().for_each(|event| desk.tell(event));
-                // From now on the time that it ends, as a negative number.
+                // From now on the fault's end, as a negative number.
                 *at_s = -(time_s + FAULT_S);
             } else if *at_s < 0.0 && time_s >= -*at_s {
                 let event = fault.passes(&mut desk.feed);

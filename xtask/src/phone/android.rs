@@ -1,8 +1,8 @@
-//! The library of the Android shell: linked by the NDK, or without one against stand-ins for Android's libraries.
+//! The library of the Android shell: linked by the NDK, or without one against stub libraries.
 //!
-//! The stand-ins have the names of `app-android/imports.txt` and nothing else, so that the link proves that a phone of
-//! the listed API level has all that the library asks for. What it makes is not handed on: only the NDK's own start-up
-//! code and unwinder are what Android expects.
+//! The stubs have the names of `app-android/imports.txt` and nothing else, so that the link proves
+//! that a phone of the listed API level has all that the library imports. Its result is not for
+//! distribution: Android expects the NDK's own start-up code and unwinder.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -29,11 +29,12 @@ const TOOLS: [Tool; 2] = [
     Tool { program: CLANG, package: "clang-19" },
     Tool { program: LINKER, package: "lld-19" },
 ];
-/// Debian's unwinder for the phone's processor, which stands in for the NDK's.
+/// Debian's unwinder for the phone's processor, in place of the NDK's.
 const UNWINDER: &str = "libunwind-19-dev";
-/// Names of functions stay out of the library. An argument of the last link alone, so that nothing else is built anew.
+/// Strips function names from the library. This argument belongs to the last link alone, so that
+/// nothing else is rebuilt.
 const STRIP: &str = "-Wl,--strip-all";
-/// What that unwinder takes from glibc, in words of Android's library.
+/// Functions of glibc that this unwinder needs, implemented by Android's library.
 const SHIM: &str = r"
 extern int *__errno(void);
 extern void abort(void);
@@ -42,7 +43,7 @@ void __assert_fail(const char *what, const char *file, unsigned line, const char
 int __fprintf_chk(void *to, int flag, const char *format, ...) { return 0; }
 ";
 
-/// Links the library and makes a package of it.
+/// Links the library and packages it.
 pub(super) fn package(toolchain: &Toolchain, profile: Profile, arcore: Option<&Arcore>) -> Result<()> {
     let shell = toolchain.root.join(ANDROID.package);
     let folder = toolchain.root.join("target/phone/android");
@@ -74,7 +75,7 @@ pub(super) fn package(toolchain: &Toolchain, profile: Profile, arcore: Option<&A
     apk::make(&shell, &folder, file, arcore)
 }
 
-/// Names of the list that are there at the start; others are looked up while the app runs.
+/// Whether a name is resolved at the start; others are looked up at run time.
 fn is_linked(library: &str) -> bool {
     Path::new(library).extension().is_some_and(|end| end == "so")
 }
@@ -99,7 +100,7 @@ fn check(library: &Library) -> Result<()> {
     {
         bail!("a segment is aligned to {alignment} bytes, phones with pages of 16 KB refuse it");
     }
-    // The activity's glue begins here.
+    // The activity's glue starts here.
     if !library.exports.contains("ANativeActivity_onCreate") {
         bail!("no ANativeActivity_onCreate: the activity could not start");
     }
@@ -162,7 +163,8 @@ fn clang() -> Command {
     clang
 }
 
-/// Fetches the unwinder with lists and cache of its own, so that the machine keeps its one architecture.
+/// Fetches the unwinder with its own lists and cache, so that the machine keeps its one
+/// architecture.
 fn unwinder(folder: &Path) -> Result<PathBuf> {
     let unpacked = folder.join("unwinder");
     let library = unpacked.join("usr/lib/llvm-19/lib/libunwind.a");

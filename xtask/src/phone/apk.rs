@@ -1,5 +1,5 @@
-//! The Android package: resources, manifest, library and, where they can be had, ARCore's classes; aligned, signed,
-//! verified.
+//! The Android package: resources, manifest, library and, if available, ARCore's classes; aligned,
+//! signed, verified.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use super::tools::{self, Tool};
 use super::zip::{self, Entry};
 use crate::command;
 
-/// Tools of a package, where Android's own are missing.
+/// Tools of a package in place of Android's own.
 #[rustfmt::skip] // One tool a line.
 const TOOLS: [Tool; 4] = [
     Tool { program: "aapt2", package: "aapt" },
@@ -21,30 +21,30 @@ const TOOLS: [Tool; 4] = [
     Tool { program: "unzip", package: "unzip" },
     Tool { program: "keytool", package: "default-jre-headless" },
 ];
-/// What manifests refer to, from Debian: Android 10's.
+/// Debian's framework resources, of Android 10, which manifests refer to.
 const FRAMEWORK: &str = "/usr/share/android-framework-res/framework-res.apk";
 const FRAMEWORK_PACKAGE: &str = "android-framework-res";
 const KEYSTORE_PASSWORD: &str = "android";
 const HAS_CODE: &str = "android:hasCode=\"true\"";
 const LIBRARIES: &str = "lib/arm64-v8a";
-/// Level of the Android that brought `<queries>`: tools before it refuse the element.
+/// API level of the Android that introduced `<queries>`: older tools refuse the element.
 const QUERIES: u32 = 30;
-/// Attributes of our manifest that tools before a level refuse.
+/// Attributes of our manifest that tools below an API level refuse.
 const NEWER_ATTRIBUTES: [(&str, u32); 1] = [("android:enableOnBackInvokedCallback=\"false\"", 33)];
 
-/// Where the tools are: the SDK's, or Debian's.
+/// Paths of the tools: the SDK's, or Debian's.
 struct Tools {
     aapt2: PathBuf,
     apksigner: PathBuf,
-    /// What is compiled against.
+    /// The framework to compile against.
     framework: PathBuf,
-    /// The level of its Android, which decides what a manifest may hold.
+    /// Its API level, which decides on the permitted parts of a manifest.
     framework_api: u32,
-    /// Makes an Android program of Java's classes; only the SDK has it.
+    /// The compiler from Java classes to an Android program; only the SDK has it.
     d8: Option<PathBuf>,
 }
 
-/// Makes, signs and verifies a package around the shell's `library`, and says what it is.
+/// Makes, signs and verifies a package around the shell's `library`, and describes it.
 pub(super) fn make(shell: &Path, folder: &Path, library: Vec<u8>, arcore: Option<&Arcore>) -> Result<()> {
     make_with(&Tools::find()?, shell, folder, library, arcore)
 }
@@ -110,7 +110,7 @@ impl Tools {
         })
     }
 
-    /// Those of the SDK's newest parts.
+    /// The newest tools of the SDK.
     fn of_sdk(sdk: &Path) -> Result<Self> {
         let tools = ndk::newest_folder(&sdk.join("build-tools")).context("it has no build-tools")?;
         let platform = ndk::newest_folder(&sdk.join("platforms")).context("it has no platforms")?;
@@ -126,7 +126,8 @@ impl Tools {
     }
 }
 
-/// The level of a platform of the SDK's, which its folder is named after: `android-36`, `android-36.1`, `android-36-ext18`.
+/// The API level of an SDK's platform, from its folder's name: `android-36`, `android-36.1`,
+/// `android-36-ext18`.
 fn level_of(platform: &Path) -> Option<u32> {
     let name = platform.file_name()?.to_str()?;
     let number = name.strip_prefix("android-")?;
@@ -137,7 +138,7 @@ fn level_of(platform: &Path) -> Option<u32> {
         .ok()
 }
 
-/// The level that a framework says it is of; the oldest that the app runs on if it says none.
+/// The API level that a framework states; the oldest supported one if it states none.
 fn framework_level(framework: &str) -> u32 {
     let told = command::output("aapt2", &["dump", "badging", framework]).unwrap_or_default();
     let level = told
@@ -146,8 +147,8 @@ fn framework_level(framework: &str) -> u32 {
     level.unwrap_or(ndk::ANDROID_API)
 }
 
-/// Our manifest, joined with ARCore's, true about whether there are classes, and without what the framework of that level does not
-/// know: such a package is for looking at alone.
+/// Our manifest, merged with ARCore's, with the right statement about classes, and without parts
+/// that the framework of that level does not know: such a package is for inspection only.
 fn manifest_for(ours: &str, arcore: Option<&str>, has_code: bool, framework_api: u32) -> Result<String> {
     if ours.matches(HAS_CODE).count() != 1 {
         bail!("the manifest does not say {HAS_CODE} once");
@@ -182,14 +183,15 @@ fn manifest_for(ours: &str, arcore: Option<&str>, has_code: bool, framework_api:
     Ok(manifest)
 }
 
-/// What stands inside the first element `tag`.
+/// The contents of the first element `tag`.
 fn inside<'a>(xml: &'a str, tag: &str) -> Option<&'a str> {
     let from = &xml[xml.find(&format!("<{tag}"))?..];
     let inside = &from[from.find('>')? + 1..];
     Some(&inside[..inside.find(&format!("</{tag}>"))?])
 }
 
-/// Manifest and resources as Android reads them; the sources of their R classes go to the second folder.
+/// Manifest and resources as Android reads them; the sources of their R classes go to the second
+/// folder.
 fn resources(
     tools: &Tools,
     shell: &Path,
@@ -231,7 +233,7 @@ fn compile(tools: &Tools, resources: &Path, compiled: PathBuf) -> Result<PathBuf
     Ok(compiled)
 }
 
-/// A number that grows with the version, as the store asks: two digits for each part.
+/// A number that grows with the version, as the store requires: two digits for each part.
 fn version_code(version: &str) -> Result<u32> {
     version.split('.').try_fold(0, |code, part| {
         let part: u32 = part.parse().with_context(|| format!("version {version}"))?;
@@ -242,7 +244,7 @@ fn version_code(version: &str) -> Result<u32> {
     })
 }
 
-/// Signs with a key of this machine alone, as for trying out.
+/// Signs with a key of this machine alone, for trials.
 fn sign(tools: &Tools, folder: &Path, apk: &Path) -> Result<()> {
     let keystore = folder.join("debug.keystore");
     if !keystore.is_file() {
@@ -262,7 +264,7 @@ fn sign(tools: &Tools, folder: &Path, apk: &Path) -> Result<()> {
     }
     let level = ndk::ANDROID_API.to_string();
     let mut sign = Command::new(&tools.apksigner);
-    // Every phone of that level takes the later schemes, which cover the whole file.
+    // Every phone of that level supports the later schemes, which cover the whole file.
     sign.args([
         "sign",
         "--v1-signing-enabled",

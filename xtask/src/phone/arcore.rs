@@ -1,7 +1,9 @@
-//! ARCore's archive: unpacked, its resources and their R classes, and all of its classes as an Android program.
+//! Unpacks ARCore's archive: its resources and their R classes, and all of its classes as an
+//! Android program.
 //!
-//! An archive brings resources and the names of their numbers, but not the R classes that hold the numbers: these are made with the
-//! package, of all resources together. Its activity that installs ARCore uses them, and ends the app if they are missing.
+//! An archive has resources and the names of their numbers, but not the R classes with the numbers:
+//! these are made with the package, from all resources together. Its activity that installs ARCore
+//! uses them, and ends the app if they are missing.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -21,12 +23,13 @@ const COMPILER: Tool = Tool {
     package: "default-jdk-headless",
 };
 
-/// ARCore's archive of classes, library, resources and manifest (`com.google.ar:core`), which is not ours to hand on.
+/// ARCore's archive of classes, library, resources and manifest (`com.google.ar:core`), which may
+/// not be redistributed.
 #[derive(Clone)]
 pub(crate) struct Arcore {
-    /// Where it lies.
+    /// Path of the archive.
     pub(crate) archive: PathBuf,
-    /// What it must be, in hexadecimal.
+    /// Its required checksum, in hexadecimal.
     pub(crate) sha256: String,
 }
 
@@ -63,7 +66,7 @@ impl Unpacked {
         name.context("the manifest of ARCore's archive names no package")
     }
 
-    /// Where its resources are, if there are any.
+    /// The folder of its resources, if there are any.
     pub(super) fn resources(&self) -> Option<PathBuf> {
         let folder = self.folder.join("res");
         let has_any = folder
@@ -72,8 +75,8 @@ impl Unpacked {
         has_any.then_some(folder)
     }
 
-    /// Its classes with those of its resources, whose sources `aapt2` has written into `sources`: looked through, and made an
-    /// Android program if the SDK's compiler is there.
+    /// Its classes with those of its resources, whose sources `aapt2` has written into `sources`:
+    /// checked, and compiled to an Android program if the SDK's compiler is installed.
     pub(super) fn program(
         &self,
         framework: &Path,
@@ -88,7 +91,7 @@ impl Unpacked {
         let mut read = Vec::new();
         for file in files.iter().flatten().filter(|file| is_class(file)) {
             let class = ClassFile::read(&fs::read(file)?).with_context(|| file.display().to_string())?;
-            // What an archive says of itself as a module is no class.
+            // The archive's module description is no class.
             if class.name != "module-info" {
                 read.push(class);
             }
@@ -105,7 +108,7 @@ impl Unpacked {
         Ok(Some(fs::read(self.folder.join("classes.dex"))?))
     }
 
-    /// The R classes of its package, in a folder of their own.
+    /// Compiles the R classes of its package, in their own folder.
     fn compile_r(&self, sources: &Path) -> Result<PathBuf> {
         let compiled = self.folder.join("r");
         fs::create_dir_all(&compiled)?;
@@ -125,7 +128,8 @@ fn is_class(file: &Path) -> bool {
     file.extension().is_some_and(|end| end == "class")
 }
 
-/// The classes of an archive of Java's, by their files; none if it has none, as an archive of resources alone.
+/// The classes of a Java archive, by their files; `None` if it has none, like an archive of
+/// resources alone.
 fn classes_of(jar: &Path) -> Option<BTreeSet<String>> {
     let list = command::output("unzip", &["-Z1", &jar.display().to_string()])?;
     let classes = list.lines().filter_map(|name| name.strip_suffix(".class"));
@@ -151,7 +155,7 @@ pub(super) fn files_below(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Unpacks into a folder that has nothing else.
+/// Unpacks into an empty folder.
 pub(super) fn unzip(archive: &Path, folder: &Path) -> Result<()> {
     let _ = fs::remove_dir_all(folder);
     fs::create_dir_all(folder)?;

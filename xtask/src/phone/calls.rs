@@ -1,4 +1,4 @@
-//! The table of what the shells call of their platforms, with what each call has been through.
+//! The table of the shells' calls of their platforms, with the test status of each.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -20,7 +20,7 @@ Made by `cargo xtask calls`; a test compares it with the sources. Nothing here h
 - **untried**: compiled for the phone, and nothing more. A class stands for all messages to it that no other row names.
 ";
 
-/// A file of the shells whose calls are looked for, by how they stand there.
+/// A source file of the shells, and the form of its calls.
 struct Source {
     text: String,
     path: String,
@@ -46,7 +46,8 @@ fn sources(shell: &Path, packages: [&str; 2]) -> Result<Vec<Source>> {
     Ok(sources)
 }
 
-/// Names that a file takes from packages whose names begin with `package`: classes, structs, functions.
+/// Names that a file imports from packages whose names begin with `package`: classes, structs,
+/// functions.
 fn taken_from(text: &str, package: &str) -> Vec<String> {
     let taking = format!("use {package}");
     let uses = text.split(&taking).skip(1);
@@ -62,7 +63,7 @@ fn taken_from(text: &str, package: &str) -> Vec<String> {
         .collect()
 }
 
-/// What stands in the brackets after each `before`.
+/// The contents of the brackets after each `before`.
 fn inside<'a>(text: &'a str, before: &'a str) -> impl Iterator<Item = &'a str> {
     text.split(before)
         .skip(1)
@@ -143,7 +144,7 @@ impl Calls {
 
     fn linked(&mut self, imports: &Imports) {
         for (library, names) in imports.libraries() {
-            // What is no library is a value that is handed on while the app runs.
+            // Other entries are values that are passed at run time.
             let is_library = library.starts_with('/') || library.ends_with(".so");
             let mark = if is_library { "linked" } else { "untried" };
             for name in names {

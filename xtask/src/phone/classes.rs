@@ -1,6 +1,8 @@
-//! Class files of Java: which classes they are, and which they name, so that a package that lacks one is refused here.
+//! Java class files: their names and the classes they refer to, so that a package with a missing
+//! class is refused here.
 //!
-//! Source: The Java Virtual Machine Specification, chapter 4: `ClassFile`, the constant pool and its tags.
+//! Source: The Java Virtual Machine Specification, chapter 4: `ClassFile`, the constant pool and
+//! its tags.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,7 +10,7 @@ use anyhow::{Context, Result, bail};
 
 const MAGIC: u32 = 0xcafe_babe;
 
-/// Packages that Android itself brings, if no list of its classes is at hand.
+/// Packages that Android itself provides, if no list of its classes is available.
 const PLATFORM: [&str; 8] = [
     "android/",
     "dalvik/",
@@ -20,17 +22,17 @@ const PLATFORM: [&str; 8] = [
     "org/xmlpull/v1/",
 ];
 
-/// A class, and the classes that its constant pool names.
+/// A class, and the classes in its constant pool.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct ClassFile {
-    /// With slashes, as all names here.
+    /// With slashes, like all names here.
     pub(super) name: String,
-    /// Arrays as what they are of.
+    /// Arrays as their element types.
     pub(super) names: BTreeSet<String>,
 }
 
 impl ClassFile {
-    /// Reads the constant pool, and the class's own name behind it.
+    /// Reads the constant pool, and the class's own name after it.
     pub(super) fn read(bytes: &[u8]) -> Result<Self> {
         let mut reader = Reader { bytes, at: 0 };
         if reader.u32()? != MAGIC {
@@ -48,7 +50,7 @@ impl ClassFile {
     }
 }
 
-/// What an array is of; the class itself if it is none; none of what is no class.
+/// The element type of an array; the class itself if it is none; `None` for a primitive type.
 fn element(name: &str) -> Option<String> {
     let Some(of) = name.strip_prefix('[') else {
         return Some(name.to_owned());
@@ -57,11 +59,11 @@ fn element(name: &str) -> Option<String> {
     Some(of.strip_prefix('L')?.strip_suffix(';')?.to_owned())
 }
 
-/// A constant pool, as far as it is about classes.
+/// The classes of a constant pool.
 #[derive(Default)]
 struct Pool {
     words: BTreeMap<u16, String>,
-    /// Index of the name by that of the class.
+    /// Index of a class's name by the index of the class.
     classes: BTreeMap<u16, u16>,
 }
 
@@ -87,7 +89,7 @@ impl Pool {
                 5 | 6 => reader.skip(8)?,
                 _ => bail!("a constant of kind {tag}, which is not known"),
             }
-            // A long and a double take two places.
+            // A long and a double take two entries.
             index += if matches!(tag, 5 | 6) { 2 } else { 1 };
         }
         Ok(pool)
@@ -131,10 +133,10 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Refuses classes that name what neither they nor the platform have.
+/// Refuses classes that refer to others which neither they nor the platform have.
 ///
-/// `of_platform` has the classes that the framework was seen to have, as a list of an archive's files; none if only their packages
-/// are known.
+/// `of_platform` has the classes of the framework, as a list of an archive's files; `None` if only
+/// their packages are known.
 pub(super) fn check_closure(classes: &[ClassFile], of_platform: Option<&BTreeSet<String>>) -> Result<()> {
     let own: BTreeSet<&str> = classes.iter().map(|class| class.name.as_str()).collect();
     let is_there = |name: &str| {
@@ -162,7 +164,7 @@ pub(super) fn check_closure(classes: &[ClassFile], of_platform: Option<&BTreeSet
     )
 }
 
-/// The bytes of a class that names others: for tests, without a compiler of Java.
+/// The bytes of a class that refers to others: for tests, without a Java compiler.
 #[cfg(test)]
 pub(super) fn class_file(name: &str, names: &[&str]) -> Vec<u8> {
     let mut pool = Vec::new();
@@ -181,7 +183,7 @@ pub(super) fn class_file(name: &str, names: &[&str]) -> Vec<u8> {
     for name in names {
         class(name);
     }
-    // A long, which takes two places, and a string of the class's own name.
+    // A long, which takes two entries, and a string of the class's own name.
     pool.push(5);
     pool.extend([0; 8]);
     n_entries += 2;

@@ -1,6 +1,7 @@
-//! What a library for Android asks of the system, read from its ELF headers.
+//! The imports of an Android library, read from its ELF headers.
 //!
-//! Source: System V ABI, "Object Files" and "Program Loading and Dynamic Linking", for 64-bit little-endian files.
+//! Source: System V ABI, "Object Files" and "Program Loading and Dynamic Linking", for 64-bit
+//! little-endian files.
 
 use std::collections::BTreeSet;
 
@@ -19,17 +20,17 @@ const SYMBOL_TABLE: u64 = 11;
 #[derive(Debug)]
 pub(crate) struct Library {
     pub(crate) machine: u64,
-    /// Alignment of each segment that is mapped, bytes.
+    /// Alignment of each mapped segment, bytes.
     pub(crate) alignments: Vec<u64>,
-    /// Libraries that it needs.
+    /// Required libraries.
     pub(crate) needed: BTreeSet<String>,
-    /// Names that others have to bring, without those that may be missing.
+    /// Imported names, without optional ones.
     pub(crate) imports: BTreeSet<String>,
-    /// Names that it brings.
+    /// Exported names.
     pub(crate) exports: BTreeSet<String>,
 }
 
-/// A segment, as far as it is looked at.
+/// The relevant fields of a segment.
 struct Segment {
     kind: u64,
     offset: u64,
@@ -98,7 +99,7 @@ fn needed(file: &[u8], segments: &[Segment]) -> Result<BTreeSet<String>> {
     names.map(|(_, name)| text(file, strings + name)).collect()
 }
 
-/// Names that are imported and names that are exported.
+/// Imported and exported names.
 fn symbols(file: &[u8]) -> Result<(BTreeSet<String>, BTreeSet<String>)> {
     let (table, size, count) = (number(file, 40, 8)?, number(file, 58, 2)?, number(file, 60, 2)?);
     let (mut imports, mut exports) = (BTreeSet::new(), BTreeSet::new());
@@ -109,7 +110,7 @@ fn symbols(file: &[u8]) -> Result<(BTreeSet<String>, BTreeSet<String>)> {
         let (offset, n_bytes) = (number(file, section + 24, 8)?, number(file, section + 32, 8)?);
         let linked = table + number(file, section + 40, 4)? * size;
         let strings = number(file, linked + 24, 8)?;
-        // The first symbol is none.
+        // The first symbol is a null entry.
         for symbol in (offset..offset + n_bytes).step_by(24).skip(1) {
             let name = text(file, strings + number(file, symbol, 4)?)?;
             let (binding, defined_in) = (number(file, symbol + 4, 1)? >> 4, number(file, symbol + 6, 2)?);

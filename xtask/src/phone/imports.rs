@@ -1,7 +1,7 @@
-//! The lists of what the shells ask of their systems, and stand-ins for the systems' libraries made of nothing else.
+//! The lists of the shells' imports, and stub libraries made from them alone.
 //!
-//! With such a stand-in, a link fails at a name that no list has; nothing of Android's or Apple's is needed for it, and
-//! nothing that comes out of it is an app to hand on.
+//! With such a stub, a link fails at a name that no list has; nothing of Android's or Apple's is
+//! needed for it, and its result is not for distribution.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -10,15 +10,15 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 
-/// Names by the library that brings them, each with what the list says of it.
+/// Names by their library, each with its API level.
 #[derive(Debug, Default)]
 pub(crate) struct Imports {
     by_library: BTreeMap<String, BTreeMap<String, u32>>,
 }
 
 impl Imports {
-    /// Reads a list: on each line a library, a name and, for Android, the API level that first has it. For an iPhone, a
-    /// library without a name is loaded and asked for nothing.
+    /// Reads a list: on each line a library, a name and, for Android, the first API level with it.
+    /// For an iPhone, a library without a name is loaded without imports.
     pub(crate) fn read(path: &Path, has_level: bool) -> Result<Self> {
         let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
         Self::parse(&text, has_level).with_context(|| path.display().to_string())
@@ -62,7 +62,7 @@ impl Imports {
         levels.copied().max().unwrap_or_default()
     }
 
-    /// Fails where the names that a file `asks` for are others than those listed of `libraries`.
+    /// Fails if the names that a file `asks` for differ from those listed for `libraries`.
     pub(crate) fn compare(&self, asks: &BTreeSet<String>, is_linked: impl Fn(&str) -> bool) -> Result<()> {
         let listed: BTreeSet<&str> = self
             .libraries()
@@ -82,7 +82,7 @@ impl Imports {
     }
 }
 
-/// Assembly of a library with `names` and nothing in it.
+/// Assembly of a library with `names` and no code.
 pub(crate) fn assembly(names: &[&str]) -> String {
     let mut text = String::from(".text\n");
     for name in names {

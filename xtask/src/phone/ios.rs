@@ -1,7 +1,9 @@
-//! The iPhone app: made by Xcode on a Mac; elsewhere linked against stand-ins for Apple's libraries and packed.
+//! The iPhone app: built by Xcode on a Mac; on other systems linked against stubs of Apple's
+//! libraries and packed.
 //!
-//! The stand-ins are text stubs with the names of `app-ios/imports.txt` and nothing else, so that the link proves that
-//! the shell asks for no more. Nothing of Apple's is needed, and what comes out is not an app that a phone takes.
+//! The stubs are text stubs with the names of `app-ios/imports.txt` and nothing else, so that the
+//! link proves that the shell imports nothing else. Nothing of Apple's is needed, and no phone
+//! accepts the resulting app.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,9 +21,9 @@ use crate::toolchain::Toolchain;
 
 const NAME: &str = "ShadowRetargeting";
 pub(super) const BUNDLE: &str = "org.example.ShadowRetargeting";
-/// Oldest iOS; the project for Xcode says the same.
+/// Oldest supported iOS; the project for Xcode has the same.
 const OLDEST: [u32; 2] = [16, 0];
-/// Whose stand-ins the link stands for.
+/// The SDK version of the stubs.
 const SDK: &str = "18.0";
 const CLANG: &str = "clang-19";
 const LINKER: &str = "ld64.lld-19";
@@ -30,7 +32,7 @@ const TOOLS: [Tool; 2] = [
     Tool { program: CLANG, package: "clang-19" },
     Tool { program: LINKER, package: "lld-19" },
 ];
-/// Loaded although no name of it is imported: its classes are looked up while the app runs.
+/// Loaded although no name of it is imported: its classes are looked up at run time.
 const ARKIT: &str = "/System/Library/Frameworks/ARKit.framework/ARKit";
 
 /// Makes the app as far as this machine can.
@@ -93,7 +95,7 @@ fn by_stand_ins(toolchain: &Toolchain, profile: Profile, shell: &Path) -> Result
     pack(shell, &folder, file)
 }
 
-/// Links `main.c` and the library against stand-ins.
+/// Links `main.c` and the library against stubs.
 fn link(
     toolchain: &Toolchain,
     profile: Profile,
@@ -119,7 +121,8 @@ fn link(
     let program = folder.join(NAME);
     let mut link = Command::new(LINKER);
     link.args(["-arch", "arm64", "-platform_version", "ios", &oldest, SDK]);
-    // Without what nobody calls, without names for a debugger, with the signature that arm64 asks for at least.
+    // Without unused code, without symbols for a debugger, with the minimal signature that arm64
+    // requires.
     link.args(["-dead_strip", "-S", "-x", "-adhoc_codesign", "-syslibroot"])
         .arg(&sdk);
     link.arg("-o").arg(&program).arg(&object);
@@ -131,9 +134,9 @@ fn link(
             .join(profile.name())
             .join("libapp_ios.a"),
     );
-    // Every missing name at once.
+    // Reports every missing name at once.
     link.arg("--error-limit=0");
-    // By their paths, so that each is loaded whether or not a name of it is imported.
+    // By their paths, so that each is loaded even without imports.
     command::run(link.args(libraries))?;
     Ok(program)
 }
@@ -151,7 +154,7 @@ fn check(executable: &Executable, imports: &Imports) -> Result<()> {
     imports.compare(&executable.imports, |_| true)
 }
 
-/// Packs the app as an archive of one.
+/// Packs the app as an archive.
 fn pack(shell: &Path, folder: &Path, program: Vec<u8>) -> Result<()> {
     let app = format!("Payload/{NAME}.app");
     let entry = |name: &str, bytes: Vec<u8>| Entry {
@@ -186,7 +189,7 @@ fn pack(shell: &Path, folder: &Path, program: Vec<u8>) -> Result<()> {
     Ok(())
 }
 
-/// The property list with the variables that Xcode would have put in.
+/// The property list with Xcode's variables filled in.
 fn properties(text: &str) -> Result<String> {
     let filled = [
         ("$(EXECUTABLE_NAME)", NAME),
@@ -253,7 +256,7 @@ mod tests {
         assert!(project.contains(&format!("name: {NAME}\n")));
     }
 
-    /// Names that Apple asks reasons for, and under which heading.
+    /// APIs for which Apple requires reasons, with their categories.
     const REASONS: [(&str, &str); 10] = [
         ("_fstat", "FileTimestamp"),
         ("_stat", "FileTimestamp"),

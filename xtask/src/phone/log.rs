@@ -1,4 +1,5 @@
-//! What a phone has written, fetched by cable: the app's log, its times and its recordings, and what it wrote into the system's own log.
+//! Fetches files from a phone by cable: the app's log, its times and its recordings, and its
+//! messages in the system's log.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,23 +10,24 @@ use anyhow::{Context, Result, bail};
 use super::{ANDROID, Phone};
 use crate::command;
 
-/// The Android app's folder that a cable reaches.
+/// The Android app's folder that is accessible by cable.
 const ANDROID_FILES: &str = "/sdcard/Android/data/org.example.shadowretargeting/files/.";
-/// What the app prints comes there by this name.
+/// Tag of the app's output in the system's log.
 const ANDROID_TAG: &str = "RustStdoutStderr";
-/// The log that the app writes as it runs.
+/// The log that the app writes at run time.
 const LOG: &str = "log.txt";
-/// Lines of it that are shown at once: how far the device's test picture is off, and what ended or began.
+/// Lines of it that are printed at once: the error of the device's test picture, and starts and
+/// ends.
 const SHOWN: [&str; 4] = ["test picture", "self-test", "preset fast", "Simplified"];
 
-/// Which iPhone, and which app on it, since each team has an identifier of its own.
+/// The iPhone, and the app on it, since each team has its own identifier.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct IphoneApp {
     pub(crate) device: Option<String>,
     pub(crate) bundle: Option<String>,
 }
 
-/// Fetches it into a folder of `target`.
+/// Fetches the files into a folder of `target`.
 pub(super) fn fetch(root: &Path, phone: &Phone, app: &IphoneApp) -> Result<()> {
     let folder = root.join("target/phone/log").join(phone.package);
     if phone.package == ANDROID.package {
@@ -59,7 +61,7 @@ fn fetch_iphone(xcrun: &Path, folder: &Path, app: &IphoneApp) -> Result<()> {
     show(folder)
 }
 
-/// Makes the folder, without what was fetched before: an old log would pass for the one of now.
+/// Makes the folder, and removes earlier files: an old log could be mistaken for the present one.
 fn empty(folder: &Path) -> Result<()> {
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("{} has to be emptied", folder.display()))?;
@@ -67,7 +69,7 @@ fn empty(folder: &Path) -> Result<()> {
     Ok(fs::create_dir_all(folder)?)
 }
 
-/// Says where all is, and the lines that one looks for first.
+/// Prints the path of the files, and the most important lines.
 fn show(folder: &Path) -> Result<()> {
     let log: Option<PathBuf> = [folder.join(LOG), folder.join("Documents").join(LOG)]
         .into_iter()
@@ -89,7 +91,7 @@ fn show(folder: &Path) -> Result<()> {
 mod tests {
     use super::*;
 
-    /// A program that notes what it was asked for and does what `script` says.
+    /// A program that records its arguments and runs `script`.
     fn stand_in(folder: &Path, script: &str) -> PathBuf {
         let program = folder.join("program");
         let note = format!("#!/bin/sh\necho \"$*\" >> {}/asked\n{script}\n", folder.display());
@@ -137,7 +139,7 @@ mod tests {
         assert!(error.contains("--device"), "{error}");
 
         let nothing = stand_in(&folder, "true");
-        // What was fetched before is not shown for it.
+        // Earlier files are not shown as new ones.
         fs::write(to.join("log.txt"), "old").expect("a log");
         let error = fetch_android(&nothing, &to).expect_err("no log").to_string();
         assert!(error.contains("no log.txt"), "{error}");

@@ -1,4 +1,4 @@
-//! What an executable for an iPhone asks of the system, read from its Mach-O load commands.
+//! The imports of an iPhone executable, read from its Mach-O load commands.
 //!
 //! Source: Apple, `mach-o/loader.h` and `mach-o/nlist.h`, for 64-bit little-endian files.
 
@@ -10,7 +10,7 @@ use anyhow::{Context, Result, bail};
 pub(crate) const ARM64: u32 = 0x0100_000c;
 /// Platform number of iOS.
 pub(crate) const IOS: u32 = 2;
-/// A file that is run.
+/// Kind of an executable file.
 pub(crate) const EXECUTABLE: u32 = 2;
 
 const MAGIC: u32 = 0xfeed_facf;
@@ -26,11 +26,11 @@ pub(crate) struct Executable {
     pub(crate) processor: u32,
     /// Kind of file.
     pub(crate) kind: u32,
-    /// Platform and oldest version of it, as major and minor number.
+    /// Platform and its oldest supported version, as major and minor number.
     pub(crate) platform: Option<(u32, [u32; 2])>,
     /// Libraries and frameworks that are loaded with it.
     pub(crate) loads: BTreeSet<String>,
-    /// Names that those have to bring.
+    /// Imported names.
     pub(crate) imports: BTreeSet<String>,
 }
 
@@ -77,7 +77,7 @@ impl Executable {
 }
 
 fn imports(file: &[u8], command: &[u8]) -> Result<BTreeSet<String>> {
-    // Bits of a symbol's type: for the debugger, kind (none is 0), known outside.
+    // Bits of a symbol's type: for the debugger, kind (0 is undefined), external.
     const DEBUG: u8 = 0xe0;
     const KIND: u8 = 0x0e;
     const EXTERNAL: u8 = 0x01;

@@ -1,4 +1,4 @@
-//! The two shells: checked, built and packaged on any machine, each as far as that machine goes.
+//! The two shells: checked, built and packaged on any machine, each as far as possible there.
 
 mod android;
 mod apk;
@@ -44,28 +44,28 @@ pub(crate) const ANDROID: Phone = Phone {
     target: "aarch64-linux-android",
 };
 
-/// What to do with a shell.
+/// The action for a shell.
 pub(crate) enum Action {
     Check,
     Build,
-    /// With ARCore's archive, if Android's own tools are there; for engineers or for everybody.
+    /// With ARCore's archive, if Android's own tools are installed; for engineers or for everybody.
     Package(Option<Arcore>, Profile),
-    /// Of a phone at a cable.
+    /// Fetches the files of a phone by cable.
     Log(IphoneApp),
 }
 
-/// How a library is compiled.
+/// The build profile of a library.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Profile {
     /// For everybody.
     #[default]
     Release,
-    /// For engineers with a phone that the app never ran on: what can be checked while it runs is, and nothing falls back by itself.
+    /// For engineers with an untested phone: with all run-time checks, and without fallbacks.
     FirstPhone,
 }
 
 impl Profile {
-    /// As cargo calls it, and the folder of what it makes.
+    /// Cargo's name of the profile, and the folder of its output.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Release => "release",
@@ -91,7 +91,7 @@ impl Phone {
         clippy
     }
 
-    /// The library, with `args` for the linker, or for whoever makes an archive in its place.
+    /// The library, with `args` for the linker or the archiver.
     fn build(&self, toolchain: &Toolchain, profile: Profile, linker_args: &[String]) -> Result<Command> {
         let mut build = toolchain.cargo("rustc");
         build.args([

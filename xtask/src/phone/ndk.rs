@@ -1,4 +1,4 @@
-//! Android's own tools: where NDK and SDK lie.
+//! Paths of Android's own tools: NDK and SDK.
 
 use std::env;
 use std::ffi::OsString;
@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 
-/// Oldest Android that the shell runs on, as an API level. The manifest says the same, and the list of imports why.
+/// Oldest supported Android, as an API level. The manifest has the same, and the list of imports
+/// shows why.
 pub(super) const ANDROID_API: u32 = 28;
 
-/// Where cargo finds the NDK's linker, and build scripts its compiler.
+/// The NDK's linker for cargo, and its compiler for build scripts.
 pub(super) fn ndk_tools() -> Result<[(&'static str, PathBuf); 3]> {
     let ndk = ndk().context("no NDK found; set ANDROID_NDK_HOME to its folder")?;
     let prebuilt = ndk.join("toolchains/llvm/prebuilt");
@@ -54,7 +55,7 @@ fn folder_named_by(variable: &str) -> Option<PathBuf> {
         .filter(|path| path.is_dir())
 }
 
-/// The SDK keeps versions of a part under their numbers.
+/// The SDK keeps versions of a part in folders of their numbers.
 pub(super) fn newest_folder(parent: &Path) -> Option<PathBuf> {
     let folders = parent
         .read_dir()

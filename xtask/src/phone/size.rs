@@ -1,4 +1,4 @@
-//! How large what goes on a phone is, held against budgets.
+//! Sizes of the phones' files, compared with budgets.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 
-/// What the list of sizes begins with.
+/// Head of the list of sizes.
 const HEAD: &str = "\
 # Sizes of what `cargo xtask ios package` and `cargo xtask android package` make without Apple's SDK and the NDK, in bytes:
 # name, size when it was recorded, budget. `cargo xtask size` holds them; `cargo xtask size --record` takes sizes anew.
@@ -61,7 +61,7 @@ fn table(entries: &[(Entry, u64)]) -> (String, bool) {
     (text, entries.iter().all(|(entry, bytes)| *bytes <= entry.budget))
 }
 
-/// Compares what was packaged under `root` with the list there, or writes the list anew.
+/// Compares the packages under `root` with the list there, or rewrites the list.
 pub(crate) fn hold(root: &Path, records: bool) -> Result<()> {
     let list = root.join("xtask/sizes.txt");
     let text = fs::read_to_string(&list).with_context(|| list.display().to_string())?;

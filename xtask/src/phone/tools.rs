@@ -1,4 +1,4 @@
-//! Programs that only packaging needs: looked for, and on Debian, where the command may, installed.
+//! Programs that only packaging needs: searched, and on Debian installed if permitted.
 
 use anyhow::{Result, bail};
 
@@ -11,7 +11,7 @@ pub(super) struct Tool {
     pub(super) package: &'static str,
 }
 
-/// Makes sure that all of `tools` are there.
+/// Makes sure that all of `tools` are installed.
 pub(super) fn ensure(tools: &[Tool]) -> Result<()> {
     let packages = || {
         let missing = tools.iter().filter(|tool| command::find(tool.program).is_none());

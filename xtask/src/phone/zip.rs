@@ -1,12 +1,13 @@
-//! Archives for phones: entries stored as they are, those of libraries at the alignment that Android maps them with.
+//! Archives for phones: uncompressed entries, libraries with the alignment for mapping.
 //!
-//! Source: PKWARE's APPNOTE.TXT 6.3 for the format; the padding is Android's extra field 0xd935, as `zipalign` writes it.
+//! Source: PKWARE's APPNOTE.TXT 6.3 for the format; the padding is Android's extra field 0xd935, as
+//! `zipalign` writes it.
 
 use anyhow::{Context, Result, bail};
 
-/// Bytes that the beginning of an uncompressed library has to be a multiple of, in a package for phones with pages of 16 KB.
+/// Alignment of an uncompressed library in a package, in bytes, for phones with pages of 16 KB.
 pub(crate) const PAGE: usize = 16 * 1024;
-/// What everything else begins at a multiple of.
+/// Alignment of all other entries.
 const WORD: usize = 4;
 
 const LOCAL: u32 = 0x0403_4b50;
@@ -19,16 +20,16 @@ const N_END: usize = 22;
 /// Extra field of alignment: identifier, size, and the alignment itself, before the padding.
 const ALIGNMENT_FIELD: u16 = 0xd935;
 const N_ALIGNMENT_FIELD: usize = 6;
-/// 1 January 1980, so that an archive depends on nothing but what is in it.
+/// 1 January 1980, so that an archive depends only on its contents.
 const DATE: u16 = 0x21;
-/// Written by a Unix, whose file modes the archive has.
+/// Made by Unix, for the archive's file modes.
 const MADE_BY: u16 = 0x031e;
 
 /// A file in an archive.
 pub(crate) struct Entry {
     pub(crate) name: String,
     pub(crate) bytes: Vec<u8>,
-    /// Whether it may be run.
+    /// Whether it is executable.
     pub(crate) is_program: bool,
 }
 
@@ -36,14 +37,14 @@ pub(crate) struct Entry {
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Found {
     pub(crate) name: String,
-    /// Where its bytes begin.
+    /// Offset of its bytes.
     pub(crate) at: usize,
     pub(crate) n_bytes: usize,
     pub(crate) is_stored: bool,
 }
 
 impl Found {
-    /// Whether it is where a package must have it.
+    /// Whether it is aligned as a package requires.
     pub(crate) fn is_aligned(&self) -> bool {
         !self.is_stored || self.at.is_multiple_of(alignment(&self.name))
     }
@@ -97,7 +98,8 @@ pub(crate) fn write(entries: &[Entry]) -> Result<Vec<u8>> {
     Ok(archive)
 }
 
-/// What a local header and the directory's share: version 2.0, UTF-8, stored, date, checksum, sizes, length of the name.
+/// The fields that a local header and the directory share: version 2.0, UTF-8, stored, date,
+/// checksum, sizes, length of the name.
 fn sums(entry: &Entry) -> Result<Vec<u8>> {
     let n_bytes = u32::try_from(entry.bytes.len())?;
     let mut sums = Vec::new();
@@ -111,7 +113,7 @@ fn sums(entry: &Entry) -> Result<Vec<u8>> {
     Ok(sums)
 }
 
-/// The extra field with which what follows at `at` begins at a multiple of `alignment`.
+/// The extra field after which data for the offset `at` begins at a multiple of `alignment`.
 fn padding(at: usize, alignment: usize) -> Result<Vec<u8>> {
     if alignment == WORD && at.is_multiple_of(WORD) {
         return Ok(Vec::new());
@@ -143,7 +145,7 @@ fn crc32(bytes: &[u8]) -> u32 {
     !crc
 }
 
-/// What an archive holds, by its directory.
+/// The contents of an archive, by its directory.
 pub(crate) fn read(archive: &[u8]) -> Result<Vec<Found>> {
     let last = archive.len().checked_sub(N_END).context("no archive")?;
     // A comment of up to 64 KiB may follow.

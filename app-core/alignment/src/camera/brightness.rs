@@ -1,4 +1,4 @@
-//! How bright a picture is, at sizes each half of the one before.
+//! A pyramid of a picture's brightness.
 
 use glam::{DVec2, IVec2, UVec2};
 
@@ -8,12 +8,13 @@ use app_scene::scene::{Image, Intrinsics};
 
 /// Weights of linear red, green and blue in luminance (ITU-R BT.709).
 const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
-/// The smallest level is at least as wide, in pixels.
+/// Lower bound for the width of the smallest level, in pixels.
 const LEAST_WIDTH_PX: i32 = 120;
 /// A larger picture is halved first.
 const MOST_PIXELS: i32 = 1920 * 1080;
 
-/// A picture's brightness: the square root of luminance, in which a camera's noise is about even.
+/// A picture's brightness: the square root of luminance, in which a camera's noise is about
+/// uniform.
 #[derive(Debug)]
 pub(super) struct Brightness {
     levels: Vec<Plane>,
@@ -23,14 +24,14 @@ pub(super) struct Brightness {
 #[derive(Debug)]
 pub(super) struct Plane {
     pub(super) size_px: IVec2,
-    /// Pixels of this level in one of the picture.
+    /// Size of a pixel of the picture, in pixels of this level.
     scale: f64,
-    /// None is a number where nothing is known.
+    /// Values; NaN if unknown.
     values: Vec<f32>,
 }
 
 impl Brightness {
-    /// Of a picture whose size was checked; nothing is known of what is withheld.
+    /// The brightness of a picture of checked size; withheld pixels are unknown.
     pub(super) fn of(image: &Image, withheld: Option<&Mask>) -> Self {
         let mut plane = Plane::luminance(image);
         if let Some(withheld) = withheld {
@@ -51,7 +52,7 @@ impl Brightness {
         Self { levels }
     }
 
-    /// Levels, from 0, the largest; at least one.
+    /// Levels, the largest first; at least one.
     pub(super) fn levels(&self) -> &[Plane] {
         &self.levels
     }
@@ -91,7 +92,7 @@ impl Plane {
         }
     }
 
-    /// Of a length in pixels of this level, that in pixels of the picture.
+    /// Converts a length in pixels of this level to pixels of the picture.
     pub(super) fn picture_px(&self, length_px: f64) -> f64 {
         length_px / self.scale
     }
@@ -101,20 +102,20 @@ impl Plane {
         k.scaled(self.scale)
     }
 
-    /// A pixel; none outside the picture, nor where nothing is known.
+    /// A pixel; `None` outside the picture, or if it is unknown.
     pub(super) fn get(&self, at: IVec2) -> Option<f32> {
         let value = self.values.get(index_in(self.size_px, at)?);
         value.copied().filter(|value| !value.is_nan())
     }
 
-    /// Change along x and y at a pixel, for each pixel, by central differences; none at the border.
+    /// Change per pixel along x and y by central differences; `None` at the border.
     pub(super) fn gradient(&self, at: IVec2) -> Option<DVec2> {
         let difference = |step: IVec2| Some(0.5 * f64::from(self.get(at + step)? - self.get(at - step)?));
         Some(DVec2::new(difference(IVec2::X)?, difference(IVec2::Y)?))
     }
 
-    /// Value and gradient at a place in pixels, bilinear between the centres of four; none within two pixels of the border
-    /// or of what is not known.
+    /// Value and gradient at a place in pixels, bilinear between four centres; `None` within two
+    /// pixels of the border or of unknown pixels.
     pub(super) fn sample(&self, at_px: DVec2) -> Option<(f64, DVec2)> {
         let from_centre = at_px - 0.5;
         let is_inside =

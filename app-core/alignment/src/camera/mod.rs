@@ -1,12 +1,13 @@
-//! The camera of a photograph, by what the receivers look like beside the toy.
+//! Estimates the camera of a photograph from the receivers beside the toy.
 //!
-//! A plate says how bright each point of a receiver is. Those points are projected into the photograph, and its camera is moved
-//! until they meet pixels as bright: direct alignment of a known surface, coarse to fine, by Gauss-Newton steps on the
-//! camera's six numbers (`step`). Toy and shadow are outliers. The first plate's camera is held; those of the other plates and
-//! of frames are relative to it.
+//! A plate gives the brightness of each point of a receiver. Those points are projected into the
+//! photograph, and its camera is moved until the pixels there have the same brightness: direct
+//! alignment of a known surface, coarse to fine, by Gauss-Newton steps on the camera's six numbers
+//! (`step`). Toy and shadow are outliers. The first plate's camera is fixed; those of the other
+//! plates and of frames are relative to it.
 //!
-//! Source: Lucas and Kanade 1981; in the taxonomy of Baker and Matthews 2004 the forward additive form, with the photograph's
-//! gradient.
+//! Source: Lucas and Kanade 1981; in the taxonomy of Baker and Matthews 2004 the forward additive
+//! form, with the photograph's gradient.
 
 mod brightness;
 mod points;
@@ -25,50 +26,54 @@ use brightness::Brightness;
 use points::{Point, points_of};
 use step::Search;
 
-/// Plates that a camera is aligned to: those taken nearest to it.
+/// Number of plates that a camera is aligned to: those with the nearest cameras.
 const N_PLATES: usize = 2;
-/// Pictures whose brightness is remembered: those plates, and the photograph.
+/// Number of pictures whose brightness is cached: those plates, and the photograph.
 const N_REMEMBERED: usize = N_PLATES + 1;
-/// Most rounds in a level.
+/// Largest number of rounds in a level.
 const N_ROUNDS: usize = 15;
-/// Scale of Cauchy's weights, by which points pull, and of Geman and McClure's loss, which stays the same for all outliers, in
-/// square roots of linear light: in the largest level, and how much more in each smaller one.
+/// Scale of Cauchy's weights, for the steps, and of Geman and McClure's loss, which is constant for
+/// all outliers, in square roots of linear light: in the largest level, and its increase in each
+/// smaller one.
 const ROBUST: f64 = 0.04;
 const ROBUST_STEP: f64 = 0.02;
-/// Most points of a plate: in the largest level, and in those where starts are tried.
+/// Largest number of a plate's points: in the largest level, and in those where starts are
+/// compared.
 const MOST_POINTS: usize = 20_000;
 const MOST_POINTS_BELOW: usize = 5_000;
-/// Fewer points with texture than that, in the largest level, tell no camera.
+/// Number of textured points, in the largest level, that an estimate needs.
 const LEAST_POINTS: usize = 500;
-/// A found camera is applied where points of the receivers move by more, in pixels,
+/// An estimated camera is applied if points of the receivers move by more than this, in pixels,
 const LEAST_PX: f64 = 0.1;
-/// and the loss falls by that part or more, once they move by so many pixels; by less in proportion where they move less. Tiles
-/// that meet the next ones fall by .13 and less, those that meet themselves by a third.
+/// and if the loss falls by this fraction or more for moves of at least this many pixels; by
+/// proportionally less for smaller moves. Tiles that match the next ones fall by .13 and less,
+/// those that match themselves by a third.
 const FALL: f64 = 0.25;
 const FALL_PX: f64 = 1.5;
-/// A camera that is given as that of a plate, to the last digit, stands on something: the loss falls by that part at least, however
-/// little they move. Soft shadows on a plain table let it fall by .09; a camera that was nudged by .4 px before a wooden one by .21.
+/// For a camera given as equal to a plate's, to the last digit (a stand), the loss must fall by
+/// this fraction at least, however small the move. Soft shadows on a plain table reduce it by .09;
+/// a camera that was nudged by .4 px before a wooden one by .21.
 const HELD_FALL: f64 = 0.15;
 
-/// A camera that was found.
+/// An estimated camera.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
-    /// The pose that was found.
+    /// The estimated pose.
     pub(super) world_from_camera: DMat4,
-    /// Root mean square that points of the receivers move in the picture, in pixels.
+    /// Root mean square shift of the receivers' points in the picture, in pixels.
     pub(super) moved_px: f64,
-    /// Distance in metres that the camera moved.
+    /// Distance that the camera moved, in metres.
     pub(super) moved_m: f64,
-    /// Angle in radians that it turned.
+    /// Angle that it turned, in radians.
     pub(super) turned_rad: f64,
-    /// Mean robust loss with the given and with the found camera, of the same points.
+    /// Mean robust loss with the given and with the estimated camera, for the same points.
     pub(super) losses: [f64; 2],
-    /// Whether it was given as that of a plate, to the last digit: a camera on a stand.
+    /// Whether it was given as equal to a plate's, to the last digit: a camera on a stand.
     is_held: bool,
 }
 
 impl Found {
-    /// Whether it moves the picture by enough to show, and explains it better by more than noise.
+    /// Whether the change is visible, and improves the loss by more than noise.
     pub(super) fn is_better(&self) -> bool {
         let [given, found] = self.losses;
         let least = if self.is_held { HELD_FALL } else { 0.0 };
@@ -87,7 +92,7 @@ impl Found {
     }
 }
 
-/// A camera as found: as given, where that explains the picture no better.
+/// The camera as estimated, or as given if the estimate is no better.
 pub(super) fn corrected(given: &Camera, found: Option<Found>) -> (Camera, Option<CameraAlignment>) {
     let Some(found) = found else {
         return (*given, None);
@@ -101,15 +106,16 @@ pub(super) fn corrected(given: &Camera, found: Option<Found>) -> (Camera, Option
     (camera, Some(found.report(is_applied)))
 }
 
-/// Finds cameras in one scene, one after the other; remembers the plates used last.
+/// Estimates cameras in one scene, one after the other; caches the plates used last.
 #[derive(Debug, Default)]
 pub(super) struct Finder {
     decoded: Vec<(Arc<Image>, Arc<Brightness>)>,
 }
 
 impl Finder {
-    /// Finds the camera of `image`, starting from the one given; none where there is no plate or too little texture. Of what is
-    /// withheld nothing is read. It is moved no farther than the one given is uncertain.
+    /// Estimates the camera of `image`, starting from the given one; `None` without a plate or with
+    /// too little texture. Withheld pixels are not read. The result stays within the given camera's
+    /// uncertainty.
     pub(super) fn find(
         &mut self,
         (image, camera, withheld): (&Arc<Image>, &Camera, Option<&Mask>),
@@ -152,7 +158,8 @@ impl Finder {
             };
             if level == 0 {
                 return Some(Found {
-                    // Points are moved within camera space; the camera moves the other way.
+                    // The estimate moves points within camera space; the camera moves by the
+                    // inverse.
                     world_from_camera: camera.world_from_camera * found.matrix().inverse(),
                     moved_px: search.moved_px(&found),
                     moved_m: found.moved_m(),

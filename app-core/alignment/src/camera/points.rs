@@ -1,4 +1,4 @@
-//! Points of the receivers whose brightness a plate tells.
+//! Points of the receivers whose brightness is known from a plate.
 
 use glam::{DMat4, DVec3, IVec2};
 
@@ -7,19 +7,19 @@ use crate::picture::places;
 use crate::receivers::{SeenReceiver, receiver_at};
 use app_scene::scene::{Camera, Receiver};
 
-/// Change of brightness from pixel to pixel, below which a pixel is noise.
+/// Smallest change of brightness between pixels that is not noise.
 const LEAST_GRADIENT: f64 = 0.01;
 
 /// A point that a plate shows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
-    /// In the space of the camera that is looked for, as given.
+    /// Position in the given space of the estimated camera.
     pub(super) in_camera: DVec3,
     /// Square root of luminance.
     pub(super) brightness: f64,
 }
 
-/// Points of one level of a plate where brightness changes, evenly thinned out to `most`.
+/// Points of one level of a plate at changes of brightness, evenly thinned out to `most`.
 pub(super) fn points_of(
     (camera, picture): (&Camera, &Plane),
     receivers: &[Receiver],
@@ -31,7 +31,7 @@ pub(super) fn points_of(
         .iter()
         .map(|receiver| SeenReceiver::new(receiver, &plate_camera_from_world))
         .collect();
-    // Rounded to 32 bits, which are mostly the same wherever the world's origin is.
+    // Rounded to 32 bits, which are mostly the same for any origin of the world.
     let camera_from_plate = (*camera_from_world * camera.world_from_camera)
         .as_mat4()
         .as_dmat4();

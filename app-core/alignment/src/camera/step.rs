@@ -7,22 +7,24 @@ use super::points::Point;
 use crate::rigid_motion::{Matrix6, RigidMotion, Vector6, step_of};
 use app_scene::scene::{Camera, Intrinsics, PoseUncertainty};
 
-/// What a tracker is never off by, in radians and metres: holds back what the texture does not tell.
+/// Prior deviations of a tracker, in radians and metres: they regularise directions that the
+/// texture does not constrain.
 const TRACKED_RAD: f64 = 0.1;
 const TRACKED_M: f64 = 0.1;
-/// Turns that are tried first, up and down and to either side: how far apart, and how many in each direction.
+/// Turns that are tried first in all four directions: their spacing, and their number in each
+/// direction.
 const TURN_RAD: f64 = 0.25 * std::f64::consts::PI / 180.0;
 const N_TURNS: i32 = 8;
-/// The same at most, where a camera is said to be turned by more.
+/// Their largest number, for a camera of larger given uncertainty.
 const MOST_TURNS: i32 = 24;
-/// The best of them from which steps are taken, beside no turn.
+/// Number of the best turns from which steps are taken, besides no turn.
 const N_STARTS: usize = 8;
-/// Every how many points are looked at then.
+/// Stride of the points used then.
 const START_STRIDE: usize = 4;
-/// Steps that move points by less, in root mean square pixels, are the last.
+/// Size of the last step, as a root mean square shift of points in pixels.
 const LAST_STEP_PX: f64 = 1e-3;
 
-/// One level of a photograph, and the points to be found in it.
+/// One level of a photograph, and the points to be matched in it.
 pub(super) struct Search<'a> {
     photograph: &'a Plane,
     intrinsics: Intrinsics,
@@ -31,12 +33,12 @@ pub(super) struct Search<'a> {
     uncertainty: PoseUncertainty,
 }
 
-/// A point that meets a pixel.
+/// A point with its matching pixel.
 struct Met {
     template: usize,
-    /// Point and pixel.
+    /// Brightness of point and pixel.
     brightness: [f64; 2],
-    /// Change of the pixel's brightness for each number of a step.
+    /// Change of the pixel's brightness per unit of each number of a step.
     row: Vector6,
 }
 
@@ -56,13 +58,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Points in all.
+    /// Number of all points.
     pub(super) fn n_points(&self) -> usize {
         self.templates.iter().map(Vec::len).sum()
     }
 
-    /// No motion, and turns that bring the picture nearer: a tracker that jumps, or a hand that shakes, turns the camera more than it
-    /// shows otherwise.
+    /// No motion, and turns that improve the match: a jump of a tracker, or a shake of the hand, is
+    /// a turn in the first place.
     pub(super) fn starts(&self) -> Vec<RigidMotion> {
         let n_turns = self.n_turns();
         let turns = -n_turns..=n_turns;
@@ -83,7 +85,7 @@ impl<'a> Search<'a> {
             .collect()
     }
 
-    /// Of turns to try in each direction.
+    /// Number of turns to try in each direction.
     fn n_turns(&self) -> i32 {
         let most_rad = self
             .uncertainty
@@ -94,14 +96,14 @@ impl<'a> Search<'a> {
         n_turns
     }
 
-    /// The best of what is found from several starts.
+    /// The best result from several starts.
     pub(super) fn run_from(&self, starts: &[RigidMotion], n_rounds: usize) -> RigidMotion {
         let found = starts.iter().map(|start| self.run(*start, n_rounds));
         let best = found.min_by(|a, b| self.loss(a).total_cmp(&self.loss(b)));
         best.unwrap_or(RigidMotion::about_camera(DVec3::ZERO))
     }
 
-    /// Steps until they are small, `n_rounds` at most.
+    /// Takes steps until they are small, `n_rounds` at most.
     pub(super) fn run(&self, mut motion: RigidMotion, n_rounds: usize) -> RigidMotion {
         for _ in 0..n_rounds {
             let before = motion;
@@ -116,12 +118,13 @@ impl<'a> Search<'a> {
         motion
     }
 
-    /// Mean loss of Geman and McClure over all points; one that meets no pixel counts as far off.
+    /// Mean loss of Geman and McClure over all points; a point without a pixel counts as an
+    /// outlier.
     pub(super) fn loss(&self, motion: &RigidMotion) -> f64 {
         self.loss_of(motion, 1)
     }
 
-    /// The same of every `stride`th point.
+    /// The same over every `stride`th point.
     fn loss_of(&self, motion: &RigidMotion, stride: usize) -> f64 {
         let met = self.met(motion, stride);
         let gains = self.gains(&met);
@@ -133,7 +136,7 @@ impl<'a> Search<'a> {
         1.0 - errors.sum::<f64>() / n_points
     }
 
-    /// Root mean square that a motion moves points by, in pixels of the picture.
+    /// Root mean square shift of points by a motion, in pixels of the picture.
     pub(super) fn moved_px(&self, motion: &RigidMotion) -> f64 {
         self.photograph
             .picture_px(self.between_px(&RigidMotion::about_camera(DVec3::ZERO), motion))
@@ -164,7 +167,7 @@ impl<'a> Search<'a> {
         met.collect()
     }
 
-    /// Change of a pixel's brightness for each metre that its point moves along each axis.
+    /// Change of a pixel's brightness per metre of its point's move along each axis.
     fn per_m(&self, point: DVec3, gradient: DVec2) -> DVec3 {
         let k = &self.intrinsics;
         let depth_m = -point.z;
@@ -172,7 +175,8 @@ impl<'a> Search<'a> {
         DVec3::new(across, up, (across * point.x + up * point.y) / depth_m) / depth_m
     }
 
-    /// Exposure of the photograph over that of each plate, in square roots: the median over the points.
+    /// Exposure of the photograph over that of each plate, in square roots: the median over the
+    /// points.
     fn gains(&self, met: &[Met]) -> Vec<f64> {
         let gain = |template: usize| {
             let of_template = met
@@ -191,7 +195,7 @@ impl<'a> Search<'a> {
         met.brightness[1] - gains[met.template] * met.brightness[0]
     }
 
-    /// None where nothing is met.
+    /// `None` if no point has a pixel.
     fn step(&self, motion: &RigidMotion) -> Option<Vector6> {
         let met = self.met(motion, 1);
         let gains = self.gains(&met);

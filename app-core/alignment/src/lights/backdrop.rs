@@ -1,7 +1,8 @@
-//! What receivers would show without the toy, where no plate tells: a smooth colour each.
+//! A model of receivers without the toy, if there is no plate: a smooth colour each.
 //!
-//! Their texture stays and is taken for noise: lights are told worse than with a plate, and faint ones not at all.
-//! Light over that in a plate (`relight`) has no texture, and may bend more.
+//! Texture is treated as noise: lights are less accurate than with a plate, and faint ones are not
+//! found. The ratio of light to that in a plate (`relight`) has no texture, and may have a higher
+//! degree.
 
 use glam::{DVec2, DVec3};
 use nalgebra::{SMatrix, SVector};
@@ -10,16 +11,16 @@ use crate::picture::{Color, Level, places};
 use crate::raster::Coverage;
 use crate::receivers::{SeenReceiver, receiver_at};
 
-/// Coefficients of polynomials of the second and of the fourth degree in two variables.
+/// Number of coefficients of polynomials of the second and of the fourth degree in two variables.
 pub(super) const QUADRATIC: usize = 6;
 pub(super) const QUARTIC: usize = 15;
-/// Looked at as far from the toy, over its radius.
+/// Radius of the fitted region around the toy, over the toy's radius.
 pub(super) const REACH: f64 = 5.0;
 /// Rounds of reweighting; shadows are outliers.
 const N_ROUNDS: usize = 12;
-/// Deviation of a normal distribution over its median absolute deviation.
+/// Standard deviation of a normal distribution over its median absolute deviation.
 const OF_MEDIAN: f64 = 1.4826;
-/// Keeps a colour flat where too little is seen.
+/// Keeps a colour flat if too few pixels are visible.
 const PRIOR: f64 = 1e-6;
 
 type Terms<const N: usize> = SVector<f64, N>;
@@ -27,7 +28,7 @@ type Terms<const N: usize> = SVector<f64, N>;
 /// The colour of each receiver, a polynomial of N coefficients.
 #[derive(Debug)]
 pub(super) struct Backdrop<const N: usize> {
-    /// None where a receiver is not seen.
+    /// `None` for a receiver that is not visible.
     receivers: Vec<Option<Seen<N>>>,
     middle: DVec3,
     reach_m: f64,
@@ -36,12 +37,13 @@ pub(super) struct Backdrop<const N: usize> {
 #[derive(Debug)]
 struct Seen<const N: usize> {
     colors: [Terms<N>; 3],
-    /// Deviation of its texture, over its colour.
+    /// Standard deviation of its texture, over its colour.
     texture: f64,
 }
 
 impl<const N: usize> Backdrop<N> {
-    /// Of a picture with a toy around `middle`, in camera space, up to `reach_m` from there.
+    /// The background of a picture with a toy around `middle`, in camera space, within `reach_m` of
+    /// it.
     pub(super) fn of(
         level: &Level,
         coverage: &Coverage,
@@ -66,7 +68,8 @@ impl<const N: usize> Backdrop<N> {
         out
     }
 
-    /// Colour of a receiver's point in camera space, and the deviation of its texture over that.
+    /// Colour of a receiver's point in camera space, and the relative standard deviation of its
+    /// texture.
     pub(super) fn at(
         &self,
         receivers: &[SeenReceiver],
@@ -94,7 +97,8 @@ impl<const N: usize> Backdrop<N> {
     }
 }
 
-/// Terms of a polynomial over a receiver's plane at a point in camera space, those of lower degrees first.
+/// Terms of a polynomial over a receiver's plane at a point in camera space, those of lower degrees
+/// first.
 pub(super) fn polynomial(
     receiver: &SeenReceiver,
     point: DVec3,
@@ -131,7 +135,8 @@ impl<const N: usize> Seen<N> {
     }
 }
 
-/// A smooth value and the deviation from it, by iteratively reweighted least squares (Geman and McClure 1987).
+/// A smooth value and its deviation, by iteratively reweighted least squares (Geman and McClure
+/// 1987).
 fn robust<const N: usize>(values: &[(Terms<N>, f64)]) -> (Terms<N>, f64) {
     let mut sorted: Vec<f64> = values.iter().map(|(_, value)| *value).collect();
     let mut color = Terms::<N>::zeros();

@@ -1,4 +1,4 @@
-//! Shadows in the picture: the toy flattened onto each receiver from points over a light.
+//! Shadows in the picture: the toy projected onto each receiver from points over a light.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, IVec2};
 
@@ -9,16 +9,16 @@ use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
 use app_scene::scene::Intrinsics;
 
-/// No direction of ambient light is lower, as a sine: its shadow would have no end.
+/// Sine of the lowest elevation of ambient light: lower directions have unbounded shadows.
 const LOWEST: f64 = 0.1;
 
-/// Parts of the light from all around: even, and rising along each axis of a receiver.
+/// Components of ambient light: uniform, and linear along each axis of a receiver.
 pub(super) const N_AMBIENT: usize = 3;
 
-/// What the toy takes of each.
+/// The fraction of each component that the toy blocks.
 pub(super) type Ambient = [f32; N_AMBIENT];
 
-/// A toy that casts shadows, and the picture that they are seen in.
+/// A toy that casts shadows, and its picture.
 pub(super) struct Caster<'a> {
     pub(super) shape: &'a Shape,
     pub(super) receivers: &'a [SeenReceiver],
@@ -58,7 +58,7 @@ impl<'a> Caster<'a> {
         }
     }
 
-    /// The part of a lamp's light that the toy takes from each pixel.
+    /// The fraction of a lamp's light that the toy blocks at each pixel.
     pub(super) fn lamp(
         &self,
         raster: &mut Rasterizer,
@@ -77,7 +77,17 @@ impl<'a> Caster<'a> {
         taken.into_iter().map(|[taken]| taken).collect()
     }
 
-    /// Irradiance of each pixel's receiver from a lamp, over that at the foot of the toy there.
+    /// The part of a lobe that the toy hides from each pixel of the first receiver; of eyes behind it in its space, homogeneous.
+    pub(super) fn image(&self, raster: &mut Rasterizer, pixels: &[FloorPixel], eyes: &[DVec4]) -> Vec<f32> {
+        let mut hidden = vec![[0.0]; pixels.len()];
+        if !self.receivers.is_empty() {
+            let eyes = eyes.iter().map(|eye| (*eye, [1.0]));
+            self.add(raster, pixels, 0, eyes.collect(), &mut hidden);
+        }
+        hidden.into_iter().map(|[hidden]| hidden).collect()
+    }
+
+    /// Irradiance of each pixel's receiver from a lamp, relative to the foot of the toy there.
     pub(super) fn lit(&self, pixels: &[FloorPixel], lamp: &Lamp) -> Vec<f32> {
         let seen = self.receivers.iter().map(|receiver| {
             let plane_from_camera = receiver.plane_from_camera;
@@ -99,7 +109,8 @@ impl<'a> Caster<'a> {
         lit.collect()
     }
 
-    /// Rectangles of pixels around the hard shadows from each point of a lamp, as the first and the last.
+    /// Bounding rectangles in pixels of the hard shadows from each point of a lamp, as the first
+    /// and the last.
     pub(super) fn rects(&self, raster: &mut Rasterizer, lamp: &Lamp, disc: &[DVec2]) -> Vec<[IVec2; 2]> {
         let mut rects = Vec::new();
         for (index, receiver) in self.receivers.iter().enumerate() {
@@ -114,8 +125,8 @@ impl<'a> Caster<'a> {
         rects
     }
 
-    /// The parts of the light from all around that the toy takes from each pixel: of an even one, and of ones that rise along
-    /// each axis of the receiver.
+    /// The fractions of the ambient light that the toy blocks at each pixel: of a uniform one, and
+    /// of linear ones along each axis of the receiver.
     pub(super) fn ambient(
         &self,
         raster: &mut Rasterizer,
@@ -135,7 +146,7 @@ impl<'a> Caster<'a> {
         taken
     }
 
-    /// Each point with a weight for each part; the first is that of its light.
+    /// Adds each point with a weight for each component; the first is its light's.
     fn add<const N: usize>(
         &self,
         raster: &mut Rasterizer,
@@ -151,7 +162,7 @@ impl<'a> Caster<'a> {
             let weights = weights.map(|weight| (weight / total) as f32);
             let mut first = pixels.partition_point(|pixel| pixel.at.y < coverage.origin_px.y);
             for (at, end) in coverage.rows() {
-                // No more than two rows on.
+                // At most two rows further.
                 let next = &pixels[first..pixels.len().min(first + 2 * self.size_px.x as usize)];
                 first += next.partition_point(|pixel| (pixel.at.y, pixel.at.x) < (at.y, at.x));
                 let row = taken[first..].iter_mut().zip(&pixels[first..]);
@@ -190,7 +201,8 @@ fn in_plane(shape: &Shape, plane_from_camera: &DMat4) -> Vec<DVec3> {
         .collect()
 }
 
-/// A shape's points on a receiver, along rays from a point of a light, homogeneous in plane space; in camera space.
+/// A shape's points projected on a receiver from a point of a light, homogeneous in plane space;
+/// the result is in camera space.
 pub(super) fn flattened(shape: &Shape, plane_from_camera: &DMat4, light: DVec4) -> Vec<DVec3> {
     let camera_from_plane = plane_from_camera.inverse();
     let in_plane = in_plane(shape, plane_from_camera);
@@ -200,7 +212,8 @@ pub(super) fn flattened(shape: &Shape, plane_from_camera: &DMat4, light: DVec4) 
         .collect()
 }
 
-/// Where the ray from a light through a point meets the plane, in camera space; behind the camera where it does not.
+/// The intersection of the ray from a light through a point with the plane, in camera space; behind
+/// the camera if there is none.
 fn on_plane(point: DVec3, light: DVec4, camera_from_plane: &DMat4) -> DVec3 {
     const BEHIND: DVec3 = DVec3::Z;
     let to_light = light.truncate() - light.w * point;

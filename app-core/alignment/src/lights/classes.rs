@@ -1,9 +1,12 @@
-//! What each pixel beside the toy shows: a receiver in the light that falls on it, or something else.
+//! Classifies each pixel beside the toy: a receiver under the light that falls on it, or something
+//! else.
 //!
-//! Something that stands where the shadow would fall shows frame = plate there, so that a fit of all pixels finds no shadow. So frame
-//! over plate is compared: each pixel counts once, however bright. Where a light is hidden, the part of the light that this ratio implies
-//! has a peak for each thing that such pixels show. The one at no light at all is "nothing has changed", which is no shadow; the largest
-//! of the others starts the fit, and a mixture of three classes ends it: the receiver, what has not changed, and anything else.
+//! A thing in the place of the shadow shows frame = plate there, so that a fit of all pixels would
+//! find no shadow. So frame over plate is compared, in which each pixel counts once at any
+//! brightness. Where a light is hidden, the histogram of the light's share implied by this ratio
+//! has a peak for each kind of surface. The peak at no light means "unchanged", which is no shadow;
+//! the largest of the others starts the fit, and a mixture of three classes ends it: the receiver,
+//! unchanged surfaces, and anything else.
 
 use glam::{DMat4, DVec2, IVec2};
 
@@ -18,41 +21,42 @@ use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
 use app_scene::scene::{Light, MAX_LIGHTS};
 
-/// What is looked at around toy and shadows, over their size.
+/// Margin around toy and shadows, over their size.
 const BEYOND: f64 = 0.3;
-/// Part of a light that is hidden from where it tells what the light gives.
+/// Hidden fraction of a light from which a pixel votes for the light's share.
 const HIDDEN: f32 = 0.7;
-/// Part of every light up to which a pixel is in the open.
+/// Hidden fraction of every light up to which a pixel is unshadowed.
 const OPEN: f32 = 0.02;
 /// Bounce of a toy of middle grey, as in `fit_solve`.
 const BOUNCE: f32 = 0.27;
-/// Bins of the part of the light, from none to all of it.
+/// Number of bins for shares from 0 to 1.
 const N_BINS: usize = 100;
-/// Deviation of the blur of the histogram, in bins.
+/// Standard deviation of the blur of the histogram, in bins.
 const BLUR_BINS: f32 = 1.5;
-/// A light gives at least that part, or its peak is that of what has not changed.
+/// Smallest share of a light; a peak below it belongs to unchanged surfaces.
 const LEAST_SHARE: f32 = 0.12;
-/// Part of the votes that a peak must have.
+/// Fraction of the votes that a peak needs.
 const LEAST_VOTES: f32 = 0.05;
-/// How far a vote may lie from its peak, as a part of the light.
+/// Largest distance of a vote from its peak, as a share of the light.
 const OF_PEAK: f32 = 0.08;
-/// Deviation of what has not changed, and of the receiver at the start and at least: model and pictures differ by as much.
+/// Standard deviation of unchanged surfaces, and of the receiver at the start and at least: the
+/// error of model and pictures.
 const UNCHANGED: f32 = 0.06;
 const FIRST_DEVIATION: f32 = 0.08;
 const LEAST_DEVIATION: f32 = 0.012;
-/// What anything else shows lies evenly between none and that many plates.
+/// Other surfaces are distributed uniformly between none and this many plates.
 const MOST_RATIO: f32 = 1.5;
-/// Where the model takes less of the light no shadow is expected.
+/// Blocked share of the light below which no shadow is expected.
 const CHANGED: f32 = 0.12;
 /// Rounds of the mixture.
 const N_ROUNDS: usize = 4;
-/// Of what shows no receiver, the part that shows what has not changed, and anything else.
+/// Fractions of unchanged and of other surfaces among pixels without receiver.
 const OF_THE_REST: [f32; 2] = [0.6, 0.4];
-/// Probability of the receiver before anything is known.
+/// Prior probability of the receiver.
 const FIRST_PRIOR: f32 = 0.6;
-/// No prior is nearer to none or to all.
+/// Distance of priors from 0 and 1.
 const LEAST_PRIOR: f32 = 0.05;
-/// No exposure is lower.
+/// Lower bound of the exposure.
 const LEAST_GAIN: f64 = 1e-3;
 /// Reach of the blur of the classes' probabilities, in pixels of the level.
 const BLUR_PX: i32 = 3;
@@ -60,17 +64,17 @@ const BLUR_PX: i32 = 3;
 /// A pixel beside the toy.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Compared {
-    /// Where, in pixels of the level.
+    /// Position, in pixels of the level.
     pub(crate) at: IVec2,
-    /// Of frame over plate, at the plate's exposure.
+    /// Frame over plate, at the plate's exposure.
     pub(crate) ratio: Color,
-    /// The same by the model.
+    /// The model's value of it.
     pub(crate) model: Color,
     /// Index of the receiver that is there.
     pub(crate) on: usize,
     /// Noise of the ratio, as a deviation.
     pub(crate) noise: f32,
-    /// Probability that it shows the receiver.
+    /// Probability of the receiver.
     pub(crate) receiver: f32,
 }
 
@@ -126,7 +130,7 @@ pub(crate) fn compare(
     })
 }
 
-/// The pixels around toy and shadows, with some of the place that neither reaches.
+/// The pixels around toy and shadows, with some unaffected surroundings.
 fn around(
     raster: &mut Rasterizer,
     (shape, receivers): (&Shape, &[SeenReceiver]),
@@ -145,7 +149,7 @@ fn around(
     [low.saturating_sub(beyond), high.saturating_add(beyond)]
 }
 
-/// Median of frame over plate in the open, for each channel; none where nothing is.
+/// Median of frame over plate at unshadowed pixels, for each channel; `None` without any.
 fn open_gain(shadows: &Shadows<'_>, taken: &[Vec<f32>]) -> Option<Color> {
     let open = shadows
         .pixels
@@ -162,7 +166,7 @@ fn medians(colors: &[Color]) -> Option<Color> {
 }
 
 fn ratio(frame: Color, plate: Color) -> Color {
-    // Pixels of no precision are never asked, and all others have a plate above the darkest codes.
+    // Pixels of zero precision are never used, and all others have a plate above the darkest codes.
     [0, 1, 2].map(|channel| {
         if plate[channel] > 0.0 {
             frame[channel] / plate[channel]
@@ -172,7 +176,8 @@ fn ratio(frame: Color, plate: Color) -> Color {
     })
 }
 
-/// The part of the light that each lamp gives, by the largest peak of what hidden pixels imply; none where no lamp has such a peak.
+/// The share of each lamp, by the largest peak of the hidden pixels' votes; `None` if no lamp has
+/// such a peak.
 fn shares(shadows: &Shadows<'_>, taken: &[Vec<f32>], gain: &Color) -> Option<Vec<Color>> {
     let shares: Vec<Option<Color>> = (0..taken.len())
         .map(|lamp| share(shadows, taken, lamp, gain))
@@ -206,7 +211,8 @@ fn share(shadows: &Shadows<'_>, taken: &[Vec<f32>], lamp: usize, gain: &Color) -
     medians(&of_peak)
 }
 
-/// The part of the light that a lamp gives, if a pixel that is hidden from it shows the receiver; none where as much of the ambient light is hidden.
+/// The share of a lamp, if a pixel hidden from it shows the receiver; `None` if as much of the
+/// ambient light is hidden.
 fn implied(shadows: &Shadows<'_>, index: usize, taken: f32, gain: &Color) -> Option<Color> {
     let pixel = &shadows.pixels[index];
     let hidden = shadows.ambient_taken(index);
@@ -218,7 +224,7 @@ fn implied(shadows: &Shadows<'_>, index: usize, taken: f32, gain: &Color) -> Opt
     })
 }
 
-/// Where most values lie, beyond what has not changed; none where none has enough of them.
+/// The mode of the values, without unchanged surfaces; `None` if no bin has enough of them.
 fn peak(values: impl Iterator<Item = f32>) -> Option<f32> {
     let mut bins = [0.0_f32; N_BINS];
     let mut n_values = 0.0;
@@ -266,7 +272,7 @@ fn blurred(bins: &[f32; N_BINS]) -> [f32; N_BINS] {
     })
 }
 
-/// What lamps with shares give on every receiver; the rest is light from all around.
+/// The lamps' shares on every receiver; the rest is ambient light.
 fn first_shading(shares: &[Color], gain: &Color, n_receivers: usize) -> Shading {
     let of_channel = |channel: usize| {
         let mut factors = Factors::zeros();
@@ -291,7 +297,7 @@ fn first_shading(shares: &[Color], gain: &Color, n_receivers: usize) -> Shading 
 struct Mixture<'a> {
     taken: &'a [Vec<f32>],
     size_px: IVec2,
-    /// As the pixels say it.
+    /// Precisions of the pixels themselves.
     precisions: Vec<Color>,
     compared: Vec<Compared>,
 }
@@ -337,7 +343,7 @@ impl<'a> Mixture<'a> {
         }
     }
 
-    /// Takes pixels for the receiver as far as they are like what is predicted and those around them are.
+    /// Updates the probability of the receiver from the residuals of pixels and their neighbours.
     fn classify(&mut self, deviation: f32) {
         let priors = self.priors();
         for (compared, prior) in self.compared.iter_mut().zip(priors) {
@@ -345,7 +351,7 @@ impl<'a> Mixture<'a> {
         }
     }
 
-    /// Probability of the receiver by the pixels around each: all alike at first.
+    /// Prior of the receiver from the neighbours of each pixel: uniform at first.
     fn priors(&self) -> Vec<f32> {
         let mut sums = vec![[0.0; 2]; (self.size_px.x * self.size_px.y) as usize];
         for compared in &self.compared {
@@ -365,7 +371,7 @@ impl<'a> Mixture<'a> {
         prior.collect()
     }
 
-    /// Makes pixels count by the probability that they show the receiver.
+    /// Weights pixels by their probability of the receiver.
     fn weigh(&self, shadows: &mut Shadows<'_>) {
         for ((pixel, precision), compared) in shadows
             .pixels
@@ -377,7 +383,7 @@ impl<'a> Mixture<'a> {
         }
     }
 
-    /// Deviation of the pixels that show the receiver from what is predicted.
+    /// Standard deviation of the receiver's pixels from the prediction.
     fn deviation(&self) -> f32 {
         let near = self
             .compared
@@ -415,24 +421,24 @@ impl Compared {
             .fold(0.0, f32::max)
     }
 
-    /// The part of the light that the model takes from it.
+    /// The share of the light that the model blocks.
     pub(crate) fn taken(&self) -> f32 {
         1.0 - self.model.iter().sum::<f32>() / 3.0
     }
 
-    /// Whether the model takes enough light from it to show.
+    /// Whether the model blocks a visible share of light.
     pub(crate) fn is_changed(&self) -> bool {
         self.taken() > CHANGED
     }
 
-    /// Probability that it shows the receiver, by that of those around it.
+    /// Probability of the receiver, with its neighbours' as prior.
     fn probability(&self, receiver: f32, deviation: f32) -> f32 {
         let [unchanged, other] = OF_THE_REST.map(|part| part * (1.0 - receiver));
         let density = |from: &Color, deviation: f32| {
             let squares: f32 = (0..3)
                 .map(|channel| ((self.ratio[channel] - from[channel]) / deviation).powi(2))
                 .sum();
-            // Of three channels that are off together: one deviation for all.
+            // The three channels are correlated, so that they count as one.
             (-0.5 * squares / 3.0).exp() / deviation
         };
         let deviation = deviation.hypot(self.noise);

@@ -1,8 +1,10 @@
-//! Lights of which nothing is known: found one after the other, each where it explains most of what is left.
+//! Estimates unknown lights one after the other, each at the direction that explains most of the
+//! residual.
 //!
-//! A small picture tells how many there are: point lights all over the hemisphere are tried (`hemisphere`), the best of them
-//! become lamps of any distance and size by Gauss-Newton steps (`step`), and stay as long as there is `evidence`. Larger pictures make
-//! them exact, and tell how exact (`uncertainty`).
+//! A small picture determines their number: point lights all over the hemisphere are tried
+//! (`hemisphere`), the best of them become lamps of any distance and size by Gauss-Newton steps
+//! (`step`), and are kept as long as there is `evidence`. Larger pictures refine them, and give
+//! their `uncertainty`.
 
 use glam::{DVec2, DVec3};
 
@@ -23,27 +25,29 @@ use crate::report::PoseDeviation;
 use crate::shape::Shape;
 use app_scene::scene::MAX_LIGHTS;
 
-/// Directions that are followed for each further lamp; fewer where the best explains as much more.
+/// Number of directions that are followed for each further lamp; fewer if the best is clearly
+/// better.
 const N_STARTS: usize = 3;
 const OF_BEST: f64 = 0.25;
-/// Spreads that are tried there, with as many points over the lamp.
+/// Spreads that are tried there, and the number of points over the lamp.
 const SPREADS: [f64; 4] = [0.01, 0.05, 0.15, 0.35];
 const N_SPREAD_POINTS: usize = 12;
-/// A start that explains less of what is left is none.
+/// Smallest explained fraction of the residual for a start.
 const LEAST_EXPLAINED: f64 = 0.01;
 /// Rounds of one more lamp alone, and of all together.
 const N_ALONE: usize = 5;
 const N_TOGETHER: usize = 3;
-/// Larger pictures than the one that was searched.
+/// Number of pictures larger than the searched one.
 const N_LARGER_LEVELS: usize = 2;
-/// Sides of the cells that vertices are merged in, in pixels: while lamps are counted, and then.
+/// Sides of the cells that vertices are merged in, in pixels: while lamps are counted, and later.
 const SEARCH_CELL_PX: f64 = 0.5;
 const CELL_PX: f64 = 0.1;
-/// A lamp's middle alone.
+/// The centre of a lamp alone.
 const POINT: [DVec2; 1] = [DVec2::ZERO];
 
-/// Finds the lamps that a picture shows the shadows of; `pose` is how well the toy's is known. Where there are guesses, as many lamps
-/// as those are looked for, around them; an estimate is a start where no other leads to a lamp, and is as any other judged by evidence.
+/// Estimates the lamps whose shadows a picture shows; `pose` is the uncertainty of the toy's. If
+/// there are guesses, lamps are searched around them, one for each; a light estimate is a start if
+/// no other leads to a lamp, and is judged by evidence like any other.
 pub(super) fn discover(
     shape: &Shape,
     receivers: &[SeenReceiver],
@@ -84,8 +88,9 @@ pub(super) fn discover(
     Err(NoLight::NoneDominant)
 }
 
-/// Directions all over the hemisphere, in camera space, and the part that a point light in each would explain of what surroundings alone
-/// leave; none where too little of the receivers is seen.
+/// Directions all over the hemisphere, in camera space, and the fraction of the residual of ambient
+/// light that a point light in each would explain; `None` if too little of the receivers is
+/// visible.
 pub(crate) fn scores(
     shape: &Shape,
     receivers: &[SeenReceiver],
@@ -108,7 +113,7 @@ pub(crate) fn scores(
 struct Search<'a> {
     shadows: Shadows<'a>,
     raster: &'a mut Rasterizer,
-    /// Point lights, and what the toy takes of them.
+    /// Point lights, and the light that the toy blocks of each.
     candidates: Vec<(Lamp, Vec<f32>)>,
 }
 
@@ -146,7 +151,8 @@ impl<'a> Search<'a> {
         lamps
     }
 
-    /// The best lamps that are one more, from directions where it may be; none where there is no evidence for it.
+    /// The lamps with the best additional one, among the given directions; `None` without evidence
+    /// for it.
     fn one_more(&mut self, lamps: &[Lamp], from: &[Lamp]) -> Option<Vec<Lamp>> {
         let before = self.shading(lamps);
         let starts = self.starts(lamps, from);
@@ -161,7 +167,8 @@ impl<'a> Search<'a> {
         best.map(|(_, more)| more)
     }
 
-    /// One more lamp from a start, first alone and then with the others; none where it is part of the surroundings.
+    /// Adds a lamp from a start, first alone and then with the others; `None` if it is part of the
+    /// surroundings.
     fn follow(&mut self, lamps: &[Lamp], start: &Lamp) -> Option<Vec<Lamp>> {
         let radius_m = self.shadows.caster.shape.radius_m;
         let mut more = [lamps, &[*start]].concat();
@@ -185,14 +192,14 @@ impl<'a> Search<'a> {
         self.shadows.shading(self.raster, lamps, ROBUST_FAR)
     }
 
-    /// Directions where one more lamp explains most of what is left, best first.
+    /// Directions in which one more lamp explains most of the residual, best first.
     fn peaks(&mut self, lamps: &[Lamp]) -> Vec<Lamp> {
         let tried: Vec<Lamp> = self.candidates.iter().map(|(lamp, _)| *lamp).collect();
         let scores = self.scores(lamps);
         peaks(&tried, &scores).into_iter().take(N_STARTS).collect()
     }
 
-    /// What one more lamp in each direction explains of what is left.
+    /// The fraction of the residual that one more lamp in each direction explains.
     fn scores(&mut self, lamps: &[Lamp]) -> Vec<f64> {
         let shading = self.shading(lamps);
         self.shadows.light(lamps, &shading);
@@ -204,7 +211,7 @@ impl<'a> Search<'a> {
         scores.collect()
     }
 
-    /// Of directions, those where one more lamp explains most of what is left, with how wide it is.
+    /// The best of the directions for one more lamp, with its width.
     fn starts(&mut self, lamps: &[Lamp], from: &[Lamp]) -> Vec<Lamp> {
         let Self { shadows, raster, .. } = self;
         let taken = shadows.taken_of_all(raster, lamps);

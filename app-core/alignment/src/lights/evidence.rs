@@ -1,4 +1,4 @@
-//! Whether what was found is a lamp, or what the model of light leaves unexplained.
+//! Decides whether an estimate is a lamp, or an error of the light model.
 
 use glam::DVec3;
 
@@ -8,41 +8,43 @@ use super::shading::Shading;
 use super::shadows::Shadows;
 use crate::receivers::up;
 
-/// Bounds on what lamps give of the light at the toy's foot.
+/// Bounds on the lamps' shares of the light at the toy's foot.
 struct Bounds {
-    /// Of each.
+    /// Lower bound for each.
     least: f64,
-    /// Of all: what a fit may be off comes on top of 1.
+    /// Upper bound for the sum: above 1 by the error of a fit.
     most: f64,
 }
 
-/// Measured: what is none gave up to .08, but broad; a bulb of .06 was found with .057.
+/// Measured: false lamps gave up to .08, but broad; a bulb of .06 was found with .057.
 const WITH_PLATE: Bounds = Bounds {
     least: 0.04,
     most: 1.05,
 };
 /// The colour under a shadow is less certain then.
 ///
-/// Measured: what is none gave .04; a lamp of a real room, of .6 in larger pictures, 1.02 to 1.31 in small ones.
+/// Measured: false lamps gave .04; a lamp of a real room, of .6 in larger pictures, 1.02 to 1.31 in
+/// small ones.
 const WITHOUT_PLATE: Bounds = Bounds {
     least: 0.1,
     most: 1.5,
 };
-/// A lamp is brighter than the mean of its surroundings, or it is one of them.
+/// Smallest ratio of a lamp's radiance to the mean of its surroundings.
 ///
-/// Measured: what is none 0.2 to 1.1 times, from toys that throw light back and uneven skies; a lamp 40 degrees wide 7 times.
+/// Measured: false lamps 0.2 to 1.1 times, from toys that reflect light and uneven skies; a lamp 40
+/// degrees wide 7 times.
 const OUTSHINES: f64 = 3.0;
-/// Surroundings are not taken for darker, as a part of the light.
+/// Lower bound of the surroundings, as a share of the light.
 const LEAST_AMBIENT: f64 = 0.1;
-/// A lamp is farther from the toy's middle, over the toy's radius.
+/// Smallest distance of a lamp from the toy's centre, over the toy's radius.
 const NEAREST: f64 = 2.0;
-/// No lamp is lower, as a sine; its share is of little light.
+/// Sine of a lamp's lowest elevation, below which its share is small.
 const LOWEST: f64 = 0.1;
 
-/// The part of the loss that a lamp explains, of what those before it leave.
+/// The fraction of the remaining loss that a lamp must explain.
 ///
-/// Measured: uneven skies fell by .6, but to what does not outshine them; bulbs of a share of .06 by .3, of more by .5 to .99, what is
-/// none by .05 to .24.
+/// Measured: uneven skies fell by .6, but to lamps that do not outshine them; bulbs of a share of
+/// .06 by .3, of more by .5 to .99, false lamps by .05 to .24.
 const GAIN: f64 = 0.2;
 
 /// Whether one more lamp explains enough.
@@ -50,17 +52,18 @@ pub(super) fn is_gain(loss_before: f64, loss: f64) -> bool {
     loss < (1.0 - GAIN) * loss_before
 }
 
-/// Whether a lamp shines out of its surroundings; `up` is the normal of the receiver nearest to the toy.
+/// Whether a lamp outshines its surroundings; `up` is the normal of the receiver nearest to the
+/// toy.
 pub(super) fn outshines(lamps: &[Lamp], index: usize, shading: &Shading, up: DVec3) -> bool {
     let shares: f64 = (0..lamps.len()).map(|lamp| shading.share(0, lamp)).sum();
     let ambient = (1.0 - shares).max(LEAST_AMBIENT);
     let lamp = &lamps[index];
     let cosine = lamp.direction.dot(up).max(LOWEST);
-    // Radiances over that of an even hemisphere with all of the light.
+    // Radiances relative to a uniform hemisphere with all of the light.
     shading.share(0, index) > OUTSHINES * ambient * lamp.spread.powi(2) * cosine
 }
 
-/// The last of the lamps that cannot be one.
+/// The last of the lamps that is implausible.
 pub(super) fn doubtful(lamps: &[Lamp], shading: &Shading, shadows: &Shadows) -> Option<usize> {
     let Caster { shape, receivers, .. } = shadows.caster;
     let (up, radius_m) = (up(receivers), shape.radius_m);

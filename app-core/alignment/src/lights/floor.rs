@@ -1,4 +1,4 @@
-//! Pixels of the receivers beside the toy, which the shadow is read from.
+//! Receiver pixels beside the toy, from which the shadow is read.
 
 use glam::{DVec3, IVec2};
 
@@ -7,30 +7,30 @@ use crate::picture::{Color, Level, noise_deviation, places};
 use crate::raster::Coverage;
 use crate::receivers::{SeenReceiver, receiver_at};
 
-/// Pixels as near to the toy may mix with it.
+/// Margin around the toy, in which pixels may be mixed with it.
 const CLEAR_PX: i32 = 2;
-/// What the model of light leaves unexplained, over the plate.
+/// Error of the light model, over the plate.
 const UNEXPLAINED: f32 = 0.02;
-/// Linear light of the codes 4 and 250: beyond, a pixel says little.
+/// Linear light of the codes 4 and 250, the range of reliable pixels.
 const DARKEST: f32 = 0.0012;
 const BRIGHTEST: f32 = 0.956;
 
-/// A pixel that shows a receiver.
+/// A pixel of a receiver.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FloorPixel {
-    /// Where, in pixels of the level.
+    /// Position, in pixels of the level.
     pub(super) at: IVec2,
     /// Index of the receiver.
     pub(super) receiver: usize,
     /// The receiver's point there, in camera space.
     pub(super) point: DVec3,
-    /// Terms of the gain there, a polynomial over the plane; 1 and zeros where it is even.
+    /// Terms of the gain there, a polynomial over the plane; 1 and zeros for a constant gain.
     pub(super) gain: [f32; QUADRATIC],
-    /// Of the photograph.
+    /// Colour of the photograph.
     pub(super) frame: Color,
-    /// Of the plate.
+    /// Colour of the plate.
     pub(super) plate: Color,
-    /// One over the expected variance of each channel; 0 where it says nothing.
+    /// One over the expected variance of each channel; 0 for an unreliable one.
     pub(super) precision: Color,
 }
 
@@ -54,8 +54,9 @@ impl FloorPixel {
     }
 }
 
-/// Pixels clear of the toy that show a receiver, row by row; against a backdrop where there is no plate. `around` is the toy's centre
-/// in camera space, and a length in metres that places are told in.
+/// Receiver pixels clear of the toy, row by row; without a plate, compared with the background
+/// model. `around` is the toy's centre in camera space, and the unit of length for the gain's
+/// terms, in metres.
 pub(super) fn floor_pixels(
     level: &Level,
     (coverage, backdrop): (&Coverage, Option<&Backdrop<QUADRATIC>>),
@@ -63,7 +64,7 @@ pub(super) fn floor_pixels(
     around: (DVec3, f64),
     is_wanted: impl Fn(IVec2) -> bool,
 ) -> Vec<FloorPixel> {
-    // A receiver on its own gets no light of another, and a plate shows what it is like.
+    // A single receiver has no interreflection, and a plate shows its texture.
     let is_even = receivers.len() == 1 && level.plate.is_some();
     let n_terms = if is_even { 1 } else { QUADRATIC };
     let clear = places(level.frame.size_px).filter(|at| is_wanted(*at) && !coverage.is_near(*at, CLEAR_PX));

@@ -1,4 +1,4 @@
-//! Lights that are followed while something else is tried: the same pixels, from one try to the next.
+//! Lights that are tracked while other parameters are varied, on the same pixels in each try.
 
 use glam::{DMat4, IVec2};
 
@@ -14,18 +14,18 @@ use app_scene::scene::{Light, LightUncertainty, MAX_LIGHTS};
 /// Gauss-Newton rounds of lamps that were just turned to the best direction.
 const N_FIRST: usize = 4;
 
-/// What a toy's place, a plane and a projection say together.
+/// A toy's place, the receivers and the pictures.
 #[derive(Clone, Copy)]
 pub(crate) struct View<'a> {
     /// The toy.
     pub(crate) shape: &'a Shape,
-    /// Where its shadows fall.
+    /// The receivers of its shadows.
     pub(crate) receivers: &'a [SeenReceiver],
     /// The pictures.
     pub(crate) pyramid: &'a Pyramid,
 }
 
-/// Lamps as seen from the toy, which stay about the same wherever that is.
+/// Lamps relative to the toy, which hardly change with the toy's place.
 #[derive(Clone)]
 pub(crate) struct Followed {
     lamps: Vec<Lamp>,
@@ -34,7 +34,8 @@ pub(crate) struct Followed {
 }
 
 impl Followed {
-    /// Lights about where they are listed; none where there are none or too many, one stands in the middle of the toy, or too little of their shadows is seen.
+    /// Lights near the listed ones; `None` if there are none or too many, one is at the toy's
+    /// centre, or too little of their shadows is visible.
     pub(crate) fn new(lights: &[Light], view: View<'_>, camera_from_world: &DMat4) -> Option<Self> {
         if lights.is_empty() || lights.len() > MAX_LIGHTS {
             return None;
@@ -63,7 +64,7 @@ impl Followed {
         Some(followed)
     }
 
-    /// The pixels of a level that tell about the shadows of the lamps.
+    /// The pixels of a level around the lamps' shadows.
     pub(crate) fn around(&self, view: View<'_>, level: usize) -> Around {
         let mut raster = Rasterizer::default();
         let picture = view.pyramid.level(level);
@@ -71,8 +72,8 @@ impl Followed {
         Around { level, rect }
     }
 
-    /// Moves the lamps to where they explain those pixels best; the mean loss that is left. None where they do not tell, or where a
-    /// lamp would have to darken what it shines on.
+    /// Moves the lamps to the best fit of those pixels; returns the mean remaining loss. `None` if
+    /// the pixels do not constrain them, or if a lamp would have to be negative.
     pub(crate) fn next(&mut self, view: View<'_>, around: &Around, n_rounds: usize) -> Option<f64> {
         let mut raster = Rasterizer::default();
         let posed = (view.shape, view.receivers);

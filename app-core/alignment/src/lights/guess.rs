@@ -1,4 +1,4 @@
-//! Lights that something else than their shadow tells of: a ray to each, whose length may be unknown.
+//! Prior knowledge about lights other than their shadow: a ray to each, perhaps of unknown length.
 
 use glam::{DMat4, DVec2, DVec3};
 
@@ -11,22 +11,23 @@ use crate::probe::TrackedLight;
 use crate::raster::Rasterizer;
 use app_scene::scene::MAX_LIGHTS;
 
-/// Lengths of a ray that are tried where none is known, in metres; besides them one without end.
+/// Lengths of a ray to try if none is known, in metres; a light at infinity is tried as well.
 const LENGTHS_M: [f64; 8] = [0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.5, 5.0];
-/// A lamp's middle alone.
+/// The centre of a lamp alone.
 const POINT: [DVec2; 1] = [DVec2::ZERO];
 /// Rounds of one more lamp beside those before it.
 const N_ROUNDS: usize = 5;
 
-/// What else than shadows tells of lights.
+/// Knowledge about lights from sources other than shadows.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hints {
-    /// What a probe tells: they are looked for around these alone.
+    /// A probe's estimates: the search is restricted to them.
     pub(crate) guesses: Vec<Guess>,
-    /// Direction towards a light, in camera space, that is looked along where shadows tell of none; it may be far off.
+    /// Direction towards a light, in camera space, that is a start if shadows alone show none; it
+    /// may be far off.
     ///
-    /// Measured on five sessions without a plate whose light is not found: an exact direction led to none either. What they lack is
-    /// evidence, not a start.
+    /// Measured on five sessions without a plate whose light is not found: an exact direction led
+    /// to none either. They lack evidence, not a start.
     pub(crate) estimated: Option<DVec3>,
 }
 
@@ -35,14 +36,14 @@ pub(crate) struct Hints {
 pub(crate) struct Guess {
     origin: DVec3,
     direction: DVec3,
-    /// None where it is not known.
+    /// `None` if unknown.
     distance_m: Option<f64>,
     /// Tangent of the angular radius.
     spread: f64,
 }
 
 impl Guess {
-    /// Of a light that a probe tells.
+    /// A guess from a probe's light.
     pub(crate) fn new(light: &TrackedLight, camera_from_world: &DMat4) -> Option<Self> {
         let seen = &light.seen;
         Some(Self {
@@ -55,11 +56,11 @@ impl Guess {
         })
     }
 
-    /// As lamps of a toy: a near light stands elsewhere over the toy than over the ray's origin.
+    /// Lamps of a toy: a near light has another direction from the toy than from the ray's origin.
     fn lamps(&self, toy: DVec3, radius_m: f64) -> Vec<Lamp> {
         let at = |distance_m: f64| {
             let to = self.origin + distance_m * self.direction - toy;
-            // No lamp stands in the toy.
+            // A lamp cannot be inside the toy.
             (to.length() > 2.0 * radius_m).then(|| Lamp {
                 direction: to.normalize(),
                 nearness: to.length().recip(),
@@ -78,8 +79,8 @@ impl Guess {
     }
 }
 
-/// A lamp for each guess, strongest first: of the lengths of its ray that which explains most of what is left, turned to the best
-/// direction around it, and moved by steps.
+/// A lamp for each guess, strongest first: with the length of its ray that explains most of the
+/// residual, turned to the best direction around it, and refined by steps.
 pub(super) fn guessed(shadows: &Shadows<'_>, raster: &mut Rasterizer, guesses: &[Guess]) -> Vec<Lamp> {
     let shape = shadows.caster.shape;
     let mut lamps: Vec<Lamp> = Vec::new();
@@ -98,7 +99,7 @@ pub(super) fn guessed(shadows: &Shadows<'_>, raster: &mut Rasterizer, guesses: &
         let mut priors: Vec<Prior> = lamps.iter().map(Prior::held).collect();
         lamps.push(lamp);
         priors.push(Prior::free(&lamp, shape.radius_m));
-        // Where nothing tells it, it stays.
+        // Unconstrained lamps stay.
         let _ = shadows.rounds(raster, (&mut lamps, &priors), (N_ROUNDS, ROBUST_FAR));
     }
     lamps

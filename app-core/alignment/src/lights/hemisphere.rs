@@ -1,4 +1,4 @@
-//! Directions that a light may come from.
+//! Possible directions of a light.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,20 +7,20 @@ use glam::{DVec2, DVec3};
 use super::cast::Caster;
 use super::lamp::{Lamp, N_PARTS};
 
-/// Directions over the hemisphere.
+/// Number of directions over the hemisphere.
 const N_DIRECTIONS: u32 = 240;
-/// No light is looked for lower, as a sine.
+/// Sine of the lowest elevation in the search.
 const LOWEST: f64 = 0.12;
-/// A light of unknown distance is tried there, over the toy's radius.
+/// Initial distance of a light of unknown distance, over the toy's radius.
 const USUAL_DISTANCE: f64 = 10.0;
 
-/// Neighbours are nearer than so many spacings.
+/// Largest distance of neighbours, in spacings.
 const NEIGHBOURS: f64 = 1.8;
-/// Turns of a lamp that is climbed with, halved as often.
+/// Number of turns of a lamp while climbing, with as many halvings.
 const N_TURNS: usize = 8;
 const N_HALVINGS: usize = 3;
 
-/// Angle between neighbouring directions, in radians, about.
+/// Approximate angle between neighbouring directions, in radians.
 fn spacing_rad() -> f64 {
     (TAU * (1.0 - LOWEST) / f64::from(N_DIRECTIONS)).sqrt()
 }
@@ -34,8 +34,8 @@ pub(super) fn lamp_from(caster: &Caster<'_>, direction: DVec3) -> Lamp {
     }
 }
 
-/// Point lights in all directions above the receiver that is nearest to the toy, evenly. Source: Vogel 1979, on Lambert's
-/// cylinder.
+/// Point lights in all directions above the receiver nearest to the toy, evenly spread. Source:
+/// Vogel 1979, on Lambert's cylinder.
 pub(super) fn lamps(caster: &Caster<'_>) -> Vec<Lamp> {
     let Some(receiver) = caster.receivers.first() else {
         return Vec::new();
@@ -53,7 +53,7 @@ pub(super) fn lamps(caster: &Caster<'_>) -> Vec<Lamp> {
     (0..N_DIRECTIONS).map(lamp).collect()
 }
 
-/// Of lamps with scores, those that are best among their neighbours, best first.
+/// The lamps whose scores are local maxima, best first.
 pub(super) fn peaks(lamps: &[Lamp], scores: &[f64]) -> Vec<Lamp> {
     let near = NEIGHBOURS * spacing_rad();
     let is_peak = |index: usize| {
@@ -66,7 +66,8 @@ pub(super) fn peaks(lamps: &[Lamp], scores: &[f64]) -> Vec<Lamp> {
     peaks.into_iter().map(|index| lamps[index]).collect()
 }
 
-/// Turns a lamp to the best of the directions around it, ever nearer ones; with its score.
+/// Turns a lamp to the best of the directions around it, in ever smaller steps; returns its score,
+/// too.
 pub(super) fn climb(from: &Lamp, mut score: impl FnMut(&Lamp) -> f64) -> (f64, Lamp) {
     let mut best = (score(from), *from);
     let mut by_rad = 0.5 * spacing_rad();

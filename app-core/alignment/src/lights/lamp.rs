@@ -1,13 +1,13 @@
-//! A light by numbers that can be moved a little.
+//! A light's parameters for optimisation.
 
 use glam::{DMat4, DQuat, DVec2, DVec3, DVec4};
 
 use app_scene::geometry::disc::vogel_disc;
 use app_scene::scene::Light;
 
-/// Numbers of a lamp: two angles, its nearness, and its spread.
+/// Number of a lamp's parameters: two angles, its inverse distance, and its spread.
 pub(super) const N_PARTS: usize = 4;
-/// Index of the nearness among them.
+/// Index of the inverse distance among them.
 pub(super) const NEARNESS: usize = 2;
 /// Index of the spread.
 pub(super) const SPREAD: usize = 3;
@@ -17,14 +17,14 @@ pub(super) const SPREAD: usize = 3;
 pub(super) struct Lamp {
     /// Unit vector from the toy.
     pub(super) direction: DVec3,
-    /// One over its distance in metres; 0 for a light too far away for that to matter.
+    /// Inverse distance in 1/m; 0 for a light at infinity.
     pub(super) nearness: f64,
     /// Tangent of the angular radius.
     pub(super) spread: f64,
 }
 
 impl Lamp {
-    /// None for a light around the middle of the toy.
+    /// `None` for a light around the centre of the toy.
     pub(super) fn new(light: &Light, camera_from_world: &DMat4, toy: DVec3) -> Option<Self> {
         let in_camera = light.moved(camera_from_world);
         Some(Self {
@@ -34,7 +34,7 @@ impl Lamp {
         })
     }
 
-    /// Back in the world.
+    /// The light in the world.
     pub(super) fn light(&self, world_from_camera: &DMat4, toy: DVec3) -> Light {
         let angular_radius_rad = self.spread.atan();
         if self.is_far() {
@@ -47,12 +47,13 @@ impl Lamp {
         }
     }
 
-    /// Whether its distance does not matter.
+    /// Whether it is at infinity.
     pub(super) fn is_far(&self) -> bool {
         self.nearness <= 0.0
     }
 
-    /// Turned by two angles in radians about axes across its direction, nearer by the third number, its spread more by the fourth.
+    /// Turned by two angles in radians about axes across its direction, with the third number added
+    /// to its inverse distance, and the fourth to its spread.
     pub(super) fn moved(&self, step: &[f64; N_PARTS]) -> Self {
         let (across, along) = self.direction.any_orthonormal_pair();
         let turn = DQuat::from_scaled_axis(step[0] * across + step[1] * along);
@@ -79,8 +80,8 @@ impl Lamp {
     }
 }
 
-/// At least three points over the unit disc, of equal areas, with the disc's own mean and variance, of which a spiral of few is a
-/// little off.
+/// At least three points over the unit disc, of equal areas, with the disc's own mean and variance,
+/// from which a spiral of few points deviates slightly.
 pub(super) fn disc(n_points: usize) -> Vec<DVec2> {
     let mut points: Vec<DVec2> = vogel_disc(n_points).collect();
     let mean_of = |values: &mut dyn Iterator<Item = DVec2>| {
@@ -89,7 +90,7 @@ pub(super) fn disc(n_points: usize) -> Vec<DVec2> {
     };
     let mean = mean_of(&mut points.iter().copied());
     let variance = mean_of(&mut points.iter().map(|point| (*point - mean) * (*point - mean)));
-    // Along each axis a disc has a variance of 1/4.
+    // A disc's variance along each axis is 1/4.
     let scale = 0.5 / DVec2::new(variance.x.sqrt(), variance.y.sqrt());
     for point in &mut points {
         *point = (*point - mean) * scale;

@@ -1,15 +1,15 @@
-//! What a shading leaves unexplained, and how much of that one more lamp would explain.
+//! The residual of a shading, and the fraction of it that one more lamp would explain.
 
 use nalgebra::{Cholesky, Const};
 
 use super::shading::{FIRST_LAMP, Factors, N_FACTORS, PRIOR, Shaded, Shading, add_outer};
 
-/// What a shading leaves unexplained.
+/// The residual of a shading.
 pub(super) struct Leftover<'a> {
     shaded: &'a Shaded<'a>,
     /// Weight and residual of each channel of each pixel.
     pixels: Vec<[(f64, f64); 3]>,
-    /// Of the factors of each receiver and channel.
+    /// Normal equations of the factors of each receiver and channel.
     normals: Vec<Option<Cholesky<f64, Const<N_FACTORS>>>>,
     loss: f64,
 }
@@ -45,7 +45,8 @@ impl<'a> Leftover<'a> {
         }
     }
 
-    /// The part of the loss that one more lamp would explain, with all factors fitted anew; of what it takes.
+    /// The fraction of the loss that one more lamp would explain, with all factors fitted anew; the
+    /// lamp is given by the light that the toy blocks.
     pub(super) fn explained(&self, taken: &[f32]) -> f64 {
         let mut blocks = vec![(Factors::zeros(), 0.0, 0.0); self.normals.len()];
         for (index, taken) in taken.iter().enumerate().filter(|(_, taken)| **taken > 0.0) {
@@ -66,7 +67,7 @@ impl<'a> Leftover<'a> {
             let known = normal
                 .as_ref()
                 .map_or(0.0, |normal| mixed.dot(&normal.solve(mixed)));
-            // A lamp only gives light.
+            // A lamp cannot be negative.
             side.max(0.0).powi(2) / (square - known + PRIOR)
         });
         explained.sum::<f64>() / self.loss.max(f64::MIN_POSITIVE)

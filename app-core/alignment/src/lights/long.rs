@@ -1,7 +1,9 @@
-//! A long light, such as a tube, by a line of round ones: what one round light leaves unexplained.
+//! A long light, for example a tube, as a line of round ones, for shadows that one round light does
+//! not explain.
 //!
-//! The line's middle, its turn about the way to it, its length, its width and its distance are moved, one after the other and by ever
-//! smaller steps, to where all its pieces together, alike in brightness, explain most of a small picture. Source: Hooke and Jeeves 1961.
+//! The line's centre, its turn about the line of sight, its length, its width and its distance are
+//! optimised one after the other by ever smaller steps, until all its pieces of equal brightness
+//! together explain most of a small picture. Source: Hooke and Jeeves 1961.
 
 use glam::DVec2;
 
@@ -13,42 +15,43 @@ use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
 use app_scene::scene::MAX_LIGHTS;
 
-/// Points over a piece.
+/// Number of points over a piece.
 const N_POINTS: usize = 8;
-/// Turns about the way to it that are tried first, over half a circle, and tangents of half the angle that the line fills.
+/// Number of turns about the line of sight to try first, over half a circle, and tangents of the
+/// line's angular half length.
 const N_TURNS: usize = 6;
 const HALF_LENGTHS: [f64; 3] = [0.15, 0.3, 0.6];
-/// A piece is no wider than that, over the distance between two.
+/// Largest width of a piece, over the distance between two.
 const MOST_OVERLAP: f64 = 1.0;
-/// First steps: of the middle and of the turn in radians, of the half length and of the spread over what they are, of the nearness over
-/// one over the toy's radius.
+/// First steps: of the centre and of the turn in radians, of the half length and of the spread
+/// relative to their values, of the inverse distance relative to one over the toy's radius.
 const FIRST_STEPS: [f64; N_NUMBERS] = [0.05, 0.05, 0.25, 0.25, 0.3, 0.02];
-/// Halvings of the steps, and rounds at most.
+/// Number of halvings of the steps, and largest number of rounds.
 const N_HALVINGS: usize = 4;
 const MOST_ROUNDS: usize = 24;
-/// A line leaves no more than this part of what one round light leaves.
+/// Largest loss of a line, as a fraction of one round light's.
 ///
 /// Measured: .29 of a tube of 60 cm by 4 cm in a metre's distance.
 const OF_ROUND: f64 = 0.6;
-/// The best of the lines that are tried first is followed if it leaves no more than this part: else a shadow falls on a step, say, and
-/// no line explains it.
+/// Largest loss of the best initial line, as a fraction of the round light's, for which it is
+/// optimised: otherwise the shadow may fall on a step, and no line explains it.
 ///
 /// Measured: .63 of that tube, 1.01 of a book and 1.03 of a mug under the shadow of a bulb.
 const OF_ROUND_AT_FIRST: f64 = 0.9;
 /// Side of the cells that vertices are merged in, in pixels.
 const CELL_PX: f64 = 0.5;
 
-/// Numbers of a line.
+/// Number of a line's parameters.
 const N_NUMBERS: usize = 6;
 
 /// A line of lamps.
 #[derive(Clone, Copy, Debug)]
 struct Line {
-    /// Its middle; as wide as a piece.
+    /// Its centre; of the width of a piece.
     middle: Lamp,
-    /// About the way to it, in radians.
+    /// Turn about the line of sight, in radians.
     turn_rad: f64,
-    /// Tangent of half the angle that it fills.
+    /// Tangent of half its angular length.
     half_length: f64,
 }
 
@@ -57,7 +60,7 @@ impl Line {
     fn pieces(&self) -> [Lamp; MAX_LIGHTS] {
         let along = DVec2::from_angle(self.turn_rad) * self.half_length;
         std::array::from_fn(|index| {
-            // The middles of equal parts of the line.
+            // The centres of equal parts of the line.
             let part = (2.0 * index as f64 + 1.0) / MAX_LIGHTS as f64 - 1.0;
             let [across, up] = (part * along).to_array();
             let mut step = [0.0; N_PARTS];
@@ -66,7 +69,7 @@ impl Line {
         })
     }
 
-    /// With one number moved by a step, of a toy of a radius.
+    /// The line with one parameter changed by a step, relative to the toy's radius.
     fn stepped(&self, number: usize, step: f64, radius_m: f64) -> Self {
         let mut out = *self;
         let mut parts = [0.0; N_PARTS];
@@ -87,7 +90,7 @@ impl Line {
     }
 }
 
-/// A line of lamps in place of a round one, which explains clearly more; none where none does.
+/// A line of lamps that explains clearly more than a round one; `None` if there is none.
 pub(super) fn line_of(
     round: &Lamp,
     (shape, receivers): (&Shape, &[SeenReceiver]),
@@ -123,7 +126,7 @@ pub(super) fn line_of(
     (found < OF_ROUND * left_by_round).then(|| line.pieces())
 }
 
-/// The best of some turns and lengths, after what it leaves.
+/// The best of some turns and lengths, with its loss.
 fn first(round: &Lamp, left: &mut impl FnMut(&Line) -> f64) -> Option<(f64, Line)> {
     let turns = (0..N_TURNS).map(|index| std::f64::consts::PI * index as f64 / N_TURNS as f64);
     let lines = turns.flat_map(|turn_rad| {
@@ -140,7 +143,7 @@ fn first(round: &Lamp, left: &mut impl FnMut(&Line) -> f64) -> Option<(f64, Line
     scored.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// A line moved to where it leaves least, after that.
+/// The optimised line, with its loss.
 fn moved(from: (f64, Line), radius_m: f64, left: &mut impl FnMut(&Line) -> f64) -> (f64, Line) {
     let mut best = from;
     let mut scale = 1.0;

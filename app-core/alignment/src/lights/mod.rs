@@ -1,10 +1,12 @@
-//! The lights, by the shadows of the toy on the receivers.
+//! Estimates the lights from the shadows of the toy on the receivers.
 //!
-//! Each light's direction, distance and size move the shadow that the mesh predicts (`cast`) until frame over plate shows it. What
-//! the lights give is linear and fitted along (`shading`): variable projection. Of listed lights, directions around the given one
-//! are tried first, on a small picture, then Gauss-Newton steps on larger ones (`step`). Where none are listed, or none near a list
-//! explains the shadow, they are looked for all over the hemisphere (`discover`), or around those that a probe tells of (`guess`). One
-//! that is long is a line of round ones (`long`); where there is no lamp at all, one wide light may be assumed (`wide`).
+//! Each light's direction, distance and size move the shadow that the mesh predicts (`cast`) until
+//! it fits frame over plate. The lights' intensities are linear and fitted along (`shading`):
+//! variable projection. For listed lights, directions around the given one are tried first, on a
+//! small picture, then Gauss-Newton steps follow on larger ones (`step`). If none are listed, or
+//! none near a list explains the shadow, they are searched all over the hemisphere (`discover`), or
+//! around a probe's estimates (`guess`). A long light is a line of round ones (`long`); if there is
+//! no lamp at all, one wide light may be assumed (`wide`).
 
 mod backdrop;
 mod cast;
@@ -21,6 +23,7 @@ mod long;
 mod on_plane;
 mod prior;
 mod refine;
+mod reflection;
 mod relight;
 mod shading;
 mod shadows;
@@ -46,57 +49,58 @@ pub(super) use guess::{Guess, Hints};
 use lamp::{Lamp, N_PARTS, disc};
 pub(crate) use on_plane::OnPlane;
 use prior::Prior;
+pub(super) use reflection::{FoundReflection, reflected, reflection};
 pub(super) use relight::Relight;
 pub(super) use watch::{Watched, watch};
 
 use shadows::{LEAST_PIXELS, ROBUST_FAR, ROBUST_NEAR, Shadows, WIDE_PENUMBRA_PX};
 
-/// Directions that are tried around the given one, in steps of `SEARCH_STEP_RAD`.
+/// Spacing of the directions that are tried around the given one.
 const SEARCH_STEP_RAD: f64 = 3.5 * std::f64::consts::PI / 180.0;
 const SEARCH_STEPS: i32 = 4;
-/// Where they are said to be off by more, in wider steps, up to an angle.
+/// Wider spacing for a larger given uncertainty, and its largest angle.
 const FAR_STEP_RAD: f64 = 2.0 * SEARCH_STEP_RAD;
 const MOST_SEARCH_RAD: f64 = std::f64::consts::PI / 3.0;
-/// Points over a lamp then.
+/// Number of points over a lamp then.
 const N_SEARCH_POINTS: usize = 7;
 /// Gauss-Newton rounds: level, number, and scale of the weights.
 const ROUNDS: [(usize, usize, f64); 3] = [(3, 4, ROBUST_FAR), (2, 4, ROBUST_NEAR), (1, 3, ROBUST_NEAR)];
 
-/// A light is elsewhere where it turned by more than that part of its spread, and by more than that in radians; or grew by more, or is
-/// nearer or farther by more, as a logarithm.
+/// A light has moved if it turned by more than this fraction of its spread, and by more than this
+/// in radians; or if its size or its distance changed by more, as a logarithm.
 const LEAST_TURN: f64 = 0.06;
 const LEAST_TURN_RAD: f64 = 0.0015;
 const LEAST_GROWTH: f64 = 0.15;
 const LEAST_DISTANCE: f64 = 0.1;
-/// A direction is told where it turned by as many deviations.
+/// Number of standard deviations of a significant turn.
 const TOLD: f64 = 3.0;
 
-/// Lights that were found, and how they were judged.
+/// Estimated lights, and their scores.
 pub(super) struct Found {
-    /// In the order that they were given in.
+    /// Lights in the given order.
     pub(super) lights: Vec<FoundLight>,
-    /// Mean loss with the given lights, and with those found, of the same pixels.
+    /// Mean loss with the given and with the estimated lights, for the same pixels.
     pub(super) losses: [f64; 2],
 }
 
-/// One of them.
+/// An estimated light.
 pub(super) struct FoundLight {
-    /// In the world.
+    /// The light in the world.
     pub(super) light: Light,
-    /// From the given direction, in radians.
+    /// Angle from the given direction, in radians.
     pub(super) turned_rad: f64,
-    /// Over the given distance.
+    /// Distance over the given one.
     pub(super) distance_ratio: f64,
-    /// Tangent of the angular radius, as given.
+    /// Tangent of the given angular radius.
     pub(super) given_spread: f64,
-    /// As found.
+    /// Tangent of the estimated angular radius.
     pub(super) spread: f64,
-    /// One deviation of the direction, by noise alone.
+    /// Standard deviation of the direction, by noise alone.
     pub(super) deviation_rad: f64,
 }
 
 impl FoundLight {
-    /// Whether it was found elsewhere by enough to show, and by more than noise.
+    /// Whether it moved visibly, and by more than noise.
     pub(super) fn is_moved(&self) -> bool {
         let least_rad = (LEAST_TURN * self.given_spread)
             .max(LEAST_TURN_RAD)
@@ -119,8 +123,9 @@ impl FoundLight {
     }
 }
 
-/// Finds the lights around those given, no farther from them than they are uncertain; none where too little of a receiver shows their shadows, where one of them stands in the
-/// middle of the toy, or where one would have to darken what it shines on.
+/// Estimates the lights around the given ones, within their uncertainty; `None` if too little of a
+/// receiver shows their shadows, if one is at the centre of the toy, or if one would have to be
+/// negative.
 pub(super) fn find(
     (lights, uncertainty): (&[Light], &LightUncertainty),
     (shape, receivers): (&Shape, &[SeenReceiver]),
@@ -188,7 +193,8 @@ pub(super) fn find(
     })
 }
 
-/// The toy's points flattened onto each receiver from points over the unit disc of a light, in camera space.
+/// The toy's points projected onto each receiver from points over the unit disc of a light, in
+/// camera space.
 pub(super) fn flat_shadows(
     light: &Light,
     shape: &Shape,
@@ -241,7 +247,7 @@ impl Shadows<'_> {
     }
 }
 
-/// Steps to directions on a disc around a lamp's own, of a radius where one is known.
+/// Steps to directions on a disc around a lamp's own, within a radius if one is known.
 fn directions(most_rad: Option<f64>) -> impl Iterator<Item = [f64; N_PARTS]> {
     let usual_rad = f64::from(SEARCH_STEPS) * SEARCH_STEP_RAD;
     let most_rad = most_rad.unwrap_or(usual_rad).min(MOST_SEARCH_RAD);
@@ -250,7 +256,7 @@ fn directions(most_rad: Option<f64>) -> impl Iterator<Item = [f64; N_PARTS]> {
     near.chain(far)
 }
 
-/// Steps on a square grid of a spacing, but for none, up to a radius.
+/// Steps on a square grid of the given spacing within a radius, without zero.
 fn grid(apart_rad: f64, most_rad: f64) -> impl Iterator<Item = [f64; N_PARTS]> {
     #[allow(clippy::cast_possible_truncation, reason = "a handful")]
     let n = (most_rad / apart_rad * (1.0 + 1e-9)) as i32;
@@ -262,7 +268,8 @@ fn grid(apart_rad: f64, most_rad: f64) -> impl Iterator<Item = [f64; N_PARTS]> {
     })
 }
 
-/// Assumes one wide light where none is found; none where no such light explains enough more than light from all around does.
+/// Assumes one wide light if none is found; `None` if no such light explains clearly more than
+/// ambient light.
 pub(super) fn assume_wide(
     shape: &Shape,
     receivers: &[SeenReceiver],
@@ -277,7 +284,8 @@ pub(super) fn assume_wide(
     })
 }
 
-/// A line of round lights in place of one, which explains clearly more of its shadow; none where no such line does.
+/// A line of round lights that explains the shadow clearly better than one; `None` if there is
+/// none.
 pub(super) fn line_of(
     light: &Light,
     (shape, receivers): (&Shape, &[SeenReceiver]),
@@ -293,8 +301,8 @@ pub(super) fn line_of(
     )
 }
 
-/// Finds lights that nobody lists, strongest first; `pose` is how well the toy's is known. Where a probe tells of lights, those that cast
-/// a shadow, made exact by it.
+/// Estimates unlisted lights, strongest first; `pose` is the uncertainty of the toy's. With a
+/// probe, its estimates that cast a shadow, refined by it.
 pub(super) fn discover(
     shape: &Shape,
     receivers: &[SeenReceiver],

@@ -1,33 +1,35 @@
-//! What is known of a lamp before its shadow is looked at.
+//! Prior knowledge of a lamp.
 
 use glam::DQuat;
 
 use super::lamp::{Lamp, N_PARTS, NEARNESS, SPREAD};
 use app_scene::scene::LightUncertainty;
 
-/// Deviations of what is given: directions in radians, the nearness over the given one, and the spread over the given one.
+/// Standard deviations of a given lamp: direction in radians, inverse distance and spread relative
+/// to the given ones.
 const GIVEN_RAD: f64 = 0.2;
 const GIVEN_NEARNESS: f64 = 0.3;
 const GIVEN_SPREAD: f64 = 0.7;
-/// The least deviation of a spread; a point light stays one.
+/// Smallest standard deviation of a spread; a point light stays one.
 const GIVEN_POINT: f64 = 0.003;
-/// Of a lamp of which nothing is known: its direction in radians, its nearness over the toy's radius, its spread.
+/// Standard deviations of an unknown lamp: direction in radians, inverse distance over the toy's
+/// radius, spread.
 const FREE_RAD: f64 = 1.0;
 const FREE_NEARNESS: f64 = 0.3;
 const FREE_SPREAD: f64 = 0.5;
 
-/// A lamp that each part is drawn to, and the deviations of that; a part without any is held as it is. Directions are free within
-/// theirs.
+/// The mean of each parameter and its standard deviation; a parameter without one is fixed.
+/// Directions are free within theirs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prior {
     lamp: Lamp,
     deviations: [f64; N_PARTS],
-    /// How far from it a lamp may be at most.
+    /// Largest distance of a lamp from it.
     uncertainty: LightUncertainty,
 }
 
 impl Prior {
-    /// Of a lamp that was given; one at infinity stays there.
+    /// The prior of a given lamp; one at infinity stays there.
     pub(super) fn given(lamp: &Lamp, uncertainty: &LightUncertainty) -> Self {
         let spread = match uncertainty.size_ratio {
             Some(ratio) if ratio <= 1.0 => 0.0,
@@ -44,7 +46,7 @@ impl Prior {
         }
     }
 
-    /// Of a lamp of which nothing is known, beside a toy of a radius.
+    /// The prior of an unknown lamp, beside a toy of the given radius.
     pub(super) fn free(lamp: &Lamp, radius_m: f64) -> Self {
         let far_point = Lamp {
             nearness: 0.0,
@@ -65,7 +67,7 @@ impl Prior {
         prior
     }
 
-    /// Of a lamp that stays as it is.
+    /// The prior of a fixed lamp.
     pub(super) fn held(lamp: &Lamp) -> Self {
         Self {
             lamp: *lamp,
@@ -74,7 +76,7 @@ impl Prior {
         }
     }
 
-    /// The nearest lamp that is no farther from the one given than that is uncertain.
+    /// The nearest lamp within the given one's uncertainty.
     pub(super) fn within(&self, lamp: Lamp) -> Lamp {
         let within_ratio = |value: f64, given: f64, ratio: Option<f64>| {
             ratio.map_or(value, |ratio| value.clamp(given / ratio, given * ratio))
@@ -105,17 +107,17 @@ impl Prior {
         }
     }
 
-    /// Whether the lamp was given at a distance.
+    /// Whether the lamp was given at a finite distance.
     pub(super) fn is_near(&self) -> bool {
         self.lamp.nearness > 0.0
     }
 
-    /// Whether a part stays as it is.
+    /// Whether a parameter is fixed.
     pub(super) fn holds(&self, part: usize) -> bool {
         self.deviations[part] <= 0.0
     }
 
-    /// How far each part of a lamp is from what is known, and the information on that.
+    /// The difference of each parameter from the prior, and its information.
     pub(super) fn pull(&self, lamp: &Lamp) -> [(f64, f64); N_PARTS] {
         [0, 1, NEARNESS, SPREAD].map(|part| {
             let away = match part {

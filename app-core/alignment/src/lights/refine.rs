@@ -1,4 +1,4 @@
-//! Lamps that were counted, made exact in a larger picture.
+//! Refines counted lamps in a larger picture.
 
 use super::evidence::doubtful;
 use super::lamp::{Lamp, N_PARTS, NEARNESS};
@@ -8,21 +8,22 @@ use super::shadows::{ROBUST_NEAR, Shadows, WIDE_PENUMBRA_PX};
 use crate::raster::Rasterizer;
 use crate::report::PoseDeviation;
 
-/// Most rounds in one picture.
+/// Largest number of rounds in one picture.
 const N_ROUNDS: usize = 3;
-/// A nearness of fewer deviations is none; without a plate a receiver's own colours pass for the way that a lamp's light falls off.
+/// Significance of an inverse distance, in standard deviations; without a plate, a receiver's own
+/// colours resemble the falloff of a lamp's light.
 ///
 /// Measured without: the sun at 3.5 in a real room, bulbs at 9 and more.
 const TOLD: f64 = 3.0;
 const TOLD_WITHOUT_PLATE: f64 = 6.0;
 
-/// A lamp that was found.
+/// An estimated lamp.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Discovered {
     pub(super) lamp: Lamp,
-    /// Of the light on the receiver nearest to the toy.
+    /// Share of the light on the receiver nearest to the toy.
     pub(super) share: f64,
-    /// Deviations of its parts.
+    /// Standard deviations of its parameters.
     pub(super) deviations: [f64; N_PARTS],
 }
 
@@ -33,7 +34,7 @@ pub(super) struct Refined<'a> {
 }
 
 impl Refined<'_> {
-    /// Moves the lamps to where they explain most, without those that prove to be none.
+    /// Optimises the lamps, without those that prove to be none.
     pub(super) fn refine(&mut self, raster: &mut Rasterizer) {
         let shading = self.shading(raster);
         self.shadows.light(&self.lamps, &shading);
@@ -44,7 +45,7 @@ impl Refined<'_> {
                 .iter()
                 .map(|lamp| Prior::free(lamp, radius_m))
                 .collect();
-            // Where nothing tells them they stay.
+            // Unconstrained lamps stay.
             let _ = self
                 .shadows
                 .rounds(raster, (&mut self.lamps, &priors), (N_ROUNDS, ROBUST_NEAR));
@@ -56,13 +57,13 @@ impl Refined<'_> {
         }
     }
 
-    /// Whether a larger picture tells no more.
+    /// Whether a larger picture adds no information.
     pub(super) fn is_wide(&self) -> bool {
         let mut lamps = self.lamps.iter();
         lamps.all(|lamp| self.shadows.penumbra_px(lamp) > WIDE_PENUMBRA_PX)
     }
 
-    /// How well the lamps are known. Those whose nearness is not told are taken for ones at infinity.
+    /// The lamps with their uncertainty. Lamps of unconstrained distance are moved to infinity.
     pub(super) fn measured(mut self, raster: &mut Rasterizer, pose: &PoseDeviation) -> Vec<Discovered> {
         let radius_m = self.shadows.caster.shape.radius_m;
         let told = if self.shadows.has_plate {

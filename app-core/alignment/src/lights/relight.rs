@@ -1,7 +1,7 @@
-//! Plates in another light than they were taken in: a lamp was moved, or switched on.
+//! Relights plates after a lamp was moved, or switched on.
 //!
-//! What it changes of a receiver without a toy is smooth, and seen wherever frame and plate show it lit. The shadow is an
-//! outlier.
+//! The change of light on a receiver without a toy is smooth, and visible at all unshadowed pixels
+//! of frame and plate. The shadow is an outlier.
 
 use glam::{DMat4, DVec3};
 
@@ -13,11 +13,11 @@ use crate::shape::Shape;
 use app_scene::geometry::color::{code_of_linear, linear_of_codes};
 use app_scene::scene::{Camera, Image, Plate, Receiver};
 
-/// As far from the toy as the light is told, over the toy's radius.
+/// Distance from the toy to which the light is estimated, over the toy's radius.
 const REACH: f64 = 8.0;
-/// A plate darker than that tells no ratio.
+/// Smallest value of a plate for a ratio.
 const DARKEST: f32 = 0.0012;
-/// Light over that before is within these.
+/// Range of the ratio of light.
 const LEAST: f32 = 0.02;
 const MOST: f32 = 50.0;
 
@@ -29,7 +29,7 @@ pub(crate) struct Relight {
 }
 
 impl Relight {
-    /// By a small picture; none without a plate.
+    /// An estimate from a small picture; `None` without a plate.
     pub(crate) fn of(
         shape: &Shape,
         receivers: &[SeenReceiver],
@@ -74,7 +74,7 @@ impl Relight {
         }
     }
 
-    /// A plate as it would have been taken in this light; what is far from the toy stays as it was.
+    /// A plate relit to this light; pixels far from the toy stay the same.
     pub(crate) fn plate(&self, plate: &Plate, receivers: &[Receiver], toy_in_world: DVec3) -> Plate {
         let Camera {
             intrinsics,
@@ -114,7 +114,7 @@ impl Relight {
     }
 }
 
-/// One picture over another.
+/// The ratio of two pictures.
 fn over(frame: &Picture, plate: &Picture) -> Picture {
     let ratio = |at| {
         let (frame, plate) = (frame.get(at)?, plate.get(at)?);

@@ -1,12 +1,15 @@
-//! The light on the receivers for given shadows: linear in what each lamp and the ambient light give.
+//! The light on the receivers for given shadows: linear in the intensities of each lamp and of the
+//! ambient light.
 //!
-//! Frame over plate = gain - sum of ambient factors x (1 - A) - sum over lamps of factor x what the toy takes of it, for each receiver
-//! and channel: the additive model of `fit`, without the toy's bounce, which the ambient factors take up. They rise to a side.
+//! Frame over plate = gain - sum of ambient factors x (1 - A) - sum over lamps of factor x light
+//! blocked of it, for each receiver and channel: the additive model of `fit`, without the toy's
+//! bounce, which the ambient factors absorb. They are linear over the plane.
 //!
-//! Where there are several receivers the gain bends over each: a wall throws back less light onto a table, since the shadow lies on
-//! it too, and the table darkens over a wide place, which an even gain would leave to a penumbra that is too wide. Without
-//! a plate it makes up for what the backdrop is off. On one receiver with a plate it stays even, or it would take up what tells the scale
-//! of the world.
+//! With several receivers, the gain is a polynomial over each: a wall reflects less light onto a
+//! table, since the shadow lies on it too, and the table darkens over a wide area, which a constant
+//! gain would leave to a penumbra that is too wide. Without a plate it absorbs errors of the
+//! background model. On one receiver with a plate it is constant, or it would absorb the evidence
+//! for the scale of the world.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -15,20 +18,20 @@ use super::cast::{Ambient, N_AMBIENT};
 use super::floor::FloorPixel;
 use app_scene::scene::MAX_LIGHTS;
 
-/// Those of the gain, ambient factors, and one factor a lamp.
+/// Number of factors: those of the gain, ambient factors, and one factor per lamp.
 pub(super) const N_FACTORS: usize = FIRST_LAMP + MAX_LIGHTS;
-/// Index of the first lamp's.
+/// Index of the first lamp's factor.
 pub(super) const FIRST_LAMP: usize = QUADRATIC + N_AMBIENT;
 
 pub(super) type Factors = SVector<f64, N_FACTORS>;
 pub(super) type Normal = SMatrix<f64, N_FACTORS, N_FACTORS>;
 
-/// Keeps factors of what no pixel shows at 0.
+/// Keeps unconstrained factors at 0.
 pub(super) const PRIOR: f64 = 1e-3;
 /// Rounds of reweighting.
 const N_ROUNDS: usize = 3;
 
-/// The pixels that a shading explains, with what the toy takes of each light there.
+/// The pixels of a shading, with the light that the toy blocks there.
 pub(super) struct Shaded<'a> {
     pub(super) pixels: &'a [FloorPixel],
     pub(super) ambient: &'a [Ambient],
@@ -38,19 +41,20 @@ pub(super) struct Shaded<'a> {
 /// Factors of each receiver and channel.
 pub(super) struct Shading {
     pub(super) factors: Vec<[Factors; 3]>,
-    /// Mean robust loss of a channel of a pixel, in variances; of the factors before the last round.
+    /// Mean robust loss of a channel of a pixel, in variances; of the factors before the last
+    /// round.
     pub(super) loss: f64,
 }
 
 impl Shading {
-    /// The part of the light on a receiver below the toy that a lamp gives, in the mean over the channels.
+    /// A lamp's share of the light on a receiver below the toy, in the mean over the channels.
     pub(super) fn share(&self, receiver: usize, lamp: usize) -> f64 {
         let of_channels = self.factors[receiver].iter();
         let shares = of_channels.map(|factors| factors[FIRST_LAMP + lamp] / factors[0].max(PRIOR));
         shares.sum::<f64>() / 3.0
     }
 
-    /// Whether each of the lamps gives light, over all receivers and channels.
+    /// Whether each of the lamps has positive light, over all receivers and channels.
     pub(super) fn has_light_of_all(&self, n_lamps: usize) -> bool {
         let given = |lamp: usize| -> f64 {
             let factors = self.factors.iter().flatten();
@@ -60,9 +64,9 @@ impl Shading {
     }
 }
 
-/// One channel of one pixel against a shading.
+/// One channel of one pixel compared with a shading.
 pub(super) struct Residual {
-    /// Frame less model, in linear light.
+    /// Frame minus model, in linear light.
     pub(super) residual: f64,
     /// Robust weight: one over a variance, or less.
     pub(super) weight: f64,
@@ -72,7 +76,7 @@ pub(super) struct Residual {
 }
 
 impl Shaded<'_> {
-    /// Of one pixel: the gain's terms, then less what is taken.
+    /// The columns of one pixel: the gain's terms, then minus the blocked light.
     pub(super) fn columns(&self, index: usize) -> Factors {
         let mut columns = Factors::zeros();
         for (term, value) in self.pixels[index].gain.iter().enumerate() {
@@ -87,7 +91,8 @@ impl Shaded<'_> {
         columns
     }
 
-    /// One channel of a pixel; none where it says nothing. `robust` is the scale of the weights, in deviations.
+    /// One channel of a pixel; `None` if it is unreliable. `robust` is the scale of the weights, in
+    /// standard deviations.
     pub(super) fn residual(
         &self,
         (index, channel): (usize, usize),
@@ -111,7 +116,7 @@ impl Shaded<'_> {
         })
     }
 
-    /// Fits all factors by iteratively reweighted least squares, at first as if a receiver were as the plate shows it.
+    /// Fits all factors by iteratively reweighted least squares, starting from the plate.
     pub(super) fn fit(&self, n_receivers: usize, robust: f64) -> Shading {
         let mut lit = Factors::zeros();
         lit[0] = 1.0;
@@ -120,7 +125,7 @@ impl Shaded<'_> {
             loss: f64::INFINITY,
         };
         for round in 0..N_ROUNDS {
-            // The first round knows no factors to judge by.
+            // In the first round, all pixels have full weight.
             let scale = if round == 0 { f64::INFINITY } else { robust };
             shading = self.refit(&shading, scale);
         }
@@ -160,11 +165,12 @@ impl Shaded<'_> {
     }
 }
 
-/// Adds `weight` times the outer product of the first `n` entries, to the lower triangle alone, which is what Cholesky's method reads.
+/// Adds `weight` times the outer product of the first `n` entries to the lower triangle, which is
+/// all that Cholesky's method reads.
 pub(super) fn add_outer(normal: &mut Normal, row: &Factors, weight: f64, n: usize) {
     for j in 0..n {
         let scaled = weight * row[j];
-        // An even gain has terms that are 0 everywhere.
+        // A constant gain has terms that are 0 everywhere.
         if scaled != 0.0 {
             for i in j..n {
                 normal[(i, j)] += scaled * row[i];

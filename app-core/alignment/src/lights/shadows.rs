@@ -1,4 +1,4 @@
-//! What a level of the pictures shows of the shadows of lamps.
+//! The shadows of lamps in one level of the pictures.
 
 use glam::{DVec2, IVec2};
 
@@ -13,47 +13,47 @@ use crate::raster::{Rasterizer, project};
 use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
 
-/// Scale of robust weights, in deviations: while lights may be far off, and after.
+/// Scale of robust weights, in standard deviations: while lights may be far off, and later.
 pub(super) const ROBUST_FAR: f64 = 30.0;
 pub(super) const ROBUST_NEAR: f64 = 8.0;
-/// Where every penumbra is at least as wide in pixels of a level, a larger one tells no more.
+/// Width of every penumbra, in pixels of a level, above which a larger level adds no information.
 pub(super) const WIDE_PENUMBRA_PX: f64 = 5.0;
-/// Fewer pixels beside the toy tell no light.
+/// Number of pixels beside the toy that an estimate needs.
 pub(super) const LEAST_PIXELS: usize = 100;
-/// A penumbra narrower than that tells no size, in pixels.
+/// Width of a penumbra below which the lamp's size is unconstrained, in pixels.
 pub(super) const LEAST_PENUMBRA_PX: f64 = 0.6;
-/// Directions of ambient light.
+/// Number of directions of ambient light.
 const N_DIRECTIONS: usize = 128;
-/// Pixels around the shadows that are looked at, in pixels of a level.
+/// Margin around the shadows, in pixels of a level.
 const AROUND_PX: i32 = 16;
-/// A step that moves no shadow by more, in pixels, is the last.
+/// Shift of shadows by the last step, in pixels.
 const LAST_STEP_PX: f64 = 0.02;
-/// Points over a lamp, and fewer while lamps are counted.
+/// Number of points over a lamp, and a smaller one while lamps are counted.
 const LEAST_POINTS: f64 = 8.0;
 const MOST_POINTS: f64 = 40.0;
 const MOST_ROUGH_POINTS: f64 = 16.0;
-/// Light on the place without a toy is no less, over that at the toy's foot.
+/// Lower bound of the light on the place without a toy, relative to that at the toy's foot.
 const LEAST_UNSHADOWED: f32 = 0.05;
-/// Wider than the lamps, so that shadows that grow stay in sight.
+/// Growth of lamps for the region, so that growing shadows stay inside.
 const GROWN: f64 = 1.5;
 
-/// What one level shows of the shadows.
+/// The shadows in one level.
 pub(super) struct Shadows<'a> {
     pub(super) caster: Caster<'a>,
     pub(super) pixels: Vec<FloorPixel>,
     ambient: Vec<Ambient>,
-    /// Light on the place without a toy, over that at the toy's foot.
+    /// Light on the place without a toy, relative to that at the toy's foot.
     unshadowed: Vec<f32>,
-    /// Whether a plate tells what the receivers show without the toy.
+    /// Whether a plate shows the receivers without the toy.
     pub(super) has_plate: bool,
-    /// Whether lamps are counted here and made exact elsewhere: with fewer points, and one-sided differences.
+    /// Whether lamps are only counted here: with fewer points, and one-sided differences.
     pub(super) is_rough: bool,
-    /// How far the shadow of the toy's top moves as a light turns, about.
+    /// Approximate shift of the shadow of the toy's top per radian of a light's turn.
     pub(super) px_per_rad: f64,
 }
 
 impl<'a> Shadows<'a> {
-    /// All of a level's receivers, or what lies around the shadows of `lamps`.
+    /// All of a level's receiver pixels, or those around the shadows of `lamps`.
     pub(super) fn new(
         raster: &mut Rasterizer,
         (shape, receivers): (&'a Shape, &'a [SeenReceiver]),
@@ -64,7 +64,8 @@ impl<'a> Shadows<'a> {
         Self::within(raster, (shape, receivers), level, rect)
     }
 
-    /// The pixels around the shadows of lamps, as the first and the last; empty where there is no shadow in the picture.
+    /// The pixels around the shadows of lamps, as the first and the last; empty if there is no
+    /// shadow in the picture.
     pub(super) fn around(
         raster: &mut Rasterizer,
         (shape, receivers): (&Shape, &[SeenReceiver]),
@@ -75,7 +76,7 @@ impl<'a> Shadows<'a> {
         shadow_rect(raster, &caster, lamps)
     }
 
-    /// All of a level's receivers, or what lies within a rectangle of its pixels.
+    /// All of a level's receiver pixels, or those within a rectangle.
     pub(super) fn within(
         raster: &mut Rasterizer,
         (shape, receivers): (&'a Shape, &'a [SeenReceiver]),
@@ -109,17 +110,17 @@ impl<'a> Shadows<'a> {
         }
     }
 
-    /// The part of an even light from all around that the toy takes from a pixel.
+    /// The fraction of uniform ambient light that the toy blocks at a pixel.
     pub(super) fn ambient_taken(&self, index: usize) -> f32 {
         self.ambient[index][0]
     }
 
-    /// Width of the widest penumbra, about.
+    /// Approximate width of the widest penumbra.
     pub(super) fn penumbra_px(&self, lamp: &Lamp) -> f64 {
         2.0 * lamp.spread * self.px_per_rad
     }
 
-    /// Moves lamps step by step, until they rest; none where there is nothing to go by.
+    /// Moves lamps step by step until they converge; `None` if they are unconstrained.
     pub(super) fn rounds(
         &self,
         raster: &mut Rasterizer,
@@ -142,14 +143,14 @@ impl<'a> Shadows<'a> {
         Some(())
     }
 
-    /// Widens lamps whose penumbra is too narrow to be told.
+    /// Widens lamps whose penumbra is too narrow to measure.
     fn widen(&self, lamps: &mut [Lamp]) {
         for lamp in lamps {
             lamp.spread = lamp.spread.max(0.5 * LEAST_PENUMBRA_PX / self.px_per_rad);
         }
     }
 
-    /// Points over a lamp: more the wider its penumbra.
+    /// Points over a lamp, whose number grows with its penumbra.
     pub(super) fn disc(&self, lamp: &Lamp) -> Vec<DVec2> {
         let most = if self.is_rough {
             MOST_ROUGH_POINTS
@@ -180,7 +181,8 @@ impl<'a> Shadows<'a> {
         taken
     }
 
-    /// Takes the light on each receiver without a toy as that of lamps with a shading's shares of it, and of an even rest.
+    /// Sets the light on each receiver without a toy to that of lamps with a shading's shares, and
+    /// a uniform rest.
     pub(super) fn light(&mut self, lamps: &[Lamp], shading: &Shading) {
         let shares: Vec<Vec<f64>> = (0..shading.factors.len())
             .map(|receiver| {
@@ -205,7 +207,7 @@ impl<'a> Shadows<'a> {
         self.unshadowed = unshadowed;
     }
 
-    /// The part that each lamp loses to a toy of another shape in the same place.
+    /// The fraction of each lamp that a toy of another shape in the same place blocks.
     pub(super) fn taken_of_shape(
         &self,
         raster: &mut Rasterizer,
@@ -219,7 +221,7 @@ impl<'a> Shadows<'a> {
         taken.collect()
     }
 
-    /// The part that each lamp loses.
+    /// The blocked fraction of each lamp.
     pub(super) fn taken_of_all(&self, raster: &mut Rasterizer, lamps: &[Lamp]) -> Vec<Vec<f32>> {
         let taken = lamps
             .iter()
@@ -241,7 +243,8 @@ impl<'a> Shadows<'a> {
     }
 }
 
-/// The pixels around the shadows of lamps, as the first and the last; empty where there is no shadow in the picture.
+/// The pixels around the shadows of lamps, as the first and the last; empty if there is no shadow
+/// in the picture.
 fn shadow_rect(raster: &mut Rasterizer, caster: &Caster, lamps: &[Lamp]) -> [IVec2; 2] {
     let mut rect = [IVec2::MAX, IVec2::MIN];
     for lamp in lamps {

@@ -10,25 +10,28 @@ use super::shading::{FIRST_LAMP, Factors, N_FACTORS, Normal, PRIOR, Shaded, Shad
 use super::shadows::{LEAST_PENUMBRA_PX, Shadows};
 use crate::raster::Rasterizer;
 
-/// Differences are taken over this part of the penumbra: less stalls on wide ones, where single samples would count.
+/// Length of differences, as a fraction of the penumbra: shorter ones fail on wide penumbrae, where
+/// single samples would dominate.
 const OF_PENUMBRA: f64 = 0.3;
-/// And over no less, in pixels.
+/// Lower bound of that length, in pixels.
 const LEAST_PX: f64 = 0.5;
-/// The longest step of each part; of the spread as a fraction of it.
+/// The longest step of each parameter; of the spread as a fraction of it.
 const LONGEST_RAD: f64 = 0.06;
-/// Of a nearness as a fraction of the larger of itself and this, over the toy's radius.
+/// The longest step of an inverse distance, as a fraction of the larger of itself and this, over
+/// the toy's radius.
 const LONGEST_NEARING: f64 = 0.2;
 const USUAL_NEARNESS: f64 = 0.1;
 const LONGEST_GROWTH: f64 = 1.0;
 const LONGEST_SHRINKING: f64 = 0.5;
-/// The least of a spread.
+/// Smallest step of a spread.
 const LEAST_GROWTH: f64 = 0.003;
 
-/// How what a lamp takes changes with one of its parts, at each pixel.
+/// Derivative of a lamp's blocked light by one of its parameters, at each pixel.
 pub(super) type Slope = Option<Vec<f32>>;
 
 impl Shadows<'_> {
-    /// Moves all lamps by one step; returns one deviation of each direction. None where there is nothing to go by.
+    /// Moves all lamps by one step; returns the standard deviation of each direction. `None` if
+    /// they are unconstrained.
     pub(super) fn step(
         &self,
         raster: &mut Rasterizer,
@@ -42,7 +45,8 @@ impl Shadows<'_> {
             .zip(priors)
             .zip(&taken)
             .flat_map(|((lamp, prior), taken)| {
-                // Without a plate so little tells a lamp that it would be lost over the difference.
+                // Without a plate the constraint is so weak that the error of one-sided differences
+                // would exceed it.
                 let here = (self.is_rough && self.has_plate).then_some(taken.as_slice());
                 self.slopes(raster, (lamp, here), prior)
             })
@@ -75,8 +79,8 @@ impl Shadows<'_> {
         Some(deviations.collect())
     }
 
-    /// Differences of what a lamp takes; none for a part that the picture does not tell. Central ones, or from what it takes `here`,
-    /// for half the work.
+    /// Derivatives of a lamp's blocked light; `None` for an unconstrained parameter. They are
+    /// central, or one-sided from the value `here`, for half the work.
     pub(super) fn slopes(
         &self,
         raster: &mut Rasterizer,
@@ -146,7 +150,7 @@ impl Shadows<'_> {
     }
 }
 
-/// Normal equations of lamps and factors; each receiver and channel has factors of its own.
+/// Normal equations of lamps and factors; each receiver and channel has its own factors.
 struct System {
     lamps: DMatrix<f64>,
     side: DVector<f64>,
@@ -155,7 +159,7 @@ struct System {
     row: DVector<f64>,
 }
 
-/// Of the factors of one channel of a receiver.
+/// Normal equations of the factors of one channel of a receiver.
 struct Block {
     factors: Normal,
     mixed: DMatrix<f64>,
@@ -199,7 +203,7 @@ impl System {
         }
     }
 
-    /// The lamps' equations with all factors solved for: Schur complements.
+    /// The lamps' equations with all factors eliminated: Schur complements.
     fn without_factors(self) -> (DMatrix<f64>, DVector<f64>) {
         let (mut normal, mut side) = (self.lamps, self.side);
         for block in self.blocks {
@@ -212,7 +216,7 @@ impl System {
     }
 }
 
-/// A step no longer than the model is nearly linear for; a lamp that is known to be near stays so.
+/// A step within the range in which the model is nearly linear; a near lamp stays near.
 fn bounded(lamp: &Lamp, prior: &Prior, step: [f64; N_PARTS], radius_m: f64) -> [f64; N_PARTS] {
     let growth = (LONGEST_GROWTH * lamp.spread).max(LEAST_GROWTH);
     let nearing = LONGEST_NEARING * lamp.nearness.max(USUAL_NEARNESS / radius_m);

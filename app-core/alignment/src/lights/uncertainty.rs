@@ -1,8 +1,9 @@
-//! How well lamps are known.
+//! Uncertainty of lamps.
 //!
-//! Errors of the model are alike over many pixels, so that noise alone would promise ten to a hundred times too much. Each tile of the
-//! picture is taken as one measurement with an error of its own: the covariance that is robust against clusters. Source: Liang and
-//! Zeger 1986. That of the toy's pose comes on top.
+//! Errors of the model are correlated over many pixels, so that noise alone would underestimate it
+//! ten to a hundred times. Each tile of the picture counts as one measurement with its own error:
+//! the cluster-robust covariance. Source: Liang and Zeger 1986. The uncertainty of the toy's pose
+//! is added.
 
 use std::collections::BTreeMap;
 
@@ -19,21 +20,23 @@ use crate::receivers::up;
 use crate::report::PoseDeviation;
 use crate::shape::Shape;
 
-/// Tiles over the toy's radius.
+/// Side of a tile, over the toy's radius.
 const TILE: f64 = 0.5;
-/// The least side of a tile, in pixels.
+/// Smallest side of a tile, in pixels.
 const LEAST_TILE_PX: f64 = 4.0;
 
-/// Residuals are alike beyond a tile: deviations over what tiles on their own promise.
+/// Residuals are correlated beyond a tile: ratio of the standard deviation to that of independent
+/// tiles.
 const BEYOND_TILES: f64 = 2.0;
-/// Deviation of a receiver's height, over the toy's radius: a sheet of paper under a toy of 10 cm.
+/// Standard deviation of a receiver's height, over the toy's radius: a sheet of paper under a toy
+/// of 10 cm.
 const FLATNESS: f64 = 1e-3;
 
-/// How what lamps take changes with their parts and with the pose's.
+/// Derivatives of the blocked light by the parameters of lamps and pose.
 struct Changes {
-    /// Of each part of each lamp.
+    /// For each parameter of each lamp.
     of_lamps: Vec<Slope>,
-    /// Of each part of the pose, lamp by lamp.
+    /// For each parameter of the pose, lamp by lamp.
     of_pose: Vec<Vec<Vec<f32>>>,
 }
 
@@ -64,7 +67,7 @@ struct Observation {
     /// Index of its receiver and channel.
     block: usize,
     pixel: usize,
-    /// Change of its brightness for each part of lamps and pose.
+    /// Change of its brightness per unit of each parameter of lamps and pose.
     row: DVector<f64>,
     weight: f64,
     residual: f64,
@@ -74,7 +77,7 @@ struct Observation {
 #[derive(Clone)]
 struct Block {
     normal: DMatrix<f64>,
-    /// What they have in common with lamps and pose.
+    /// Mixed terms of factors and of lamps and pose.
     mixed: DMatrix<f64>,
 }
 
@@ -86,7 +89,7 @@ impl Block {
         }
     }
 
-    /// How the factors make up for a change of each column.
+    /// The factors' compensation for a change of each column.
     fn solved(self) -> DMatrix<f64> {
         let Self { normal, mixed } = self;
         let n_columns = mixed.ncols();
@@ -98,7 +101,7 @@ impl Block {
 }
 
 impl Shadows<'_> {
-    /// Covariance of all parts of all lamps; none where they are not told.
+    /// Covariance of all parameters of all lamps; `None` if they are unconstrained.
     pub(super) fn covariance(
         &self,
         raster: &mut Rasterizer,
@@ -168,7 +171,8 @@ impl Shadows<'_> {
         (observations, blocks)
     }
 
-    /// How what each lamp takes changes as the pose moves by one deviation of each of its parts.
+    /// The change of each lamp's blocked light for a move of the pose by one standard deviation of
+    /// each of its parameters.
     fn moved_by_pose(
         &self,
         raster: &mut Rasterizer,
@@ -216,14 +220,15 @@ impl Shadows<'_> {
     }
 }
 
-/// Covariance of the first `n_parts` columns: what the scores of tiles leave open, and what a deviation of each other column does.
+/// Covariance of the first `n_parts` columns: that of the tiles' scores, and that of one standard
+/// deviation of each other column.
 fn sandwich<'a>(
     normal: &DMatrix<f64>,
     scores: impl Iterator<Item = &'a DVector<f64>>,
     n_parts: usize,
 ) -> Option<DMatrix<f64>> {
     let mut of_lamps = normal.view((0, 0), (n_parts, n_parts)).into_owned();
-    // What is not told has no slope.
+    // An unconstrained parameter has no slope.
     let untold: Vec<usize> = (0..n_parts)
         .filter(|part| of_lamps[(*part, *part)] <= 0.0)
         .collect();

@@ -1,4 +1,4 @@
-//! Whether lights still cast the shadows that a picture shows.
+//! Checks whether lights still explain the shadows in a picture.
 
 use glam::DMat4;
 
@@ -11,27 +11,28 @@ use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
 use app_scene::scene::Light;
 
-/// What a small picture shows of shadows.
+/// The shadows in a small picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Watched {
-    /// Mean loss without any light, in variances: how much of a shadow there is.
+    /// Mean loss without any light, in variances: the strength of the shadows.
     pub(crate) shadows: f64,
-    /// The part of it that lights leave unexplained.
+    /// The fraction of it that lights leave unexplained.
     pub(crate) unexplained: f64,
 }
 
 impl Watched {
-    /// What is unexplained, in variances.
+    /// The unexplained loss, in variances.
     pub(crate) fn left(&self) -> f64 {
         self.shadows * self.unexplained
     }
 }
 
-/// What some lights leave unexplained of a picture, wherever they were found; what each of them gives, and the light on the receivers
-/// without a toy, are fitted anew. None where too little of the receivers is seen, and without a plate.
+/// The loss that given lights leave in a picture; the intensity of each, and the light on the
+/// receivers without a toy, are fitted anew. `None` if too little of the receivers is visible, and
+/// without a plate.
 ///
-/// Measured on six captures and the bundled session, in all their frames: .001 to .019 with exact lights, .010 to .058 with one that
-/// is a degree off, .11 to .35 with one that is four.
+/// Measured on six captures and the bundled session, in all their frames: .001 to .019 with exact
+/// lights, .010 to .058 with one that is a degree off, .11 to .35 with one that is four.
 pub(crate) fn watch(
     lights: &[Light],
     shape: &Shape,

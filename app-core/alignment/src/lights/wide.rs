@@ -1,8 +1,9 @@
-//! One wide light, assumed where a picture shows no lamp: a window to one side, or the bright half of a room.
+//! One wide light, assumed if a picture shows no lamp: a window to one side, or the bright half of
+//! a room.
 //!
-//! A coarse grid of directions and sizes is tried. What each gives beside the light from all around is fitted as the pipeline will fit
-//! it, with nothing below 0, and judged against what light from all around explains by itself, of a strength that is fitted as well:
-//! both are what would be drawn.
+//! A coarse grid of directions and sizes is tried. The intensity of each, beside the ambient light,
+//! is fitted like in the pipeline, with non-negative factors, and compared with the fit of ambient
+//! light alone, of fitted strength as well: both are fits of the final picture.
 
 use std::f64::consts::TAU;
 
@@ -19,43 +20,46 @@ use crate::receivers::SeenReceiver;
 use crate::robust;
 use crate::shape::Shape;
 
-/// Directions that are tried: as many around, at these elevations above the receiver, in radians (25, 45 and 70 degrees). So wide a light
-/// is not told any better.
+/// Directions to try: this many around, at these elevations above the receiver, in radians (25, 45
+/// and 70 degrees). A direction of so wide a light is not constrained any better.
 const N_AROUND: usize = 12;
 const ELEVATIONS_RAD: [f64; 3] = [0.436, 0.785, 1.222];
-/// Tangents of the angular radii that are tried: of 20 and 35 degrees. What is narrower `discover` finds as a lamp, and what is wider is
-/// hardly told from light from all around.
+/// Tangents of the angular radii to try: of 20 and 35 degrees. `discover` finds narrower lights as
+/// lamps, and wider ones hardly differ from ambient light.
 const SPREADS: [f64; 2] = [0.36, 0.7];
-/// Points over such a light.
+/// Number of points over such a light.
 const N_POINTS: usize = 24;
-/// It explains that part of what light from all around leaves, in squares.
+/// The fraction of ambient light's residual that it must explain, in squares.
 ///
-/// Measured: .43 in an office, .45 and .68 under overcast skies, which are brighter above. With it what was drawn became better by a
-/// twentieth to an eighth, the low-passed error under the skies by a fifth to a third.
+/// Measured: .43 in an office, .45 and .68 under overcast skies, which are brighter above. With it
+/// the pictures improved by a twentieth to an eighth, the low-passed error under the skies by a
+/// fifth to a third.
 const LEAST_EXPLAINED: f64 = 0.3;
-/// And gives that part of the light at the toy's foot: less is in the noise of a plate. Measured .14, .15 and .79 there.
+/// Its smallest share of the light at the toy's foot: less is within the noise of a plate. Measured
+/// .14, .15 and .79 there.
 const LEAST_SHARE: f64 = 0.1;
-/// No light gives more of it: some is always ambient. As in `fit`.
+/// Largest share of a light, since part of it is always ambient. The same as in `fit`.
 const MOST_SHARE: f64 = 0.98;
 /// Rounds of reweighting.
 const N_ROUNDS: usize = 3;
-/// Keeps an unknown that no pixel shows at 0.
+/// Keeps an unconstrained unknown at 0.
 const PRIOR: f64 = 1e-6;
-/// Side of the cells that vertices are merged in, in pixels: a hundred lights of two dozen points are tried.
+/// Side of the cells that vertices are merged in, in pixels: a hundred lights of two dozen points
+/// are tried.
 const CELL_PX: f64 = 0.5;
 
-/// A wide light that explains a picture better than light from all around does.
+/// A wide light that explains a picture better than ambient light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wide {
     pub(super) lamp: Lamp,
-    /// Of the light on the receiver nearest to the toy, at the toy's foot.
+    /// Share of the light on the receiver nearest to the toy, at the toy's foot.
     pub(super) share: f64,
-    /// The part that it explains of what light from all around leaves.
+    /// The fraction of ambient light's residual that it explains.
     pub(super) explained: f64,
 }
 
-/// Assumes a wide light; none where no such light explains enough, too little of the receivers is seen, or no plate tells what they show
-/// without the toy.
+/// Assumes a wide light; `None` if no such light explains enough, too little of the receivers is
+/// visible, or no plate shows them without the toy.
 pub(super) fn assume(shape: &Shape, receivers: &[SeenReceiver], pyramid: &Pyramid) -> Option<Wide> {
     let level = pyramid.level(pyramid.smallest_for_shadows());
     level.plate.as_ref()?;
@@ -105,21 +109,21 @@ fn lamps(receivers: &[SeenReceiver]) -> impl Iterator<Item = Lamp> + use<> {
     })
 }
 
-/// What is left of a picture with one more light, and what that gives.
+/// The residual of a picture with one more light, and the light's share.
 struct WithLamp {
     left: f64,
     share: f64,
 }
 
-/// What pixels show, and what light from all around explains of it.
+/// The pixels, and the fit of ambient light to them.
 struct Evidence<'a> {
     pixels: &'a [FloorPixel],
-    /// The part of light from all around that the toy takes from each pixel.
+    /// The fraction of ambient light that the toy blocks at each pixel.
     taken: Vec<f64>,
-    /// One over a variance of each channel of each pixel, less where that light does not explain what it shows.
+    /// One over a variance of each channel of each pixel, less for outliers of ambient light.
     weights: Vec<[f64; 3]>,
     n_receivers: usize,
-    /// Weighted squares that it leaves.
+    /// Sum of its weighted squared residuals.
     left: f64,
 }
 
@@ -137,13 +141,13 @@ impl<'a> Evidence<'a> {
         for _ in 0..N_ROUNDS {
             evidence.reweight();
         }
-        // By the same weights as lamps are judged.
+        // With the same weights as for lamps.
         let fits = evidence.fits(|pixel| [1.0, -evidence.taken[pixel], 0.0], [1.0, 0.0]);
         evidence.left = fits.iter().map(|fit| fit.left).sum();
         evidence
     }
 
-    /// Fits light from all around of any strength, and weighs pixels by what it leaves.
+    /// Fits ambient light of any strength, and weights pixels by the residual.
     fn reweight(&mut self) {
         let model = |pixel: usize| [1.0, -self.taken[pixel], 0.0];
         let fits = self.fits(model, [1.0, 0.0]);
@@ -158,7 +162,8 @@ impl<'a> Evidence<'a> {
         self.weights = weights.collect();
     }
 
-    /// Fits a lamp amid light from all around as the pipeline does; of what the toy takes of it.
+    /// Fits a lamp and ambient light like the pipeline; the lamp is given by the light that the toy
+    /// blocks.
     fn with(&self, taken: &[f32]) -> WithLamp {
         let model = |pixel: usize| {
             let around = self.taken[pixel];
@@ -176,8 +181,8 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// Fits each channel of each receiver: its light over the plate is a gain times the first column and parts of the others, which
-    /// are from 0 to what they are at most.
+    /// Fits each channel of each receiver: its light over the plate is a gain times the first
+    /// column and fractions of the others, which are between 0 and their maxima.
     fn fits(&self, columns: impl Fn(usize) -> [f64; 3], most: [f64; 2]) -> Vec<Fit> {
         let mut sums = vec![Sums::default(); 3 * self.n_receivers];
         for (index, (pixel, weights)) in self.pixels.iter().zip(&self.weights).enumerate() {
@@ -192,7 +197,7 @@ impl<'a> Evidence<'a> {
     }
 }
 
-/// Factors of three columns, and the weighted squares that they leave.
+/// Factors of three columns, and the sum of weighted squared residuals.
 struct Fit {
     factors: Vector3<f64>,
     left: f64,
@@ -213,8 +218,8 @@ impl Sums {
         self.squares += weight * value * value;
     }
 
-    /// The best factors of which the second and the third are from 0 to `most` of the first: of every way to hold them at a bound or not
-    /// the others are solved for.
+    /// The best factors, with the second and the third between 0 and `most` of the first: for every
+    /// combination of active bounds, the others are solved for.
     fn fit(&self, most: [f64; 2]) -> Fit {
         let states = [Held::No, Held::At(0.0), Held::At(1.0)];
         let ways = states.iter().flat_map(|a| states.iter().map(move |b| [*a, *b]));
@@ -226,9 +231,10 @@ impl Sums {
         fits.min_by(|a, b| a.left.total_cmp(&b.left)).unwrap_or(none)
     }
 
-    /// The best factors with some held at a part of the first; none where another is beyond its bounds.
+    /// The best factors with some fixed at a fraction of the first; `None` if another violates its
+    /// bounds.
     fn held(&self, parts: [Held; 2], most: [f64; 2]) -> Option<Fit> {
-        // From the unknowns that are solved for to the factors.
+        // Maps the free unknowns to the factors.
         let mut spanned = Matrix3::zeros();
         spanned[(0, 0)] = 1.0;
         let mut normal = Matrix3::identity() * PRIOR;
@@ -254,7 +260,7 @@ impl Sums {
     }
 }
 
-/// Whether a factor is held, and at which part of the first.
+/// Whether a factor is fixed, and at which fraction of the first.
 #[derive(Clone, Copy)]
 enum Held {
     No,

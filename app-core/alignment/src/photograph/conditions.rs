@@ -1,11 +1,13 @@
-//! In which conditions a photograph was taken: how soft it is, and what stands in it beside the toy.
+//! The conditions of a photograph: its softness, and the other things in it.
 
 use glam::DMat4;
 
 use super::Photograph;
 use crate::found_planes::FoundReceiver;
-use crate::{pose, softness, things};
+use crate::lights::FoundReflection;
+use crate::{gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
+use app_scene::gloss::Gloss;
 use app_scene::geometry::nearest_receivers::nearest_receivers;
 use app_scene::scene::{Camera, Light, Scene};
 use app_scene::sharpness::{Sharpness, Spread};
@@ -22,13 +24,13 @@ pub(crate) struct Sighted {
 }
 
 impl Photograph {
-    /// With the plate as soft as a spread makes it, in pixels of the picture.
+    /// With the plate blurred by a spread, in pixels of the picture.
     pub(crate) fn with_plate_as_soft(self, spread: Spread) -> Self {
         let picture_px = self.pyramid.picture_px();
         self.with_plate_spread(spread.mean_px() / picture_px)
     }
 
-    /// Of which nothing is known where things stand or the plate is wrong.
+    /// With unknown pixels at things and at wrong parts of the plate.
     pub(crate) fn clear_of(&self, things: &Things) -> Self {
         Self {
             pyramid: self.pyramid.clear_of(things.marks()),
@@ -37,7 +39,57 @@ impl Photograph {
         }
     }
 
-    /// Things that stand beside the toy in its place, in given lights, and their planes where these are wanted.
+    /// How the receiver that the toy stands on reflects, in given lights; none where the picture does not tell.
+    pub(crate) fn reflection(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        lights: &[Light],
+    ) -> Result<Option<FoundReflection>, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let world_from_camera = &input.camera.world_from_camera;
+        Ok(lights::reflection(
+            lights,
+            (&shape, &self.receivers),
+            &self.pyramid,
+            world_from_camera,
+        ))
+    }
+
+    /// As if the receiver that the toy stands on were matt.
+    pub(crate) fn freed_of(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        found: &FoundReflection,
+    ) -> Result<Self, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let mut level = self.pyramid.level(0).clone();
+        let reflection = &found.reflection;
+        let (surroundings, toy) = (reflection.surroundings, reflection.toy_above_surroundings);
+        for (at, reflectance, hidden) in lights::reflected((&shape, &self.receivers), &level, reflection) {
+            #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
+            let light = |channel: usize, hidden: f64, gain: f64| {
+                let light = f64::from(surroundings[channel]) + hidden * f64::from(toy[channel]);
+                (-gain * reflectance * light) as f32
+            };
+            level.frame.add(
+                at,
+                [0, 1, 2].map(|channel| light(channel, hidden, found.gain[channel])),
+            );
+            if let Some(plate) = &mut level.plate {
+                plate.add(at, [0, 1, 2].map(|channel| light(channel, 0.0, 1.0)));
+            }
+        }
+        Ok(Self {
+            pyramid: self.pyramid.with_largest(level),
+            receivers: self.receivers.clone(),
+            camera_from_world: self.camera_from_world,
+        })
+    }
+
+    /// Other things beside the toy in its place, under given lights; `None` if they cannot be
+    /// detected.
     pub(crate) fn things(
         &self,
         scene: &Scene,
@@ -72,7 +124,7 @@ impl Photograph {
                 report: found.report,
             }
         });
-        // Of the largest level, which may be smaller than the picture.
+        // Camera of the largest level, which may be smaller than the picture.
         let camera = Camera {
             intrinsics: input.camera.intrinsics.scaled(self.pyramid.picture_px().recip()),
             ..input.camera
@@ -83,7 +135,22 @@ impl Photograph {
         })
     }
 
-    /// The same where camera and pose stay as they are given.
+    /// How glossy the toy is in its place, in given lights.
+    pub(crate) fn gloss(
+        &self,
+        scene: &Scene,
+        world_from_object: &DMat4,
+        lights: &[Light],
+    ) -> Result<Gloss, ToyError> {
+        let shape = self.shape(scene, world_from_object)?;
+        let paint = pose::Paint::new(scene, &self.camera_from_object(world_from_object))?;
+        let level = self.pyramid.level(0);
+        let surfels = paint.surfels(level, &pose::covered(&shape, level), gloss::MOST_SURFELS);
+        let lights = gloss::Lights::new(lights, &self.camera_from_world);
+        Ok(gloss::gloss(&gloss::Look::new(&shape, &surfels, &lights)))
+    }
+
+    /// How soft it is, for given camera and pose.
     pub(crate) fn sharpness_as_given(
         &self,
         scene: &Scene,
@@ -95,7 +162,8 @@ impl Photograph {
         self.sharpness(scene, world_from_object, outline_px)
     }
 
-    /// How soft it is around a toy in its place, whose outline was found spread by so many pixels; none where it was not seen.
+    /// The softness around a toy in its place, whose outline has the given blur in pixels; `None`
+    /// for an outline that was not measured.
     pub(crate) fn sharpness(
         &self,
         scene: &Scene,

@@ -1,4 +1,5 @@
-//! The plate, taken by hand: which pictures of the empty place are good enough, and their mean.
+//! Takes a plate with a hand-held camera: selects good pictures of the empty place, and averages
+//! them.
 
 mod reduced;
 mod registration;
@@ -12,32 +13,32 @@ use reduced::Reduced;
 use registration::{Registration, register};
 use stack::Stack;
 
-/// Pictures that are averaged: noise is a quarter.
+/// Number of averaged pictures: noise becomes a quarter.
 const N_PICTURES: u32 = 16;
-/// Time between two of them at least, so that what moves slowly has time to be seen: some .9 s in all.
+/// Smallest time between two of them, so that slow motion becomes visible: some .9 s in total.
 const BETWEEN_S: f64 = 0.06;
-/// After so long the best is taken that there is.
+/// Give up waiting after this time, and use the best pictures so far.
 const PATIENCE_S: f64 = 5.0;
-/// Movement up to which a picture is of the same view.
+/// Largest movement within one view.
 const STILL_PX: f64 = 0.4;
-/// The same by poses, which carry their tracker's noise: more than that is none.
+/// The same by poses, with their tracker's noise.
 const STILL_M: f64 = 0.01;
 const STILL_RAD: f64 = 0.026;
-/// Movement from one picture to the next up to which things in the way are told from it.
+/// Largest movement between pictures for which things in the way can be distinguished from it.
 const COMPARABLE_PX: f64 = 12.0;
-/// Detail over the most that was seen, below which a picture is blurred.
+/// Detail over the highest so far, below which a picture is blurred.
 const SHARP: f32 = 0.6;
-/// Detail over noise, below which a place has none.
+/// Detail over noise below which a place has no texture.
 const DETAILED: f32 = 1.0;
-/// Time in which the most detail seen counts for a third of itself only: another view may have less.
+/// Time in which the highest detail decays to a third: another view may have less.
 const DETAIL_LASTS_S: f64 = 5.0;
 /// Change of exposure between pictures of one mean.
 const SAME_GAIN: f64 = 0.02;
-/// Part of a picture's tiles that something in the way covers at least.
+/// Smallest fraction of a picture's tiles that an obstacle covers.
 const SOMETHING: f64 = 0.002;
-/// Part of them that no hand covers: then the camera has moved.
+/// Largest fraction that a hand covers; above, the camera has moved.
 const EVERYTHING: f64 = 0.5;
-/// Time after which a place that has changed and stays so is taken to be as it is now.
+/// Time after which a changed place counts as permanent.
 const STAYS_S: f64 = 1.5;
 
 /// A camera's picture that may become part of a plate.
@@ -45,81 +46,82 @@ const STAYS_S: f64 = 1.5;
 pub struct PlateShot {
     /// The picture.
     pub image: CameraImage,
-    /// The camera that took it; none where it is not tracked.
+    /// The camera of the picture; `None` if it is not tracked.
     pub camera: Option<Camera>,
     /// Seconds since the shot before.
     pub elapsed_s: f64,
 }
 
-/// What became of a shot.
+/// The result for a shot.
 #[derive(Clone, Debug)]
 pub enum PlateStep {
-    /// It adds nothing to what was begun.
+    /// The shot adds nothing to the current plate.
     Refused(PlateRefusal),
     /// The plate grows.
     Growing {
-        /// Pictures in it.
+        /// Number of pictures in it.
         n: u32,
-        /// Pictures that it is to have.
+        /// Number of pictures that it needs.
         n_needed: u32,
     },
-    /// It is there, and the next shot begins another.
+    /// The plate is complete, and the next shot begins another.
     Taken {
         /// The mean of `n` pictures.
         plate: Plate,
-        /// At least one: fewer than were to be, where the camera was not held still for long.
+        /// At least one: fewer than needed if the camera was not held still for long.
         n: u32,
     },
 }
 
-/// Why a shot is of no use.
+/// The reason why a shot is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlateRefusal {
-    /// Its picture is smaller than 8 pixels a side, or its bytes are not those of its size.
+    /// Its picture is smaller than 8 pixels per side, or its bytes do not fit its size.
     NoPicture,
     /// Its camera is not tracked, or its numbers are out of range.
     NoCamera,
-    /// The camera has moved: the view that was begun is left.
+    /// The camera has moved: the current view is abandoned.
     Moving,
-    /// It is less sharp than others were: out of focus, or moved while it was exposed.
+    /// It is less sharp than others were: out of focus, or with motion blur.
     Blurred,
-    /// Something moves in it, such as a hand.
+    /// Something moves in it, for example a hand.
     Obstructed,
-    /// The camera changes its exposure: what was begun is left.
+    /// The camera changes its exposure: the current plate is abandoned.
     Exposure,
 }
 
-/// Takes a plate from the shots of a camera that somebody holds.
+/// Takes a plate from the shots of a hand-held camera.
 ///
-/// Shots that show the same view to a fraction of a pixel, as sharp as any, with nothing moving in them, are averaged in
-/// linear light; noise goes down by the root of their number. Where the camera is not held still for so long, what there
-/// is by then is taken: the most pictures of one view, or the sharpest one.
+/// Shots of the same view to a fraction of a pixel, of full sharpness, without movement in them,
+/// are averaged in linear light; noise falls with the root of their number. If the camera is not
+/// held still long enough, the best result so far is used: the most pictures of one view, or the
+/// sharpest one.
 ///
-/// What is judged is a picture of some 160 squares along its longer side, held against the shot before and against the
-/// first of the view.
-/// Measured by `tests/tests/estimates/plate_taker.rs` in codes of 8 bit: a picture whose noise is 3.01 comes out with 0.81, what the
-/// sixteenth part of its variance and the rounding to codes add up to; after a hand has crossed it with 0.80, no pixel more
+/// The tests run on a picture reduced to some 160 squares along its longer side, compared with the
+/// shot before and with the first of the view. Measured by `tests/tests/estimates/plate_taker.rs`
+/// in codes of 8 bit: a picture whose noise is 3.01 comes out with 0.81, the sum of a sixteenth of
+/// its variance and the rounding to codes; after a hand has crossed it with 0.80, no pixel more
 /// than 4.1 off.
 ///
-/// Not told: a hand that rests in the picture without any movement from the first shot on; something that covers less
-/// than half of a tile of four squares, 48 pixels of 1920; and whether the camera moves over a place without any texture,
-/// where it does no harm.
+/// Not detected: a hand that rests in the picture without any movement from the first shot on;
+/// something that covers less than half of a tile of four squares, 48 pixels of 1920; and movement
+/// over a place without any texture, which does no harm.
 #[derive(Clone, Debug, Default)]
 pub struct PlateTaker {
     before: Option<(Reduced, Camera)>,
     stack: Option<Stack>,
-    /// The best so far of other views.
+    /// The best earlier view.
     kept: Option<Stack>,
     most_detail: f32,
-    /// In which there was something to take, and only movement or blur kept it from growing.
+    /// Waiting time in which only movement or blur prevented progress.
     waited_s: f64,
     since_added_s: f64,
-    /// How long something has been in the way.
+    /// Time that something has been in the way.
     obstructed_s: f64,
 }
 
 impl PlateTaker {
-    /// Judges a shot and goes on by it.
+    /// Judges a shot, and uses it.
     pub fn offer(&mut self, shot: &PlateShot) -> PlateStep {
         let elapsed_s = if shot.elapsed_s.is_finite() {
             shot.elapsed_s.max(0.0)
@@ -134,7 +136,7 @@ impl PlateTaker {
         };
         let is_of_size = |(before, _): &(Reduced, Camera)| before.size_px == reduced.size_px;
         if !self.before.as_ref().is_some_and(is_of_size) {
-            // Whether anything moves in it is told by the next.
+            // The next shot will show whether anything moves in it.
             *self = Self {
                 most_detail: reduced.detail,
                 before: Some((reduced, camera)),
@@ -172,7 +174,7 @@ impl PlateTaker {
         self.outcome(refusal)
     }
 
-    /// What a shot can be used for.
+    /// The use of a shot.
     fn judge(&mut self, reduced: &Reduced, camera: &Camera, elapsed_s: f64) -> UseOf {
         let has_detail = |detail: f32| detail > DETAILED * reduced.noise;
         if has_detail(self.most_detail) && reduced.detail < SHARP * self.most_detail {
@@ -194,14 +196,14 @@ impl PlateTaker {
                 if self.obstructed_s < STAYS_S {
                     return UseOf::Not(PlateRefusal::Obstructed);
                 }
-                // It does not move any more: so it was in the way before, and is not now.
+                // The thing has stopped moving: it was in the way before, and is not now.
                 self.stack = None;
                 UseOf::Anew(None)
             }
             // Another view or exposure begins here.
             Some(refusal) => UseOf::Anew(Some(refusal)),
             None if has_detail(reduced.detail) && reduced.detail * SHARP > stack.reduced.detail => {
-                // What there is was out of focus.
+                // The earlier pictures were out of focus.
                 self.stack = None;
                 UseOf::Anew(None)
             }
@@ -221,7 +223,7 @@ impl PlateTaker {
         }
     }
 
-    /// Ends the view, and keeps it where it is better than the one that is kept.
+    /// Ends the view, and keeps it if it is better than the kept one.
     fn keep(&mut self) {
         let Some(stack) = self.stack.take() else { return };
         let value = |stack: &Stack| (stack.n, stack.reduced.detail);
@@ -246,13 +248,13 @@ impl PlateTaker {
     }
 }
 
-/// What a shot is used for.
+/// The use of a shot.
 #[derive(Clone, Copy, Debug)]
 enum UseOf {
     Not(PlateRefusal),
     /// One more of its view.
     Another,
-    /// The first of another view, for a reason.
+    /// The first of another view, with the reason.
     Anew(Option<PlateRefusal>),
 }
 
@@ -263,12 +265,13 @@ fn growing(n: u32) -> PlateStep {
     }
 }
 
-/// Made small, where there is a picture at all.
+/// The reduced picture, if it can be judged.
 fn checked(image: &CameraImage) -> Option<Reduced> {
     image.is_of_size(image.size_px()).then(|| Reduced::new(image))?
 }
 
-/// Why one shot does not show what the other shows; none where it does, to so many pixels of movement.
+/// The reason why two shots show different views; `None` if they differ by at most `most_px` of
+/// movement.
 fn judged(shots: [&Reduced; 2], cameras: [&Camera; 2], most_px: f64) -> Option<PlateRefusal> {
     if !is_near(cameras) {
         return Some(PlateRefusal::Moving);
@@ -292,7 +295,7 @@ fn judged(shots: [&Reduced; 2], cameras: [&Camera; 2], most_px: f64) -> Option<P
     }
 }
 
-/// Whether poses are as near to each other as those of one camera that stands still, by a tracker that is noisy.
+/// Whether poses are as close as those of a camera that stands still, within the tracker's noise.
 fn is_near(cameras: [&Camera; 2]) -> bool {
     let [one, other] = cameras.map(|camera| camera.world_from_camera);
     let rotations = [one, other].map(|pose| DQuat::from_mat4(&pose).normalize());

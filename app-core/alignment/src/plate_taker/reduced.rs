@@ -1,32 +1,32 @@
-//! A camera picture made small: what movement, focus and things in the way are judged by.
+//! A reduced camera picture, to judge movement, focus and things in the way.
 
 use app_scene::camera_frame::CameraImage;
 
-/// Columns and rows that a reduced picture has at most.
+/// Largest number of columns and rows of a reduced picture.
 const MAX_SIDE: usize = 160;
 /// Squares along a side of the tiles that detail is summed over.
 const DETAIL_TILE: usize = 6;
-/// Rows of the picture from one to the next whose detail is looked at.
+/// Rows of the picture between those whose detail is measured.
 const DETAIL_STEP: usize = 4;
 
-/// Luma in codes, each number the mean of a square of pixels; and how much detail the picture has.
+/// Luma in codes, each number the mean of a square of pixels; and the picture's detail.
 #[derive(Clone, Debug)]
 pub(super) struct Reduced {
-    /// Of the picture.
+    /// Size of the picture.
     pub(super) size_px: [u32; 2],
     /// Columns and rows.
     pub(super) size: [usize; 2],
     /// Pixels of the picture along a side of the square.
     pub(super) factor: usize,
     pub(super) luma: Vec<f32>,
-    /// Energy of the finest detail where there is most of it, in squared codes, that of noise taken off.
+    /// Energy of the finest detail at its maximum, in squared codes, minus that of noise.
     pub(super) detail: f32,
-    /// Energy of noise: what the flattest parts have.
+    /// Energy of noise, measured in the flattest parts.
     pub(super) noise: f32,
 }
 
 impl Reduced {
-    /// Of a picture that has all its bytes; none of one that is too small to be judged.
+    /// Reduces a complete picture; `None` if it is too small to be judged.
     pub(super) fn new(image: &CameraImage) -> Option<Self> {
         let [width, height] = image.size_px().map(|side| side as usize);
         let factor = width.max(height).div_ceil(MAX_SIDE).max(1);
@@ -70,7 +70,7 @@ impl Reduced {
     }
 }
 
-/// Row of luma codes.
+/// A row of luma codes.
 fn luma_row(image: &CameraImage, y: usize, row: &mut Vec<u8>) {
     let width = image.size_px()[0] as usize;
     row.clear();
@@ -78,7 +78,7 @@ fn luma_row(image: &CameraImage, y: usize, row: &mut Vec<u8>) {
         CameraImage::Planes(planes) => row.extend_from_slice(&planes.luma()[y * width..][..width]),
         CameraImage::Rgba(image) => {
             let pixels = image.rgba8[4 * y * width..].chunks_exact(4).take(width);
-            // BT.601 in 256ths, whatever the picture's own: only its changes are looked at.
+            // BT.601 in 256ths, whatever the picture's own: only changes matter.
             row.extend(pixels.map(|pixel| {
                 let [red, green, blue] = [pixel[0], pixel[1], pixel[2]].map(u32::from);
                 u8::try_from((77 * red + 150 * green + 29 * blue) >> 8).unwrap_or(u8::MAX)
@@ -90,9 +90,10 @@ fn luma_row(image: &CameraImage, y: usize, row: &mut Vec<u8>) {
 /// Sums of squares, and their number.
 #[derive(Clone, Copy, Debug, Default)]
 struct Energy {
-    /// Of second differences along rows and columns.
+    /// Second differences along rows and columns.
     fine: f32,
-    /// Of the second difference along columns of that along rows: noise has it, edges hardly.
+    /// The second difference along columns of that along rows, which noise has and edges hardly
+    /// have.
     noise: f32,
     n: f32,
 }
@@ -120,11 +121,11 @@ fn add_detail(rows: &[Vec<u8>; 3], tile_px: usize, tiles: &mut [Energy]) {
     }
 }
 
-/// Energy of the tenth of all tiles that have most detail, that of noise taken off; and that of noise, by the tenth that
-/// has least.
+/// Energy of the tenth of all tiles with most detail, minus that of noise; and that of noise, by
+/// the tenth with least.
 ///
-/// White noise of variance 1 has 6 in a second difference, 12 in both, and 36 in that of both: a third.
-/// Source: Immerkaer 1996.
+/// White noise of variance 1 has 6 in a second difference, 12 in both, and 36 in that of both: a
+/// third. Source: Immerkaer 1996.
 fn detail_and_noise(tiles: &[Energy]) -> (f32, f32) {
     let sorted = |energy: fn(&Energy) -> f32| {
         let tiles = tiles.iter().filter(|tile| tile.n > 0.0);

@@ -1,37 +1,38 @@
-//! How one picture lies on another that was taken from almost the same place, and what is not the same in them.
+//! Registers two pictures from almost the same place, and finds changes between them.
 //!
-//! Source: Lucas and Kanade 1981; Baker and Matthews 2004 (inverse compositional), with robust weights.
+//! Source: Lucas and Kanade 1981; Baker and Matthews 2004 (inverse compositional), with robust
+//! weights.
 
 use nalgebra::{SMatrix, SVector};
 
 use super::reduced::Reduced;
 
-/// Shift along both axes, turn, zoom; gain and offset of the codes.
+/// Number of unknowns: shift along both axes, turn, zoom; gain and offset of the codes.
 const N_UNKNOWN: usize = 6;
 const N_ITERATIONS: usize = 3;
 /// Side of a tile, in squares of the reduced picture.
 const TILE: usize = 4;
-/// How much less a gradient explains than it is: edges fall otherwise on the squares after a shift.
+/// Residual per gradient: after a shift, edges fall differently on the squares.
 const OF_GRADIENT: f32 = 0.25;
-/// Codes that two pictures of the same place differ by, whatever their noise.
+/// Smallest difference in codes that counts as a change, whatever the noise.
 const LEAST_CODES: f32 = 4.0;
 /// The same for the mean over a tile.
 const LEAST_MEAN_CODES: f32 = 2.5;
-/// Part of a tile that must differ.
+/// Fraction of a tile that must differ.
 const OF_TILE: f32 = 0.4;
 
-/// What became of one picture in another.
+/// The registration of two pictures.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Registration {
-    /// Farthest that a corner went, in pixels of the picture.
+    /// Largest shift of a corner, in pixels of the picture.
     pub(super) moved_px: f64,
-    /// Mean code of the other over that of the one.
+    /// Mean code of the second picture over that of the first.
     pub(super) gain: f64,
-    /// Part of all tiles that are not the same.
+    /// Fraction of changed tiles.
     pub(super) changed: f64,
 }
 
-/// Finds it for pictures of one size; none of two sizes.
+/// Registers pictures of one size; `None` for two sizes.
 pub(super) fn register(one: &Reduced, other: &Reduced) -> Option<Registration> {
     if one.size != other.size {
         return None;
@@ -61,10 +62,10 @@ fn to_px(squares: f64, factor: usize) -> f64 {
     squares * factor as f64
 }
 
-/// The picture that another is held against.
+/// The reference picture.
 struct Fit<'a> {
     one: &'a Reduced,
-    /// Change per square along rows and columns; nought at the border.
+    /// Change per square along rows and columns; zero at the border.
     gradients: Vec<[f32; 2]>,
     middle: [f32; 2],
 }
@@ -96,7 +97,7 @@ impl<'a> Fit<'a> {
         [(x - self.middle[0]) / half, (y - self.middle[1]) / half]
     }
 
-    /// How far what is at a place went, in squares.
+    /// Shift of a place, in squares.
     fn moved(&self, unknown: &SVector<f32, N_UNKNOWN>, [x, y]: [f32; 2]) -> [f32; 2] {
         [
             unknown[0] - unknown[2] * y + unknown[3] * x,
@@ -104,7 +105,7 @@ impl<'a> Fit<'a> {
         ]
     }
 
-    /// Where there is little texture, gain and offset cannot be told apart, but both together can.
+    /// With little texture, gain and offset are ambiguous, but their combination is not.
     fn gain(&self, unknown: &SVector<f32, N_UNKNOWN>) -> f64 {
         let sum: f64 = self.one.luma.iter().map(|luma| f64::from(*luma)).sum();
         let mean = sum / self.one.luma.len() as f64;
@@ -113,7 +114,7 @@ impl<'a> Fit<'a> {
         1.0 + change / mean.max(1.0)
     }
 
-    /// Of each square what the other picture has there but the unknowns do not explain; none beyond its border.
+    /// Residual of each square; `None` outside of the second picture.
     fn residuals(&self, other: &Reduced, unknown: &SVector<f32, N_UNKNOWN>) -> Vec<Option<f32>> {
         let columns = self.one.size[0];
         let residual = |(at, luma): (usize, &f32)| {
@@ -142,7 +143,7 @@ impl<'a> Fit<'a> {
         (1.4826 * *median).max(0.3)
     }
 
-    /// Change of the unknowns that explains the residuals best.
+    /// The step of the unknowns that reduces the residuals.
     fn step(&self, residuals: &[Option<f32>]) -> Option<SVector<f32, N_UNKNOWN>> {
         let spread = self.spread(residuals);
         let mut normal = SMatrix::<f32, N_UNKNOWN, N_UNKNOWN>::zeros();
@@ -151,10 +152,11 @@ impl<'a> Fit<'a> {
             let Some(residual) = residual else { continue };
             let [across, down] = self.gradients[at];
             let [x, y] = self.place(at);
-            // What moves by a gradient's length may change by that much. Beyond three times the expected, Huber's weight.
+            // Expected residual of a shift by half a gradient. Beyond three times that, Huber's
+            // weight applies.
             let expected = spread + 0.5 * (across * across + down * down).sqrt();
             let weight = (3.0 * expected / residual.abs().max(3.0 * expected)) / (expected * expected);
-            // Where the picture went along its gradient, the other one is darker.
+            // A picture that moved along its gradient is darker there.
             let row = SVector::<f32, N_UNKNOWN>::from([
                 -across,
                 -down,
@@ -163,9 +165,9 @@ impl<'a> Fit<'a> {
                 self.one.luma[at],
                 1.0,
             ]);
-            // The residual is taken where things went, so that a further step is towards less of it.
+            // The residual is taken at the moved place, so that a further step reduces it.
             let weighted = weight * row;
-            // The lower half: that is all that is read of it.
+            // The lower half, which is all that is read.
             for column in 0..N_UNKNOWN {
                 for line in column..N_UNKNOWN {
                     normal[(line, column)] += row[line] * weighted[column];
@@ -173,8 +175,8 @@ impl<'a> Fit<'a> {
             }
             right += *residual * weighted;
         }
-        // Without texture nothing is known of movement: then none is the likeliest, give or take two squares; the codes stay
-        // within a few percent.
+        // Without texture, movement is unconstrained: the prior is none, give or take two squares;
+        // the codes stay within a few percent.
         let priors = [2.0, 2.0, 2.0, 2.0, 0.1, 10.0_f32];
         for (k, prior) in priors.into_iter().enumerate() {
             normal[(k, k)] += 1.0 / (prior * prior);
@@ -182,7 +184,7 @@ impl<'a> Fit<'a> {
         normal.cholesky().map(|normal| normal.solve(&right))
     }
 
-    /// Part of all tiles that differ by more than noise and edges explain.
+    /// Fraction of tiles that differ by more than noise and edges explain.
     fn changed(&self, residuals: &[Option<f32>]) -> f64 {
         let spread = self.spread(residuals);
         let least = LEAST_CODES.max(4.0 * spread);
@@ -216,7 +218,7 @@ impl<'a> Fit<'a> {
         n_changed as f64 / f64::from(n_tiles.max(1))
     }
 
-    /// Of the gradients at a square and beside it.
+    /// The steepest gradient at a square and beside it.
     fn steepest(&self, at: usize) -> f32 {
         let columns = self.one.size[0];
         let places = [
@@ -234,7 +236,7 @@ impl<'a> Fit<'a> {
     }
 }
 
-/// Bilinear; none beyond the border.
+/// Bilinear; `None` outside of the picture.
 #[allow(clippy::cast_possible_truncation, reason = "checked to be within the picture")]
 fn sample(picture: &Reduced, [x, y]: [f32; 2]) -> Option<f32> {
     let [columns, rows] = picture.size;

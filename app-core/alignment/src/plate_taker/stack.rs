@@ -9,18 +9,18 @@ use app_scene::camera_frame::CameraImage;
 use app_scene::geometry::color::{linear_from_srgb, linear_of_codes};
 use app_scene::scene::{Camera, Image, Intrinsics, Plate};
 
-/// Pictures that a camera took without moving.
+/// Pictures from a camera that did not move.
 #[derive(Clone, Debug)]
 pub(super) struct Stack {
     first: CameraImage,
-    /// The first one, made small: what the others are held against.
+    /// The first one, reduced: the reference of the others.
     pub(super) reduced: Reduced,
-    /// That took the first one.
+    /// Camera of the first one.
     pub(super) camera: Camera,
     pub(super) n: u32,
-    /// Linear light of all, three numbers a pixel; empty for one alone.
+    /// Sum of linear light, three numbers per pixel; empty for a single picture.
     sums: Vec<f32>,
-    /// Of all cameras.
+    /// Sum of all cameras.
     cameras: CameraSum,
 }
 
@@ -28,7 +28,7 @@ pub(super) struct Stack {
 struct CameraSum {
     intrinsics: [f64; 4],
     position: DVec3,
-    /// All on the side of the first.
+    /// Sum of all rotations, on the first one's hemisphere.
     rotation: DQuat,
 }
 
@@ -57,7 +57,7 @@ impl Stack {
         self.n += 1;
     }
 
-    /// The mean of all, by the mean of their cameras.
+    /// The mean picture, with the mean camera.
     pub(super) fn plate(&self) -> Plate {
         let image = if self.n == 1 {
             Arc::clone(self.first.rgba())
@@ -69,7 +69,7 @@ impl Stack {
     }
 
     fn mean(&self) -> Image {
-        // A code holds up to halfway to the next, in codes.
+        // A code covers half the distance to its neighbours.
         let mut ends = [0.0_f32; 255];
         for (code, end) in (0..u8::MAX).zip(&mut ends) {
             *end = linear_from_srgb((f32::from(code) + 0.5) / 255.0);
@@ -127,7 +127,7 @@ impl CameraSum {
 
     fn mean(&self, n: f64) -> Camera {
         let [fx_px, fy_px, cx_px, cy_px] = self.intrinsics.map(|sum| sum / n);
-        // A sum of rotations on one side of the sphere has a length.
+        // A sum of rotations on one hemisphere is not zero.
         let rotation = self.rotation.normalize();
         Camera {
             intrinsics: Intrinsics {

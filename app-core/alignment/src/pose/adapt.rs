@@ -1,7 +1,9 @@
-//! The toy's model, adapted to the outline that the picture shows: a smooth field of displacements where the toy was found.
+//! Adapts the toy's model to the outline in the picture: a smooth field of displacements in the
+//! estimated pose.
 //!
-//! Each round measures the outline of the model as it is displaced by then, as the codes beside it tell, and finds the field anew. What a
-//! camera does to an edge is found anew as well: a wrong model looks like a soft lens.
+//! Each round measures the outline of the displaced model from the codes beside it, and estimates
+//! the field anew. The camera's edge response is estimated anew as well: a wrong model looks like a
+//! soft lens.
 
 use glam::DVec3;
 
@@ -21,37 +23,40 @@ use crate::shape::Shape;
 use app_scene::scene::PoseUncertainty;
 use app_scene::toy::ToyError;
 
-/// Rounds; each brings the outline nearer by what its codes tell of what is left.
+/// Number of rounds; each reduces the remaining distance.
 const N_ROUNDS: usize = 4;
-/// What a camera displaces the outlines of right models by, as a rule, over the most that it does.
+/// Typical displacement of correct models' outlines by a camera, over its maximum.
 const AS_A_RULE: f64 = 0.5;
-/// What it displaces them by for each pixel of spread: right models came to .1 to .3 px where they were spread by 2 px.
+/// Displacement by the camera per pixel of blur: correct models came to .1 to .3 px at a blur of 2
+/// px.
 const OF_SPREAD: f64 = 0.1;
 
-/// The model of a toy in another shape.
+/// An adapted shape of a toy's model.
 pub(crate) struct Adapted {
-    /// Of each point, in camera space.
+    /// Displacement of each point, in camera space.
     pub(crate) displacements_m: Vec<DVec3>,
-    /// Root mean square distance of the outline with the model as given, and as adapted, in pixels.
+    /// Root mean square distance of the outline with the given and with the adapted model, in
+    /// pixels.
     pub(crate) outlines_px: [f64; 2],
-    /// Pieces of the outline that were measured.
+    /// Number of measured pieces of the outline.
     pub(crate) n_pieces: usize,
-    /// Logarithm of how much likelier the picture is with it.
+    /// Logarithm of the likelihood ratio in favour of it.
     pub(crate) evidence: f64,
 }
 
-/// The toy's surface where it is found, with its colours.
+/// The toy's surface in its pose, with its colours.
 pub(crate) type Surface = (Shape, Paint);
 
-/// Whether the outline is off by so much along some centimetres that another shape is tried: more than pictures of cameras are as a rule.
-/// `picture_px` are the picture's pixels in one of the largest level.
+/// Whether the outline deviates over some centimetres by more than camera pictures usually do, so
+/// that another shape is tried. `picture_px` are the picture's pixels per pixel of the largest
+/// level.
 pub(crate) fn is_doubtful(pose: &PoseAlignment, picture_px: f64) -> bool {
     let [model_px, spread_px] = [pose.model_px, pose.spread_px].map(|px| px / picture_px);
     model_px > AS_A_RULE * most_model_px(spread_px)
 }
 
-/// The model whose outline is that of the picture; none where the picture does not speak for another one than that given. `displaced` is the
-/// surface with its points displaced in camera space.
+/// The model with the picture's outline; `None` if the picture does not support another one than
+/// the given. `displaced` is the surface with its points displaced in camera space.
 pub(crate) fn adapt(
     (given, normals): (&Surface, &[DVec3]),
     pyramid: &Pyramid,
@@ -78,7 +83,7 @@ pub(crate) fn adapt(
         displacements_m = field.displacements_m;
         now = displaced(&displacements_m)?;
     }
-    // What the camera does is known best where the outline is met.
+    // The camera's edge response is known best at a matching outline.
     let eye = Eye::new(&now, pyramid);
     let field = eye.field(skin, (given, &as_given));
     let measured = [given, &now].map(|surface| eye.measured(surface));
@@ -95,7 +100,7 @@ pub(crate) fn adapt(
     }))
 }
 
-/// What sees an outline.
+/// The observer of an outline.
 struct Eye<'a> {
     pyramid: &'a Pyramid,
     optics: Optics,
@@ -128,7 +133,7 @@ impl<'a> Eye<'a> {
         of(&search.posed(&in_place(shape), light.map(|light| Lit { paint, light })))
     }
 
-    /// Pieces of the outline of a surface; none where that is too little.
+    /// Measured pieces of the outline of a surface; `None` if there are too few.
     fn measured(&self, surface: &Surface) -> Option<Vec<Measured>> {
         let half_px = COMPARED_PX + self.optics.half_px();
         self.posed(surface, |posed| {
@@ -138,7 +143,7 @@ impl<'a> Eye<'a> {
         })
     }
 
-    /// The field of a skin whose points are displaced by now.
+    /// The field of a surface with the given present displacements.
     fn field(&self, skin: Skin<'_>, (surface, displacements_m): (&Surface, &[DVec3])) -> Option<Field> {
         let k = &self.pyramid.level(0).intrinsics;
         let measured = self.measured(surface)?;
@@ -152,7 +157,7 @@ impl<'a> Eye<'a> {
     }
 }
 
-/// A shape where it is.
+/// A shape in its place.
 fn in_place(shape: &Shape) -> Placement {
     Placement::of(RigidMotion::none(shape.centre, shape.radius_m))
 }

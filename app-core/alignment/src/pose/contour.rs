@@ -5,17 +5,18 @@ use glam::{DVec2, DVec3, IVec2};
 use crate::raster::Coverage;
 use app_scene::scene::Intrinsics;
 
-/// Covered at least as much, a pixel is within the outline.
+/// Coverage of a pixel inside the outline.
 const INSIDE: f32 = 0.5;
-/// The Sobel gradient of an upright edge is 4, that of a slanted one 4.2; that of a limb thinner than two pixels is less.
+/// Threshold of the Sobel gradient, which is 4 for an axis-parallel edge, 4.2 for a diagonal one,
+/// and less for a limb thinner than two pixels.
 const LEAST_GRADIENT: f64 = 1.5;
-/// Pixels at the border of the picture that have no neighbours to look at.
+/// Width of the picture's border without neighbours.
 const BORDER_PX: i32 = 2;
 
 /// A piece of the outline, about a pixel long.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Element {
-    /// Where it is.
+    /// Its position.
     pub(super) at_px: DVec2,
     /// Unit vector out of the toy.
     pub(super) normal: DVec2,
@@ -26,14 +27,14 @@ pub(super) struct Element {
 }
 
 impl Element {
-    /// The pixel at a distance from it, positive out of the toy.
+    /// The pixel at a distance from it, positive outside of the toy.
     pub(super) fn pixel(&self, distance_px: f64) -> IVec2 {
         (self.at_px + distance_px * self.normal).floor().as_ivec2()
     }
 
-    /// The rim in camera space, and how far it moves along the normal in pixels for each metre along each axis.
+    /// The rim in camera space, and its shift along the normal in pixels per metre along each axis.
     ///
-    /// That a rim slides over a curved surface as it turns counts only in the second order.
+    /// The sliding of the rim over a curved surface as it turns is a second-order effect.
     pub(super) fn rim(&self, k: &Intrinsics) -> (DVec3, DVec3) {
         let slope_x = (self.at_px.x - k.cx_px) / k.fx_px;
         let slope_y = -(self.at_px.y - k.cy_px) / k.fy_px;
@@ -44,7 +45,7 @@ impl Element {
     }
 }
 
-/// Pieces of the outline of what is covered, row by row.
+/// Pieces of the outline of the covered pixels, row by row.
 pub(super) fn contour(coverage: &Coverage, size_px: IVec2) -> Vec<Element> {
     const NEIGHBOURS: [IVec2; 4] = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
     let pixels = coverage.pixels().filter(|at| {
@@ -74,7 +75,7 @@ fn element(coverage: &Coverage, at: IVec2) -> Option<Element> {
     })
 }
 
-/// Depth at the pixel's centre, or the least beside it where the rim passes the centre by.
+/// Depth at the pixel's centre, or the smallest beside it if the rim misses the centre.
 fn rim_depth_m(coverage: &Coverage, at: IVec2) -> Option<f64> {
     let own_m = coverage.depth_m(at);
     let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| IVec2::new(x, y)));

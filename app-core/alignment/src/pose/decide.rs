@@ -1,4 +1,5 @@
-//! The last rounds: a pose by the codes beside the outline, freely and on its plane, and which of these the picture speaks for.
+//! The last rounds: a pose estimated from the codes beside the outline, freely and on its plane,
+//! and the choice between them.
 
 use super::edge::{self, Optics};
 use super::matte::Band;
@@ -7,50 +8,58 @@ use super::paint::{Light, Lit, Paint};
 use super::placement::{Placement, SIZE};
 use super::settle::{Balance, Known, LEAST_EVIDENCE, Misfit, smoothed_px};
 use super::standing::{Ground, Standing};
+use super::texture::{LAST_SPREAD, Likeness, Texture};
 use super::{FINE, Fit, Found, Search, Subject, enough};
 use crate::picture::Level;
 use crate::report::{PoseDeviation, most_model_px};
 use crate::rigid_motion::RigidMotion;
 
-/// If the picture speaks against a toy on its plane by more than that, half of what decides, its feet are tried as high as they were given,
-/// and the toy in another size; these are taken if they are likelier by as much.
+/// Evidence against a toy on its plane, half of the decisive amount, above which the given height
+/// of its feet and another size are tried; these are used if they are likelier by that amount.
 const UNDOUBTED: f64 = 0.5 * LEAST_EVIDENCE;
-/// If a photograph is spread by more, in pixels, its plate is tried as soft as it is. A picture of a sharp lens, compressed or not, is
-/// spread by .6 at most.
+/// Blur of a photograph, in pixels, above which an equally blurred plate is tried. A picture of a
+/// sharp lens, compressed or not, has .6 at most.
 const SOFT_PX: f64 = 0.7;
-/// Most rounds of one search; each leaves about half of what the one before left.
+/// Largest number of rounds of one search; each leaves about half of the residual.
 const N_ROUNDS: usize = 8;
-/// A step that moves the toy by less, over its radius, is the last: a thousandth of a pixel.
+/// Size of the last step, over the toy's radius: a thousandth of a pixel.
 const LAST_STEP: f64 = 2e-5;
-/// The band is wider by as much on either side than an edge of that spread needs, in pixels, so that poses some pixels apart can be compared.
+/// Additional width of the band on either side, in pixels, so that poses some pixels apart can be
+/// compared.
 pub(super) const COMPARED_PX: f64 = 1.0;
-/// Feet that are given nearer to the plane, in metres, are given on it: about the deviation of feet that stand.
+/// Feet within this distance of the plane, in metres, count as on it: about the deviation of
+/// standing feet.
 const ON_PLANE_M: f64 = 2e-4;
-/// An outline is met if its loss is less, in square pixels, and by how much more for each pixel of spread. Right outlines came to .04 in
-/// sharp pictures, compressed or not, and to .12 in pictures that are spread by 2 px.
+/// Largest loss of a matching outline in square pixels, and its increase per pixel of blur. Correct
+/// outlines came to .04 in sharp pictures, compressed or not, and to .12 in pictures with a blur of
+/// 2 px.
 const MET_PX2: f64 = 0.06;
 const MET_OF_SPREAD: f64 = 0.04;
-/// A toy whose size differs by more, as a logarithm, is another toy; as much as the scale of a world may be off.
+/// Largest logarithm of a size difference; beyond, it is another toy; also the largest error of a
+/// world's scale.
 const MOST_SIZE: f64 = 0.03;
 
-/// How much less of the outline a better pose may have measured: a different part of it may be thin, or beside a corner.
+/// Largest loss of measured outline for a better pose: other parts of it may be thin, or near a
+/// corner.
 const LESS_SEEN: f64 = 0.1;
 
-/// What is known before the last rounds.
+/// Knowledge before the last rounds.
 #[derive(Clone, Copy)]
 struct Seen<'a> {
     lit: Option<Lit<'a>>,
     optics: Optics,
+    /// `None` if the toy has none, or another one than its model.
+    texture: Option<&'a Texture>,
 }
 
-/// Where the size of a toy comes from.
+/// The source of a toy's size.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum SizeOf {
     Given,
     Found,
 }
 
-/// Where the search came to rest.
+/// The result of a search.
 #[derive(Clone)]
 struct Settled {
     placement: Placement,
@@ -60,7 +69,7 @@ struct Settled {
 }
 
 impl Search<'_> {
-    /// With all six freedoms, in all bands; standing, where the picture does not speak against it.
+    /// Estimates all six parameters, in all bands; standing, if the picture does not contradict it.
     pub(super) fn freed(&mut self, subject: Subject<'_>, given: Fit, motion: RigidMotion) -> Option<Found> {
         let Subject { shape, paint, ground } = subject;
         let light = self.light(paint, &Placement::of(motion));
@@ -68,11 +77,12 @@ impl Search<'_> {
         let start = Placement::of(self.fine(motion, lit, wide_bands())?);
         let light = self.light(paint, &start);
         let seen = self.seen(&start, light.as_ref().map(|light| Lit { paint, light }));
-        // What a camera and the light do to the outline is seen best once that is nearly met.
+        // The effects of camera and light on the outline are measured best near a match.
         let start = self.settled(seen, &start, None)?.placement;
         let light = self.light(paint, &start);
         let seen = self.seen(&start, light.as_ref().map(|light| Lit { paint, light }));
-        let free = self.settled(seen, &start, None)?;
+        let texture = seen.lit.and_then(|lit| self.texture(lit, &start));
+        let (seen, free) = self.textured(seen, texture.as_ref(), &start)?;
         let standing = ground.and_then(|Ground { plane, .. }| Standing::on(shape, plane));
         let certain = standing
             .as_ref()
@@ -85,12 +95,18 @@ impl Search<'_> {
         let settled = settled.unwrap_or_else(|| free.clone());
         let as_given = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
         let as_given = self.edges(&as_given, seen).unwrap_or_default();
-        let of_given = Misfit::of(&as_given);
+        let of_given = Misfit {
+            texture: self.likeness(
+                seen,
+                &Placement::of(RigidMotion::none(shape.centre, shape.radius_m)),
+            ),
+            ..Misfit::of(&as_given)
+        };
         let standing_evidence = certain.map_or(0.0, |standing| {
             standing.evidence(|point| settled.placement.apply(point))
         });
         let is_refused = certain.is_none() && settled.misfit.likelier_than(&of_given) < LEAST_EVIDENCE;
-        // A plane that a toy need not stand on is no reason to leave it where it is not.
+        // A plane that a toy need not stand on is no reason to leave its given place.
         let settled = if is_refused && free.misfit.likelier_than(&of_given) >= LEAST_EVIDENCE {
             free
         } else {
@@ -107,6 +123,7 @@ impl Search<'_> {
             evidence: settled.misfit.likelier_than(&of_given) + standing_evidence,
             deviation: settled.deviation,
             model_px: smoothed_px(&settled.measured),
+            texture_correlation: settled.misfit.texture.map(|texture| texture.correlation),
             spread_px: seen.optics.spread_px,
             plate_spread_px: self.softened.as_ref().map_or(0.0, |(_, spread_px)| *spread_px),
             stands: standing.map(|standing| {
@@ -116,7 +133,7 @@ impl Search<'_> {
         })
     }
 
-    /// The toy on its plane, whatever the picture says; in another size where that is so much likelier.
+    /// The toy on its plane, whatever the picture; in another size if that is much likelier.
     fn on_plane(&mut self, seen: Seen<'_>, free: &Settled, standing: &Standing) -> Option<Settled> {
         let own = self.settled(seen, &free.placement, Some((standing, SizeOf::Given)))?;
         let resized = self.resized(seen, &own.placement, standing);
@@ -124,14 +141,15 @@ impl Search<'_> {
         Some(resized.unwrap_or(own))
     }
 
-    /// The toy on its plane in the size that explains its outline there; none if that is another toy's.
+    /// The toy on its plane in the size that explains its outline there; `None` if that is another
+    /// toy's.
     fn resized(&mut self, seen: Seen<'_>, start: &Placement, standing: &Standing) -> Option<Settled> {
         let resized = self.settled(seen, start, Some((standing, SizeOf::Found)))?;
         (resized.placement.size.ln().abs() < MOST_SIZE).then_some(resized)
     }
 
-    /// The toy on its plane, in its own size or in another, or with its feet as high as they are given; none where the picture
-    /// speaks against all of these.
+    /// The toy on its plane, in its own size or in another, or with its feet at their given height;
+    /// `None` if the picture contradicts all of these.
     fn stood(&mut self, seen: Seen<'_>, free: &Settled, standing: &Standing) -> Option<Settled> {
         let is_likely = |settled: &Settled| free.misfit.likelier_than(&settled.misfit) < LEAST_EVIDENCE;
         let on_plane = self.settled(seen, &free.placement, Some((standing, SizeOf::Given)))?;
@@ -153,7 +171,7 @@ impl Search<'_> {
         best.or_else(|| is_likely(&on_plane).then_some(on_plane))
     }
 
-    /// What the camera spreads the outline by.
+    /// The camera's blur of the outline.
     pub(super) fn spread_px(&mut self, paint: &Paint, placement: &Placement) -> f64 {
         let light = self.light(paint, placement);
         let lit = light.as_ref().map(|light| Lit { paint, light });
@@ -167,10 +185,48 @@ impl Search<'_> {
 
     fn seen<'a>(&mut self, placement: &Placement, lit: Option<Lit<'a>>) -> Seen<'a> {
         let optics = self.optics(placement, lit);
-        Seen { lit, optics }
+        Seen {
+            lit,
+            optics,
+            texture: None,
+        }
     }
 
-    /// What the camera does to an outline; where it is soft, with the plate as soft or as it was taken, whichever explains more.
+    /// The model's paint near the toy's pose; `None` if it has no texture there.
+    fn texture(&mut self, lit: Lit<'_>, placement: &Placement) -> Option<Texture> {
+        let posed = self.posed(placement, Some(lit));
+        Texture::new(posed.shaded.as_ref()?, self.pyramid.level(0), &posed.coverage)
+    }
+
+    /// Estimates the pose freely, by the outline and by the toy's texture if it is the model's. It
+    /// starts from the outline's result, or else from the given pose, since an outline may slide
+    /// away from a texture.
+    fn textured<'a>(
+        &mut self,
+        seen: Seen<'a>,
+        texture: Option<&'a Texture>,
+        start: &Placement,
+    ) -> Option<(Seen<'a>, Settled)> {
+        if texture.is_some() {
+            let textured = Seen { texture, ..seen };
+            let given = Placement::of(RigidMotion::none(self.shape.centre, self.shape.radius_m));
+            for from in [start, &given] {
+                let found = self.settled(textured, from, None);
+                if let Some(found) = found.filter(|found| found.misfit.is_texture_of_model()) {
+                    return Some((textured, found));
+                }
+            }
+        }
+        Some((seen, self.settled(seen, start, None)?))
+    }
+
+    fn likeness(&self, seen: Seen<'_>, placement: &Placement) -> Option<Likeness> {
+        let k = &self.pyramid.level(0).intrinsics;
+        seen.texture.and_then(|texture| texture.likeness(placement, k))
+    }
+
+    /// The camera's edge response; if it is soft, with a blurred or the original plate, whichever
+    /// explains more.
     fn optics(&mut self, placement: &Placement, lit: Option<Lit<'_>>) -> Optics {
         let posed = self.posed(placement, lit);
         let sharp = self.pyramid.level(0);
@@ -191,7 +247,7 @@ impl Search<'_> {
         }
     }
 
-    /// The pieces by the codes beside them; none where that is too little.
+    /// The pieces measured by the codes beside them; `None` if there are too few.
     fn edges(&mut self, placement: &Placement, seen: Seen<'_>) -> Option<Vec<Measured>> {
         let posed = self.posed(placement, seen.lit);
         let softened = self.softened.as_ref().map(|(level, _)| level);
@@ -201,7 +257,8 @@ impl Search<'_> {
         enough(measured, &posed.elements).map(|(measured, _)| measured)
     }
 
-    /// With all that is free; the feet of a toy that stands are on their plane, and its size may be looked for.
+    /// Optimises all free parameters; the feet of a standing toy are on their plane, and its size
+    /// may be estimated.
     fn settled(
         &mut self,
         seen: Seen<'_>,
@@ -215,19 +272,30 @@ impl Search<'_> {
             standing: standing.map(|(standing, _)| standing),
             is_size_open: standing.is_some_and(|(_, size)| size == SizeOf::Found),
         };
+        let rows = |round: usize, placement: &Placement| {
+            let texture = seen
+                .texture
+                .map(|texture| texture.rows(round, placement, known.k));
+            texture.unwrap_or_default()
+        };
+        let first_sharp = if seen.texture.is_some() { LAST_SPREAD } else { 0 };
         let mut placement = *start;
         let mut measured = self.edges(&placement, seen)?;
-        for _ in 0..N_ROUNDS {
-            let step = Balance::new(&measured, &placement, known).step()?;
+        for round in 0..first_sharp + N_ROUNDS {
+            let step = Balance::new((&measured, rows(round, &placement)), &placement, known).step()?;
             placement = placement.then(&step, &self.uncertainty);
             measured = self.edges(&placement, seen)?;
-            if step.fixed_rows::<SIZE>(0).norm() < LAST_STEP * self.shape.radius_m {
+            let is_short = step.fixed_rows::<SIZE>(0).norm() < LAST_STEP * self.shape.radius_m;
+            if is_short && round >= first_sharp {
                 break;
             }
         }
-        let misfit = Misfit::of(&measured);
+        let misfit = Misfit {
+            texture: self.likeness(seen, &placement),
+            ..Misfit::of(&measured)
+        };
         let depth_m = -placement.motion.centre().z;
-        let balance = Balance::new(&measured, &placement, known);
+        let balance = Balance::new((&measured, rows(usize::MAX, &placement)), &placement, known);
         Some(Settled {
             deviation: balance.deviation(misfit.loss_px2.sqrt(), depth_m),
             misfit,
@@ -237,13 +305,13 @@ impl Search<'_> {
     }
 }
 
-/// All bands by area but the finest, which codes stand in for.
+/// All bands by area except the finest, which is replaced by codes.
 fn wide_bands() -> &'static [(Band, usize)] {
     &FINE[..FINE.len() - 1]
 }
 
-/// Root mean square distance of an outline, in pixels: by the codes beside it where they are those of this outline, which noise and
-/// sharpening leave as it is, and else by area.
+/// Root mean square distance of an outline, in pixels: by the codes beside it if they belong to
+/// this outline, since noise and sharpening do not bias them, and else by area.
 fn outline_px(fit: &Fit, measured: &[Measured], optics: Optics) -> f64 {
     let loss_px2 = Misfit::of(measured).loss_px2;
     let is_near = loss_px2 < MET_PX2 + MET_OF_SPREAD * optics.spread_px;

@@ -1,7 +1,9 @@
-//! Where the outline is, to a small part of a pixel, by predicting the codes of the pixels beside it.
+//! Locates the outline to a small fraction of a pixel, by predicting the codes of the pixels beside
+//! it.
 //!
-//! A camera mixes toy and background by the area that each covers, spreads the mixture by its lens, encodes it and sharpens the codes.
-//! Each step is predicted: what a camera does to both sides alike makes a toy neither fat nor thin then.
+//! A camera mixes toy and background by the area that each covers, spreads the mixture by its lens,
+//! encodes it and sharpens the codes. Each step is predicted, so that symmetric effects of the
+//! camera make a toy neither fat nor thin.
 
 use glam::{DVec2, IVec2};
 
@@ -14,50 +16,51 @@ use crate::raster::Coverage;
 use crate::robust;
 use app_scene::geometry::color::{linear_per_srgb, srgb_from_linear};
 
-/// What the prediction of a piece is wrong by, in pixels, however many pixels it has.
+/// Error of the prediction of a piece, in pixels, independent of its number of pixels.
 const CARRIED_PX: f64 = 0.05;
-/// The band is as wide without a spread, and as much wider with one, in pixels.
+/// Width of the band without blur, and its increase with blur, in pixels.
 const HALF_PX: f64 = 1.0;
 const HALF_OF_SPREAD: f64 = 1.5;
-/// What is displaced by more counts less: scale of the Geman-McClure weights, in pixels.
+/// Scale of the Geman-McClure weights of displacements, in pixels.
 const ROBUST_PX: f64 = 0.5;
-/// A piece is displaced by no more: beyond it one step no longer predicts the codes.
+/// Largest displacement of a piece: beyond it one linear step does not predict the codes.
 const MOST_PX: f64 = 1.5;
-/// What a camera sharpens against: its codes spread by as much, in pixels.
+/// Blur of the unsharp mask of a camera's sharpening, in pixels.
 const SHARPENED_PX: f64 = 1.2;
 /// Variance of a point's place within a pixel, along any direction, in square pixels.
 const PIXEL_PX2: f64 = 1.0 / 12.0;
-/// A smaller spread is not seen beside the shape of the pixel.
+/// A smaller blur is invisible beside the shape of the pixel.
 const LEAST_SPREAD_PX: f64 = 0.3;
-/// A larger spread is not that of a lens.
+/// Largest blur of a lens.
 const MOST_SPREAD_PX: f64 = 4.0;
-/// Half the band in which spreads are compared, the same for all, in pixels.
+/// Half the band in which blurs are compared, the same for all, in pixels.
 const COMPARED_PX: f64 = 4.0;
-/// Above that spread, overshoot is not told from less of it.
+/// Blur above which overshoot and less blur are ambiguous.
 const SPREAD_WITHOUT_OVERSHOOT_PX: f64 = 1.0;
 const MOST_OVERSHOOT: f64 = 1.5;
-/// Most of the pieces: what fits worst is something else.
+/// Fraction of the pieces that count: the worst ones are something else.
 const FITTING: f64 = 0.7;
-/// An unknown of the camera's is taken where the misfit falls to less than this part.
+/// An unknown of the camera is included if the misfit falls to less than this fraction.
 const GAIN: f64 = 0.98;
 
-/// What a camera does to an edge, the same all around the toy.
+/// A camera's edge response, the same all around the toy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Optics {
-    /// Standard deviation of the spread that a lens gives, in pixels.
+    /// Standard deviation of the lens's blur, in pixels.
     pub(super) spread_px: f64,
-    /// What sharpening adds, over what the codes differ from themselves spread by 1.2 px.
+    /// Strength of sharpening, relative to the difference between the codes and their blur by 1.2
+    /// px.
     pub(super) overshoot: f64,
 }
 
 impl Optics {
-    /// Half the band that an edge of its spread lies within, in pixels.
+    /// Half the width of the band that an edge of this blur needs, in pixels.
     pub(super) fn half_px(&self) -> f64 {
         HALF_PX + HALF_OF_SPREAD * self.spread_px
     }
 
-    /// The optics that explain the pixels of a wide band best, whatever the pose, since each piece is displaced as it likes; and what they
-    /// leave unexplained.
+    /// The optics that explain the pixels of a wide band best, whatever the pose, since each piece
+    /// has a free displacement; and the remaining residual.
     pub(super) fn found(beside: &Beside<'_>, elements: &[Element]) -> (Self, f64) {
         let edges = Edges::new(beside, elements, COMPARED_PX);
         let spread = |spread_px| Self {
@@ -85,7 +88,8 @@ impl Optics {
     }
 }
 
-/// Where a function of one valley is least between two bounds, and how much it is there. Source: golden-section search, Kiefer 1953.
+/// The minimum of a unimodal function between two bounds, and its value. Source: golden-section
+/// search, Kiefer 1953.
 fn least((mut low, mut high): (f64, f64), of: impl Fn(f64) -> f64) -> (f64, f64) {
     const GOLDEN: f64 = 0.618_033_988_749_895;
     const N_CUTS: usize = 7;
@@ -105,7 +109,7 @@ fn least((mut low, mut high): (f64, f64), of: impl Fn(f64) -> f64) -> (f64, f64)
     if of_a < of_b { (a, of_a) } else { (b, of_b) }
 }
 
-/// Measures each piece's displacement, by the step that explains its pixels best.
+/// Measures each piece's displacement by the step that explains its pixels best.
 pub(super) fn measure(
     beside: &Beside<'_>,
     elements: &[Element],
@@ -115,7 +119,7 @@ pub(super) fn measure(
     measured_by(beside, elements, (optics, half_px), Piece::measured)
 }
 
-/// The same, trusted by how well its step explains the pixels of each piece.
+/// The same, weighted by the fit of each piece's pixels.
 pub(super) fn measure_explained(
     beside: &Beside<'_>,
     elements: &[Element],
@@ -145,23 +149,23 @@ fn measured_by(
         .collect()
 }
 
-/// The pixels beside an outline, each with what it would show of toy and background alone.
+/// The pixels beside an outline, each with its colours of toy and background alone.
 struct Edges<'a> {
     coverage: &'a Coverage,
     pixels: Vec<EdgePixel>,
-    /// Of each piece, whether all of its pixels and both its sides are known.
+    /// For each piece, whether all of its pixels and both its sides are known.
     are_known: Vec<bool>,
 }
 
 struct EdgePixel {
     at: IVec2,
     owner: usize,
-    /// From the piece along its normal.
+    /// Distance from the piece along its normal.
     from_px: f64,
     normal: DVec2,
     toy: Color,
     background: Color,
-    /// Toy's less the background's.
+    /// The toy's codes minus the background's.
     contrast_codes: [f64; 3],
     seen_codes: [f64; 3],
 }
@@ -204,7 +208,7 @@ impl<'a> Edges<'a> {
         }
     }
 
-    /// Mean square of what the pixels of a piece leave unexplained over its contrast, of those that fit.
+    /// Mean square of the residual over the contrast, for the pieces that fit.
     fn misfit(&self, optics: Optics) -> f64 {
         let pieces = self.pieces(optics);
         let mut left: Vec<f64> = pieces.iter().filter_map(Piece::left).collect();
@@ -250,14 +254,14 @@ impl<'a> Edges<'a> {
     }
 }
 
-/// What a pixel has of the toy, and how much more for each pixel that the outline moves outwards.
+/// A pixel's coverage by the toy, and its derivative by the outline's outward move in pixels.
 #[derive(Clone, Copy, Default)]
 struct Mixed {
     covered: f64,
     density: f64,
 }
 
-/// How much more a pixel is covered for each pixel that a straight edge moves towards it, from a distance.
+/// Derivative of a pixel's coverage by the move of a straight edge at the given distance.
 fn density(from_px: f64, normal: DVec2, spread_px: f64) -> f64 {
     if spread_px >= LEAST_SPREAD_PX {
         let variance = spread_px * spread_px + PIXEL_PX2;
@@ -278,7 +282,7 @@ fn density(from_px: f64, normal: DVec2, spread_px: f64) -> f64 {
     }
 }
 
-/// What the pixels beside a piece of the outline say: weighted sums of squares, in codes.
+/// Statistics of the pixels beside a piece of the outline: weighted sums of squares, in codes.
 #[derive(Clone, Copy, Default)]
 struct Piece {
     is_known: bool,
@@ -312,7 +316,7 @@ impl Piece {
         self.n += 1.0;
     }
 
-    /// What is left unexplained over the contrast, once the piece is displaced.
+    /// The residual over the contrast, once the piece is displaced.
     fn left(&self) -> Option<f64> {
         if !self.is_known || self.slope2 <= 0.0 {
             return None;
@@ -322,7 +326,7 @@ impl Piece {
         Some((self.residual2 - explained).max(0.0) / (self.contrast2 + noise))
     }
 
-    /// Variance of the displacement by what it leaves unexplained.
+    /// Variance of the displacement by the residual.
     fn unexplained_px2(&self) -> f64 {
         let explained = self.slope_by_residual * self.slope_by_residual / self.slope2;
         let left = (self.residual2 - explained).max(0.0);
@@ -355,18 +359,18 @@ fn code(linear: f64) -> f64 {
     255.0 * f64::from(encoded)
 }
 
-/// Codes for each unit of light at white. What is predicted for either side is wrong by some light, what a camera adds is of codes: pixels
-/// weigh halfway between the two.
+/// Codes per unit of light at white. The prediction's errors are in light, the camera's in codes:
+/// pixels are weighted halfway between the two.
 const SLOPE_OF_WHITE: f64 = 255.0 * 1.055 / 2.4;
 
-/// Codes for each unit of light.
+/// Codes per unit of light.
 fn slope_of_code(linear: f64) -> f64 {
     #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
     let slope = linear_per_srgb(linear.min(1.0) as f32);
     255.0 / f64::from(slope)
 }
 
-/// Coverage as a lens spreads it.
+/// Coverage blurred by a lens.
 struct Spread {
     origin_px: IVec2,
     size_px: IVec2,
@@ -393,7 +397,7 @@ impl Spread {
         spread
     }
 
-    /// As it is, with a margin around it.
+    /// The unblurred coverage, with a margin around it.
     fn of(coverage: &Coverage, margin_px: i32, deviation_px: f64) -> Self {
         let (origin_px, size_px) = (coverage.origin_px - margin_px, coverage.size_px + 2 * margin_px);
         Self {

@@ -1,10 +1,12 @@
 //! A smooth field of displacements of a toy's surface, by those of its outline: a Gaussian process.
 //!
-//! What is displaced at one point is displaced alike near it: for the most part along the normals, on the same side of the toy. How far
-//! and over what length is what makes the picture most likely, of some tenths of a millimetre and some millimetres on a toy of 10 cm.
-//! The pose stays where it was found. What the outline asks for beyond it is the surface's, and ends where no outline is near.
+//! Nearby points on the same side of the toy have similar displacements, mostly along the normals.
+//! Amplitude and length scale maximise the likelihood of the picture, at some tenths of a
+//! millimetre and some millimetres on a toy of 10 cm. The pose is fixed. The remaining distance of
+//! the outline is a displacement of the surface, and fades out away from the outline.
 //!
-//! Source: Rasmussen and Williams 2006, sections 2.2 and 5.4; iteratively reweighted as by Geman and McClure 1987.
+//! Source: Rasmussen and Williams 2006, sections 2.2 and 5.4; iteratively reweighted as by Geman
+//! and McClure 1987.
 
 use std::collections::BTreeMap;
 
@@ -17,44 +19,46 @@ use crate::median::median;
 use crate::robust;
 use crate::shape::Shape;
 
-/// Deviations of the displacements that are tried, over the toy's radius: of a toy of 10 cm from .1 to 1.2 mm.
+/// Standard deviations of the displacements to try, over the toy's radius: for a toy of 10 cm from
+/// .1 to 1.2 mm.
 const DEVIATIONS: [f64; 4] = [0.002, 0.004, 0.008, 0.016];
-/// Lengths over which they change that are tried, over the toy's radius: from 3 to 7 mm.
+/// Length scales to try, over the toy's radius: from 3 to 7 mm.
 const LENGTHS: [f64; 3] = [0.045, 0.065, 0.095];
-/// No shorter length is told by an outline, in pixels.
+/// Smallest length scale that an outline constrains, in pixels.
 const LEAST_LENGTH_PX: f64 = 4.0;
-/// Points that are farther apart, over the length, are displaced apart from one another.
+/// Distance over the length scale beyond which points are uncorrelated.
 const APART: f64 = 4.0;
-/// Of the variance of a displacement, what is not along the normal: feet, ears and tails bend.
+/// Fraction of a displacement's variance that is not along the normal: feet, ears and tails bend.
 const ANY_WAY: f64 = 0.2;
-/// What cameras displace outlines by is alike over so many pixels.
+/// Correlation length of a camera's displacements of outlines, in pixels.
 const ALIKE_PX: f64 = 10.0;
-/// Displacements beyond that many medians of all are something else for the most part, such as a shadow beside the toy.
+/// Displacements beyond this many medians mostly belong to something else, for example a shadow
+/// beside the toy.
 const FAR: f64 = 3.0;
-/// The least such median, in pixels: that of an outline that is met.
+/// Lower bound of that median, in pixels: the median of a matching outline.
 const LEAST_MEDIAN_PX: f64 = 0.1;
-/// Scale of the weights of what a field leaves over the median of that, and its bounds in pixels.
+/// Scale of the residuals' weights over their median, and its bounds in pixels.
 const ROBUST: f64 = 3.0;
 const LEAST_ROBUST_PX: f64 = 0.15;
 const MOST_ROBUST_PX: f64 = 0.6;
-/// The least weight of what does not fit.
+/// The smallest weight of an outlier.
 const LEAST_WEIGHT: f64 = 1e-4;
-/// Rounds of reweighting, and in how many of them the lengths and deviations are looked for.
+/// Rounds of reweighting, and the number of them in which lengths and deviations are estimated.
 const N_ROUNDS: usize = 4;
 const N_LOOKED_FOR: usize = 2;
 
-/// The surface that is displaced, in camera space.
+/// The displaced surface, in camera space.
 #[derive(Clone, Copy)]
 pub(super) struct Skin<'a> {
     pub(super) shape: &'a Shape,
-    /// Of unit length for each point of the shape; zero where it has no outside.
+    /// Unit normal of each point of the shape; zero if it has no outside.
     pub(super) normals: &'a [DVec3],
 }
 
-/// What a camera makes of an outline, and how large its pixels are.
+/// A camera's error of an outline, and the size of its pixels.
 #[derive(Clone, Copy)]
 pub(super) struct Camera {
-    /// One deviation of what it displaces the outline of a right model by, along some pixels.
+    /// Standard deviation of its displacements of a correct model's outline, along some pixels.
     pub(super) alike_px: f64,
     /// Side of a pixel at the toy's distance.
     pub(super) pixel_m: f64,
@@ -69,7 +73,7 @@ pub(super) struct Field {
     pub(super) evidence: f64,
 }
 
-/// How far and over what length surfaces are displaced.
+/// Amplitude and length scale of the displacements.
 #[derive(Clone, Copy)]
 struct Prior {
     deviation_m: f64,
@@ -78,7 +82,7 @@ struct Prior {
 }
 
 impl Field {
-    /// The field that makes an outline most likely; none where nothing of it is seen.
+    /// The field of largest likelihood; `None` if nothing of the outline is visible.
     pub(super) fn found(skin: Skin<'_>, sightings: &[Sighting], camera: Camera) -> Option<Self> {
         if sightings.is_empty() {
             return None;
@@ -106,16 +110,17 @@ impl Field {
     }
 }
 
-/// The outline, and how what is seen of it goes together.
+/// The outline, and the covariance of its pieces.
 struct Process<'a> {
     skin: Skin<'a>,
     sightings: &'a [Sighting],
     offsets: DVector<f64>,
-    /// Covariance of what is no field but the camera's, in square pixels.
+    /// Covariance of the camera's displacements, in square pixels.
     common: DMatrix<f64>,
     cell_px: f64,
     lengths_m: [f64; LENGTHS.len()],
-    /// For each length, covariance of the offsets by a field with a deviation of one metre.
+    /// For each length scale, covariance of the offsets by a field with a standard deviation of one
+    /// metre.
     unit: [DMatrix<f64>; LENGTHS.len()],
 }
 
@@ -138,7 +143,7 @@ impl<'a> Process<'a> {
         &self.unit[prior.length] * prior.deviation_m.powi(2)
     }
 
-    /// What is no field, if neighbouring pieces err alike over as many as `alike` sightings.
+    /// Covariance of the noise, if neighbouring pieces are correlated over `alike` sightings.
     fn noise(&self, robust: &[f64], alike: f64) -> DMatrix<f64> {
         let mut noise = self.common.clone();
         for (index, (one, weight)) in self.sightings.iter().zip(robust).enumerate() {
@@ -147,7 +152,7 @@ impl<'a> Process<'a> {
         noise
     }
 
-    /// The likeliest of all priors, or the given one, and how each offset pulls at the field with it.
+    /// The most likely prior, or the given one, and the weight of each offset in the field with it.
     fn likeliest(&self, robust: &[f64], given: Option<Prior>) -> Option<(Prior, DVector<f64>)> {
         let noise = self.noise(robust, 1.0);
         let priors: Vec<Prior> = match given {
@@ -162,7 +167,8 @@ impl<'a> Process<'a> {
         Some((prior, pulls))
     }
 
-    /// Logarithm of how much likelier the offsets are with a field; neighbouring pieces count once.
+    /// Logarithm of the likelihood ratio of the offsets with and without a field; neighbouring
+    /// pieces count once.
     fn evidence(&self, robust: &[f64], prior: Prior) -> Option<f64> {
         let noise = self.noise(robust, (ALIKE / self.cell_px).max(1.0));
         let (with, _) = explained(&noise + self.covariance(prior), &self.offsets)?;
@@ -202,7 +208,8 @@ fn priors(radius_m: f64) -> impl Iterator<Item = Prior> {
 }
 
 impl Skin<'_> {
-    /// What a pull at one point moves another one by, if displacements have a deviation of one metre.
+    /// The displacement of a point by a pull at another one, if displacements have a standard
+    /// deviation of one metre.
     fn carried(&self, point: usize, other: usize, pull: DVec3, length_m: f64) -> DVec3 {
         let points = &self.shape.points;
         let square = (points[point] - points[other]).length_squared() / (length_m * length_m);
@@ -216,7 +223,8 @@ impl Skin<'_> {
     }
 }
 
-/// Logarithm of the likelihood of offsets with a covariance, but for a constant, and the inverse of that times them.
+/// Logarithm of the likelihood of offsets with a covariance, up to a constant, and the inverse
+/// covariance times the offsets.
 fn explained(covariance: DMatrix<f64>, offsets: &DVector<f64>) -> Option<(f64, DVector<f64>)> {
     let factor = covariance.cholesky()?;
     let pulls = factor.solve(offsets);
@@ -224,7 +232,8 @@ fn explained(covariance: DMatrix<f64>, offsets: &DVector<f64>) -> Option<(f64, D
     Some((-0.5 * offsets.dot(&pulls) - roots, pulls))
 }
 
-/// Halos, textures and the blocks of a compressed picture displace an outline along some pixels, and some of it all round.
+/// Halos, textures and the blocks of a compressed picture displace an outline along some pixels,
+/// and partly all around.
 fn common(sightings: &[Sighting], alike_px: f64) -> DMatrix<f64> {
     symmetric(sightings.len(), |a, b| {
         let (one, other) = (&sightings[a], &sightings[b]);
@@ -263,7 +272,7 @@ fn weights(offsets: &DVector<f64>, scale_px: f64) -> Vec<f64> {
     offsets.iter().map(weight).collect()
 }
 
-/// Of absolute values; 0 where there are none.
+/// Median of absolute values; 0 for an empty list.
 fn median_size<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
     median(values.map(|value| value.abs()), f64::total_cmp).unwrap_or(0.0)
 }

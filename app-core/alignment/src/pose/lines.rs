@@ -1,20 +1,21 @@
-//! Where the outline is along lines across it, by the odds of each pixel: for a pose that is many pixels off.
+//! Locates the outline along lines across it, from the log odds of each pixel, for a pose that is
+//! many pixels off.
 //!
-//! Source: correspondence lines of Stoiber et al. 2020 and 2022 (RBGT, SRT3D), where the place along each line has a
-//! distribution, of which mean and variance count. They move a step along the line; here it is the toy's own coverage
-//! that is moved, so that thin limbs fit as well as a body.
+//! Source: correspondence lines of Stoiber et al. 2020 and 2022 (RBGT, SRT3D), which use mean and
+//! variance of a distribution of the place along each line. They move a step function along the
+//! line; here the toy's own coverage is moved, so that thin limbs fit as well as a body.
 
 use super::contour::Element;
 use super::motion::Measured;
 use super::odds::Odds;
 use crate::raster::Coverage;
 
-/// What a pixel's odds count, since neighbours are alike.
+/// Weight of a pixel's odds, since neighbours are correlated.
 const INDEPENDENCE: f64 = 0.35;
-/// Variance over that of a line that says nothing, above which one is left out.
+/// Variance relative to a line without information, above which a line is skipped.
 const MOST_VARIANCE: f64 = 0.7;
 
-/// Measures by how much each piece is displaced, up to `reach_px` either way.
+/// Measures the displacement of each piece, within `reach_px` in both directions.
 pub(super) fn measure(
     elements: &[Element],
     coverage: &Coverage,
@@ -46,7 +47,7 @@ fn along(element: &Element, coverage: &Coverage, odds: &Odds, reach_px: i32) -> 
     let best = shifts
         .iter()
         .fold(f64::NEG_INFINITY, |best, (_, log)| best.max(*log));
-    // At least 1, that of the best.
+    // At least 1, the term of the best shift.
     let total: f64 = shifts.iter().map(|(_, log)| (log - best).exp()).sum();
     let mean_of = |value: &dyn Fn(f64) -> f64| -> f64 {
         let weighted = shifts
@@ -60,7 +61,7 @@ fn along(element: &Element, coverage: &Coverage, odds: &Odds, reach_px: i32) -> 
     (variance < MOST_VARIANCE * uniform).then_some(Measured {
         element: *element,
         offset_px,
-        // A pixel is no finer than a pixel.
+        // The resolution is limited by the pixel's size.
         precision: 1.0 / (variance + 1.0),
         robust: 1.0,
     })

@@ -1,7 +1,7 @@
-//! Where the outline is to a fraction of a pixel, by how much of each pixel beside it the toy covers.
+//! Locates the outline to a fraction of a pixel, from the toy's coverage of each pixel beside it.
 //!
-//! A pixel there is a mixture of toy and background: alpha matting, with a background that the plate shows. What lies on either
-//! side is carried across the band (`sides`).
+//! A pixel there is a mixture of toy and background: alpha matting, with a background known from
+//! the plate. The colours on either side are extrapolated across the band (`sides`).
 
 use glam::IVec2;
 
@@ -12,22 +12,23 @@ use super::sides::{Beside, Sides};
 use crate::picture::noise_deviation;
 use crate::robust;
 
-/// What colours that are carried across the band are wrong by, over the contrast.
+/// Error of extrapolated colours, over the contrast.
 const CARRIED: f32 = 0.05;
-/// Mixtures beyond 0 and 1 by noise; further ones are something else.
+/// Range of mixtures beyond 0 and 1 by noise; beyond it, the pixel shows something else.
 const MOST_BEYOND: f32 = 0.5;
 
-/// The band of pixels that are read beside the outline.
+/// The band of pixels beside the outline.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Band {
     /// Half its width.
     pub(super) half_px: f64,
-    /// Displacements beyond count less: scale of the Geman-McClure weights.
+    /// Scale of the Geman-McClure weights of displacements.
     pub(super) robust_px: f64,
 }
 
 impl Band {
-    /// Mean loss of what was measured, in square pixels: its mean square, but that a piece counts at most `robust_px`.
+    /// Mean loss of the measured pieces, in square pixels: the mean square, but each piece counts
+    /// at most `robust_px`.
     pub(super) fn loss_px2(&self, measured: &[Measured]) -> f64 {
         let scale = self.robust_px * self.robust_px;
         let (mut sum, mut total) = (0.0, 0.0);
@@ -41,7 +42,8 @@ impl Band {
     }
 }
 
-/// Measures each piece's displacement: the covered area that the picture has beyond the model's, over its length.
+/// Measures each piece's displacement: the difference of covered area between picture and model,
+/// over the piece's length.
 pub(super) fn measure(beside: &Beside<'_>, elements: &[Element], band: Band) -> Vec<Measured> {
     if elements.is_empty() {
         return Vec::new();
@@ -61,11 +63,11 @@ pub(super) fn measure(beside: &Beside<'_>, elements: &[Element], band: Band) -> 
     measured.collect()
 }
 
-/// What the pixels beside a piece of the outline say.
+/// Statistics of the pixels beside a piece of the outline.
 #[derive(Clone, Copy)]
 struct Piece {
     sides: Option<Sides>,
-    /// In square pixels.
+    /// Difference of covered area, in square pixels.
     more_area: f32,
     contrast: f32,
     n_pixels: f32,

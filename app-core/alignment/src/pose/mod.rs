@@ -1,11 +1,14 @@
-//! The toy's pose, by its outline in the picture.
+//! Estimates the toy's pose from its outline in the picture.
 //!
-//! Coarse to fine. If the pose is many pixels off, colours distinguish the toy from its surroundings (`odds`), and lines across the outline
-//! show where the one becomes the other (`lines`). Then each pixel beside the outline shows how much of it the toy covers (`matte`),
-//! each round being one Gauss-Newton step of six numbers (`motion`). The last rounds predict the codes of the pixels beside the outline
-//! (`edge`) from what lies on either side of it (`sides`): the plate, and the model's own colours in the light of the photograph (`paint`).
-//! They solve for the offset of the whole outline as well, and with the feet of the toy on their plane (`standing`) for its size
-//! (`settle`). Which of these poses the picture speaks for is one decision (`decide`).
+//! Coarse to fine. If the pose is many pixels off, colours distinguish the toy from its
+//! surroundings (`odds`), and lines across the outline locate the boundary (`lines`). Then each
+//! pixel beside the outline gives the toy's coverage of it (`matte`), each round being one
+//! Gauss-Newton step of six numbers (`motion`). The last rounds predict the codes of the pixels
+//! beside the outline (`edge`) from the colours on either side of it (`sides`): the plate, and the
+//! model's own colours in the light of the photograph (`paint`). They also estimate the offset of
+//! the whole outline, and with the feet of the toy on their plane (`standing`) its size (`settle`).
+//! If the model has a texture, the same rounds fit that within the outline (`texture`).
+//! One step selects the most likely of these poses (`decide`).
 
 pub(super) mod adapt;
 mod contour;
@@ -25,6 +28,7 @@ mod settle;
 mod sides;
 mod sightings;
 mod standing;
+mod texture;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
@@ -43,56 +47,58 @@ use placement::Placement;
 use settle::{LEAST_EVIDENCE, STEP};
 use sides::Beside;
 
-pub(super) use paint::Paint;
+pub(super) use paint::{Paint, Surfel};
 pub use regions::ViewDirection;
-pub(super) use regions::guesses;
+pub(super) use regions::{Standing, TINY_PIXELS, changed, guesses, standing_guesses};
 pub(super) use resting::find_resting;
 pub(super) use standing::{Ground, Plane, feet};
 
-/// Colours are learned this far around the toy, over how far lines reach.
+/// Reach of the learned colours around the toy, over the reach of lines.
 const LEARNED_AROUND: i32 = 3;
-/// Rounds by matting, at the largest level: ever narrower bands, and how often each.
+/// Rounds by matting, at the largest level: ever narrower bands, and the number of rounds of each.
 const FINE: [(Band, usize); 4] = [
     (band(8.0, 2.0), 2),
     (band(4.0, 1.0), 3),
     (band(2.5, 0.5), 3),
     (FINEST, 6),
 ];
-/// The first of them are left out where the outline is within a pixel or two.
+/// Number of the first bands that are skipped if the outline is within a pixel or two.
 const N_WIDE_BANDS: usize = 1;
 const FINEST: Band = band(1.5, 0.2);
-/// By which poses that are far from one another are compared.
+/// Band for the comparison of distant poses.
 const WIDE: Band = band(4.0, 2.0);
-/// Root mean square of the outline in the wide band, in pixels, below which no coarse rounds are needed.
+/// Root mean square distance of the outline in the wide band, in pixels, below which no coarse
+/// rounds are needed.
 const NEAR_PX: f64 = 0.6;
-/// Of its robust scale, a band's loss below which most of the outline is within it.
+/// Loss of a band, over its robust scale, below which most of the outline is within it.
 const FINE_ENOUGH: f64 = 0.7;
-/// A step that moves the toy by less, over its radius, is the last of its band.
+/// Size of the last step of a band, over the toy's radius.
 const LAST_STEP: f64 = 1e-6;
-/// Deviation of one piece of the outline, for the weight of that against the pictures.
+/// Standard deviation of one piece of the outline, for the weight of the prior.
 const PIECE_PX: f64 = 0.3;
-/// Fewer pieces of the outline than that tell no pose.
+/// Number of the outline's pieces that an estimate needs.
 const LEAST_PIECES: usize = 40;
-/// Of the outline, what has to be measured.
+/// Fraction of the outline that an estimate needs.
 const LEAST_MEASURED: f64 = 0.3;
 
 const fn band(half_px: f64, robust_px: f64) -> Band {
     Band { half_px, robust_px }
 }
 
-/// The outline of a pose against the picture's.
+/// The distance between the outlines of a pose and of the picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fit {
-    /// Of the finest band, robust, in square pixels.
+    /// Robust loss of the finest band, in square pixels.
     loss_px2: f64,
-    /// The same of the wide band.
+    /// The same for the wide band.
     wide_loss_px2: f64,
-    /// Of the outline, what was measured in the finest band.
+    /// Measured fraction of the outline in the finest band.
     share: f64,
 }
 
 impl Fit {
-    /// Root mean square distance of the outline, in pixels: by the finest band where that is wide enough to tell.
+    /// Root mean square distance of the outline, in pixels: by the finest band if that is wide
+    /// enough.
     fn outline_px(&self) -> f64 {
         let fine_px = self.loss_px2.sqrt();
         if fine_px < FINE_ENOUGH * FINEST.robust_px {
@@ -107,54 +113,70 @@ impl Fit {
     }
 }
 
-/// A pose that was found.
+/// An estimated pose.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
-    /// Moves the toy from where it was given, in camera space.
+    /// Motion of the toy from its given pose, in camera space.
     pub(super) motion: DMat4,
-    /// Root mean square distance of the outline, in pixels, as given and as found.
+    /// Root mean square distance of the outline, in pixels, for the given and the estimated pose.
     pub(super) outlines_px: [f64; 2],
-    /// Whether less of the outline is seen than as given.
+    /// Whether less of the outline is visible than in the given pose.
     is_less_seen: bool,
-    /// Logarithm of how much likelier the picture is with what was found than with what was given.
+    /// Logarithm of the likelihood ratio of the estimated and the given pose.
     pub(super) evidence: f64,
-    /// One deviation of what was found.
+    /// Standard deviation of the estimate.
     pub(super) deviation: PoseDeviation,
-    /// What the model's outline is off by along some centimetres of it, in pixels.
+    /// Distance of the model's outline along some centimetres, in pixels.
     pub(super) model_px: f64,
-    /// Standard deviation of the spread that the camera gives an edge, in pixels.
+    /// Correlation of the model's texture with the picture's; `None` without a texture, or if the
+    /// picture shows another one.
+    pub(super) texture_correlation: Option<f64>,
+    /// Standard deviation of the camera's blur of an edge, in pixels.
     pub(super) spread_px: f64,
-    /// That which makes the plate as soft as the photograph; 0 if it is so as it was taken.
+    /// The blur that makes the plate as soft as the photograph; 0 if they are equally soft.
     pub(super) plate_spread_px: f64,
-    /// How it is on the plane that it is to stand on, as given and as found; none where it floats.
+    /// Its position on its ground plane, as given and as estimated; `None` if it floats.
     pub(super) stands: Option<[Stand; 2]>,
 }
 
 impl Found {
-    /// Whether the outline is that of the model, as far as so soft a picture shows it.
+    /// Whether the outline is the model's, within the accuracy of so soft a picture.
     pub(super) fn is_of_model(&self) -> bool {
         self.model_px < most_model_px(self.spread_px)
     }
 
-    /// Whether the picture is that much likelier with it; and not because less of the outline is seen.
+    /// Whether the outline is within `most_px` of the picture's, or within twice as much if the
+    /// texture is met: a mug behind the toy, or edges rounder than the model's, disturb the outline
+    /// alone.
+    pub(super) fn is_met(&self, most_px: f64) -> bool {
+        let times = if self.texture_correlation.is_some() {
+            2.0
+        } else {
+            1.0
+        };
+        self.outlines_px[1] <= times * most_px
+    }
+
+    /// Whether the picture is sufficiently more likely with it, and not because less of the outline
+    /// is visible.
     pub(super) fn is_better(&self) -> bool {
         self.evidence >= LEAST_EVIDENCE && !self.is_less_seen
     }
 }
 
-/// A toy whose pose is looked for.
+/// A toy whose pose is estimated.
 #[derive(Clone, Copy)]
 pub(super) struct Subject<'a> {
-    /// Where it is given.
+    /// The shape in its given pose.
     pub(super) shape: &'a Shape,
     /// Its colours there.
     pub(super) paint: &'a Paint,
-    /// What it may stand on; none if it floats.
+    /// The ground that it may stand on; `None` if it floats.
     pub(super) ground: Option<Ground>,
 }
 
-/// Finds the pose, starting from that of a subject, no farther from it than that is uncertain; none where too little of the outline is
-/// seen.
+/// Estimates the pose, starting from a subject's, within its uncertainty; `None` if too little of
+/// the outline is visible.
 pub(super) fn find(subject: Subject<'_>, pyramid: &Pyramid, uncertainty: &PoseUncertainty) -> Option<Found> {
     let shape = subject.shape;
     let mut search = Search::new(shape, pyramid, uncertainty);
@@ -167,16 +189,17 @@ pub(super) fn find(subject: Subject<'_>, pyramid: &Pyramid, uncertainty: &PoseUn
     search.freed(subject, given, motion)
 }
 
-/// How well a pose is known that another is looked for from.
+/// The accuracy of a start.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Start {
-    /// As given: some millimetres and degrees.
+    /// A given pose: some millimetres and degrees.
     Given,
-    /// Its outline is within a pixel or two.
+    /// A pose whose outline is within a pixel or two.
     Near,
 }
 
-/// The motion to the pose that fits best, and the distance of its outline in pixels; none where too little of that is seen.
+/// The motion to the best pose, and the distance of its outline in pixels; `None` if too little of
+/// it is visible.
 pub(super) fn tried(shape: &Shape, pyramid: &Pyramid, start: Start) -> Option<(DMat4, f64)> {
     let mut search = Search::new(shape, pyramid, &PoseUncertainty::default());
     let mut motion = RigidMotion::none(shape.centre, shape.radius_m);
@@ -194,8 +217,8 @@ pub(super) fn tried(shape: &Shape, pyramid: &Pyramid, start: Start) -> Option<(D
     Some((motion.matrix(), fit.outline_px()))
 }
 
-/// Standard deviation of the spread that the camera gives the outline of a toy in its place, in pixels of the largest level; none where too
-/// little of the outline is seen.
+/// Standard deviation of the camera's blur of the outline of a toy in its place, in pixels of the
+/// largest level; `None` if too little of the outline is visible.
 pub(super) fn spread_px(subject: Subject<'_>, pyramid: &Pyramid) -> Option<f64> {
     let shape = subject.shape;
     let mut search = Search::new(shape, pyramid, &PoseUncertainty::default());
@@ -204,13 +227,14 @@ pub(super) fn spread_px(subject: Subject<'_>, pyramid: &Pyramid) -> Option<f64> 
     Some(search.spread_px(subject.paint, &placement))
 }
 
-/// What a shape covers of a level.
+/// The pixels of a level that a shape covers.
 pub(super) fn covered(shape: &Shape, level: &Level) -> Coverage {
     let corners = project(shape.points.iter().copied(), &level.intrinsics);
     Rasterizer::default().with_depth(&corners, &shape.faces, level.frame.size_px)
 }
 
-/// Places on the outline of a shape's triangles with their corners at `points`, in pixels of a picture.
+/// Points on the outline of a shape's triangles with their corners at `points`, in pixels of a
+/// picture.
 pub(super) fn outline_px(
     raster: &mut Rasterizer,
     (points, shape): (&[DVec3], &Shape),
@@ -238,13 +262,13 @@ struct Search<'a> {
     raster: Rasterizer,
     damping: Matrix6,
     uncertainty: PoseUncertainty,
-    /// The largest level with its plate as soft as the photograph, and by how many pixels that was spread; none if the plate is so as it was
-    /// taken.
+    /// The largest level with its plate blurred like the photograph, and that blur in pixels;
+    /// `None` if the plate is not blurred.
     softened: Option<(Level, f64)>,
 }
 
 impl<'a> Search<'a> {
-    /// Rounds along lines: the level, and how far they reach in its pixels.
+    /// Rounds along lines: the level, and the reach in its pixels.
     const COARSE: [(usize, i32); 11] = [
         (2, 10),
         (2, 10),
@@ -277,7 +301,7 @@ impl<'a> Search<'a> {
         outline(&mut self.raster, posed, &level.intrinsics, level.frame.size_px)
     }
 
-    /// The toy where it is thought to be, in the largest level.
+    /// The toy in its estimated place, in the largest level.
     fn posed<'b>(&mut self, placement: &Placement, lit: Option<Lit<'b>>) -> Posed<'b> {
         let level = self.pyramid.level(0);
         let (coverage, elements) = self.outline(placement, level);
@@ -288,7 +312,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The pieces that can be measured, and how many of all these are.
+    /// The measurable pieces, and their fraction of all.
     fn matte(
         &mut self,
         placement: &Placement,
@@ -310,7 +334,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Freely, or held to a plane.
+    /// Freely, or on a plane.
     fn coarse(&mut self, motion: RigidMotion, held: Option<&Held>) -> RigidMotion {
         self.by_lines(motion, held, &Self::COARSE)
     }
@@ -359,7 +383,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// A toy where it is thought to be: what it covers, its outline, and what it should look like if that is known.
+/// A toy in its estimated place: its coverage, its outline, and its predicted colours if known.
 struct Posed<'a> {
     coverage: Coverage,
     elements: Vec<Element>,
@@ -376,7 +400,7 @@ impl Posed<'_> {
     }
 }
 
-/// Pieces that were measured, and what of the outline they are; none where that is too little.
+/// Measured pieces, and their fraction of the outline; `None` if that is too small.
 fn enough(measured: Vec<Measured>, elements: &[Element]) -> Option<(Vec<Measured>, f64)> {
     let share = measured.len() as f64 / elements.len().max(1) as f64;
     (measured.len() >= LEAST_PIECES && share >= LEAST_MEASURED).then_some((measured, share))

@@ -1,4 +1,4 @@
-//! The step of a toy's motion that moves its outline as measured.
+//! The step of a toy's motion that produces the measured displacements of its outline.
 
 use glam::{DVec2, DVec3};
 use nalgebra::SMatrix;
@@ -7,7 +7,7 @@ use super::contour::Element;
 use crate::rigid_motion::{Matrix6, RigidMotion, Vector6, step_of};
 use app_scene::scene::Intrinsics;
 
-/// How far a piece of the outline moves along its normal, in pixels, for each number of a step.
+/// Shift of a piece of the outline along its normal, in pixels, per unit of each number of a step.
 fn outward(motion: &RigidMotion, element: &Element, k: &Intrinsics) -> Vector6 {
     let (point, per_m) = element.rim(k);
     motion.row(point - motion.centre(), per_m)
@@ -18,17 +18,18 @@ fn outward(motion: &RigidMotion, element: &Element, k: &Intrinsics) -> Vector6 {
 pub(super) struct Measured {
     /// The piece.
     pub(super) element: Element,
-    /// Out of the toy.
+    /// Displacement, positive out of the toy.
     pub(super) offset_px: f64,
-    /// How far the pixels can be trusted there, from 0.
+    /// Reliability of the pixels there, from 0.
     pub(super) precision: f64,
-    /// That of robust estimation: less for what does not fit.
+    /// Robust weight: less for outliers.
     pub(super) robust: f64,
 }
 
-/// The step that moves all pieces as measured, in weighted least squares.
+/// The weighted least squares step to the measured displacements.
 ///
-/// `damping` holds what the outline does not tell, such as how a toy of revolution is turned. None where nothing was measured.
+/// `damping` regularises unconstrained directions, for example the turn of a toy of revolution.
+/// `None` if nothing was measured.
 pub(super) fn solve(
     measured: &[Measured],
     k: &Intrinsics,
@@ -57,7 +58,8 @@ fn normal_equations(
     (information, gradient)
 }
 
-/// Motions that keep a toy upright on its plane: a turn about the plane's normal and shifts in two directions of it.
+/// Motions that keep a toy upright on its plane: a turn about the plane's normal and shifts in two
+/// directions along it.
 pub(super) struct Held {
     normal: DVec3,
     /// Directions of the plane.
@@ -66,7 +68,7 @@ pub(super) struct Held {
 }
 
 impl Held {
-    /// By the plane's unit normal in camera space.
+    /// Motions on the plane with the given unit normal in camera space.
     pub(super) fn to_plane(normal: DVec3) -> Self {
         let (a, b) = normal.any_orthonormal_pair();
         let turn = |axis: DVec3| step_of(axis, DVec3::ZERO);
@@ -88,7 +90,7 @@ impl Held {
         step_of(DVec3::ZERO, by_m.x * self.across[0] + by_m.y * self.across[1])
     }
 
-    /// As [`solve`] with these freedoms alone.
+    /// Like [`solve`], with only these degrees of freedom.
     pub(super) fn solve(
         &self,
         measured: &[Measured],

@@ -1,23 +1,24 @@
-//! Which pixels look like the toy and which like its surroundings, by the colours under a first guess of its outline.
+//! The log odds of toy and surroundings for each pixel, by the colours under a first guess of the
+//! outline.
 
 use glam::IVec2;
 
 use crate::picture::{Color, Level, index_in, places};
 use crate::raster::Coverage;
 
-/// Linear light below which noise alone tells values apart.
+/// Linear light below which differences are noise.
 const FLOOR: f32 = 0.004;
 /// Width of a histogram's bin, in natural logarithms of light.
 const BIN: f32 = 0.15;
 const N_BINS: i32 = 48;
-/// Lowest logarithm of a colour: that of the floor.
+/// Lowest logarithm of a colour: the floor's.
 const LOWEST_COLOR: f32 = -5.6;
 /// Lowest logarithm of a frame over its plate.
 const LOWEST_RATIO: f32 = -4.5;
-/// Of all that is seen, what may have any colour at all, and how many bins that are.
+/// Fraction of all pixels that may have any colour, and its number of bins.
 const ANY_COLOR: f32 = 0.02;
 const N_LIKELY_BINS: f32 = 2000.0;
-/// No pixel by itself says more, as a natural logarithm of odds.
+/// Largest absolute log odds of a single pixel.
 const MOST: f32 = 4.0;
 
 /// Logarithm of the odds that a pixel shows the toy, over a rectangle of the picture.
@@ -28,8 +29,8 @@ pub(super) struct Odds {
 }
 
 impl Odds {
-    /// Learns the toy's colours within the outline, and beside it those of the rest: as ratios to the plate where there is one,
-    /// which are the same on any pattern.
+    /// Learns the toy's colours inside the outline, and the surroundings' beside it: as ratios to
+    /// the plate if there is one, which are the same on any pattern.
     pub(super) fn learn(level: &Level, coverage: &Coverage, margin_px: i32) -> Self {
         let from = (coverage.origin_px - margin_px).max(IVec2::ZERO);
         let to = (coverage.origin_px + coverage.size_px + margin_px).min(level.frame.size_px);
@@ -63,14 +64,15 @@ impl Odds {
         }
     }
 
-    /// Of one pixel; 0 where nothing is known.
+    /// Log odds of one pixel; 0 if unknown.
     pub(super) fn at(&self, at: IVec2) -> f32 {
         let value = index_in(self.size_px, at - self.origin_px).and_then(|index| self.values.get(index));
         value.copied().unwrap_or(0.0)
     }
 }
 
-/// Of a pixel's colour, and of its ratio to the plate, or its colour again without one.
+/// Logarithms of a pixel's colour, and of its ratio to the plate, or again of its colour without a
+/// plate.
 pub(super) fn logarithms(level: &Level, at: IVec2) -> Option<(Color, Color)> {
     let log = |color: Color| color.map(|value| (value.max(0.0) + FLOOR).ln());
     let color = log(level.frame.get(at)?);

@@ -1,4 +1,4 @@
-//! Which piece of the outline each pixel beside it is nearest to.
+//! The nearest piece of the outline for each pixel beside it.
 
 use glam::{DVec2, IVec2};
 
@@ -6,7 +6,7 @@ use super::contour::Element;
 use crate::picture::{index_in, places};
 use crate::raster::Coverage;
 
-/// The piece of the outline that each pixel of the band is nearest to.
+/// The nearest piece of the outline for each pixel of the band.
 pub(super) struct Owners {
     origin_px: IVec2,
     size_px: IVec2,
@@ -15,7 +15,7 @@ pub(super) struct Owners {
 }
 
 impl Owners {
-    /// Within a band of a half width.
+    /// For a band of half the given width.
     pub(super) fn new(elements: &[Element], coverage: &Coverage, half_px: f64) -> Self {
         #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
         let margin_px = half_px.ceil() as i32 + 1;

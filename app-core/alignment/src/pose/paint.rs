@@ -1,8 +1,9 @@
-//! What the toy should look like beside its outline: its model's own colours, in the light that the photograph shows on it.
+//! Predicts the toy's colours beside its outline: its model's own colours, in the light on it in
+//! the photograph.
 //!
-//! Beside the outline a toy's colour changes within a few pixels, where it turns away from the light or where another paint begins.
-//! The ratio of the photograph to a shaded model changes far less, so that is what is carried across the outline, as the ratio to the
-//! plate is on the other side.
+//! Beside the outline a toy's colour changes within a few pixels, as it turns away from the light
+//! or another paint begins. The ratio of the photograph to a shaded model changes far less, so that
+//! ratio is extrapolated across the outline, like the ratio to the plate on the other side.
 
 use std::sync::Arc;
 
@@ -17,28 +18,32 @@ use app_scene::geometry::color::linear_of_codes;
 use app_scene::scene::{Intrinsics, Scene};
 use app_scene::toy::{PosedMesh, Texture, Toy, ToyError, Wrap};
 
-/// Spherical harmonics of the first three orders describe what a matt surface receives from all around.
+/// Number of spherical harmonics of the first three orders, which describe the irradiance of a matt
+/// surface.
 ///
 /// Source: Ramamoorthi and Hanrahan 2001.
 const N_BASIS: usize = 9;
-/// Weight of the prior that holds each order beyond the first, over that of the pixels: the visible side of a toy does not determine all.
+/// Weight of the prior on each order beyond the first, over that of the pixels: the visible side of
+/// a toy does not constrain all.
 const PRIOR: f64 = 1e-3;
-/// Rounds of reweighting, and the scale of Cauchy's weights, relative to the light: shading by facets and contact is off by as much.
+/// Rounds of reweighting, and the scale of Cauchy's weights, relative to the light: the error of
+/// shading by facets and contact.
 const N_ROUNDS: usize = 4;
 const ROBUST: f64 = 0.15;
-/// Light that a surface receives is no less than this part of the mean: what is darker is a shadow, which the model does not have.
+/// Lower bound of a surface's irradiance, over the mean: darker pixels are in shadow, which the
+/// model does not have.
 const DARKEST: f32 = 0.15;
-/// Fewer pixels determine no light; more than the second number add nothing.
+/// Number of pixels that an estimate needs, and the number above which more add nothing.
 const LEAST_PIXELS: usize = 100;
 const MOST_PIXELS: usize = 2000;
-/// The light is fitted to pixels this far within the outline, in pixels.
+/// Distance of the light's pixels from the outline, in pixels.
 const WITHIN_PX: i32 = 2;
-/// Paints are taken to be no darker: what they receive could not be divided by them.
+/// Lower bound of paints, since light is divided by them.
 const DARKEST_PAINT: f32 = 0.01;
 
 type Basis = SVector<f64, N_BASIS>;
 
-/// The toy's surface in camera space, as given, with its paints.
+/// The toy's surface in its given place in camera space, with its paints.
 #[derive(Clone, Debug)]
 pub(crate) struct Paint {
     positions: Vec<DVec3>,
@@ -52,12 +57,13 @@ pub(crate) struct Paint {
 #[derive(Clone, Debug)]
 struct Face {
     corners: [u32; 3],
+    material: usize,
     color: Color,
     texture: Option<(usize, [Wrap; 2])>,
 }
 
 impl Paint {
-    /// Of a toy in a scene's physical pose.
+    /// The paint of a toy in a scene's physical pose.
     pub(crate) fn new(scene: &Scene, camera_from_object: &DMat4) -> Result<Self, ToyError> {
         let toy = &scene.toy;
         let mut posed = PosedMesh::default();
@@ -71,8 +77,8 @@ impl Paint {
         })
     }
 
-    /// What the toy should look like where it is given, at each pixel of its coverage, in the light that `level` shows on it; none where
-    /// that is too little.
+    /// The predicted colours of the toy in its given place, at each pixel of its coverage, in the
+    /// light of `level`; `None` if too little of it is visible.
     pub(crate) fn shown(&self, level: &Level, coverage: &Coverage) -> Option<Vec<Option<Color>>> {
         let placement = Placement::of(RigidMotion::none(DVec3::ZERO, 1.0));
         let light = self.light(&placement, level, coverage)?;
@@ -84,7 +90,32 @@ impl Paint {
         Some(coverage.pixels().map(|at| shaded.at(at)).collect())
     }
 
-    /// The light on the toy, by what `level` shows of it where it is thought to be; none where that is too little.
+    /// What pixels show of the toy where it is given, with one of so many.
+    pub(crate) fn surfels(&self, level: &Level, coverage: &Coverage, most: usize) -> Vec<Surfel> {
+        let placement = Placement::of(RigidMotion::none(DVec3::ZERO, 1.0));
+        let seen = self.seen(&placement, &level.intrinsics, coverage);
+        let within = within(coverage);
+        let stride = within.len().div_ceil(most).max(1);
+        let surfels = within.into_iter().step_by(stride).filter_map(|at| {
+            let (surface, shown) = (seen.at(at)?, level.frame.get(at)?);
+            let hit = seen.nearest[index_in(seen.size_px, at - seen.origin_px)?];
+            let k = &level.intrinsics;
+            let depth_m = hit.inverse_depth.recip();
+            let on_plane =
+                (at.as_dvec2() + 0.5 - DVec2::new(k.cx_px, k.cy_px)) / DVec2::new(k.fx_px, k.fy_px);
+            Some(Surfel {
+                shown,
+                base: surface.color,
+                normal: surface.normal,
+                point: depth_m * DVec3::new(on_plane.x, -on_plane.y, -1.0),
+                material: self.faces[hit.face as usize].material,
+            })
+        });
+        surfels.collect()
+    }
+
+    /// The light on the toy, from `level` and the toy's estimated place; `None` if too little of it
+    /// is visible.
     pub(super) fn light(&self, placement: &Placement, level: &Level, coverage: &Coverage) -> Option<Light> {
         Light::fitted(
             &self.seen(placement, &level.intrinsics, coverage),
@@ -125,7 +156,7 @@ impl Paint {
         }
     }
 
-    /// Side of the square of a texture that a pixel shows, in texels; at least one.
+    /// Side of the square of a texture in one pixel, in texels; at least one.
     fn texels_of(&self, face: &Face, corners: &[DVec3]) -> f64 {
         let Some((texture, _)) = face.texture else {
             return 1.0;
@@ -179,6 +210,7 @@ fn faces(toy: &Toy) -> Vec<Face> {
         let corners = toy.indices()[part.indices.start as usize..part.indices.end as usize].chunks_exact(3);
         corners.map(move |corners| Face {
             corners: [corners[0], corners[1], corners[2]],
+            material: part.material,
             color: [r, g, b],
             texture,
         })
@@ -217,13 +249,13 @@ fn scaled(a: Color, b: Color) -> Color {
     [0, 1, 2].map(|channel| a[channel] * b[channel])
 }
 
-/// What a pixel's centre shows of the toy.
+/// The toy's surface at a pixel's centre.
 #[derive(Clone, Copy)]
 struct Hit {
-    /// In 1/m; 0 where there is nothing.
+    /// In 1/m; 0 for none.
     inverse_depth: f64,
     face: u32,
-    /// Of the face's corners.
+    /// Weights of the face's corners.
     weights: [f64; 3],
 }
 
@@ -235,26 +267,27 @@ impl Hit {
     };
 }
 
-/// The toy where it is thought to be, over a rectangle of the picture.
+/// The toy in its estimated place, over a rectangle of the picture.
 struct Seen<'a> {
     paint: &'a Paint,
     motion: RigidMotion,
     origin_px: IVec2,
     size_px: IVec2,
-    /// Projected.
+    /// Projected corners.
     corners: Vec<DVec3>,
     nearest: Vec<Hit>,
 }
 
 impl Seen<'_> {
-    /// None where the toy does not cover the pixel's centre.
+    /// `None` if the toy does not cover the pixel's centre.
     fn at(&self, at: IVec2) -> Option<Surface> {
         let hit = self.nearest[index_in(self.size_px, at - self.origin_px)?];
         (hit.inverse_depth > 0.0).then(|| {
             let face = &self.paint.faces[hit.face as usize];
             let texels = self.paint.texels_of(face, &self.corners);
             let surface = self.paint.at(face, hit.weights, &self.motion, texels);
-            // Rows go down: triangles whose outer side is seen turn to the left. Of others it is the inner side that receives light.
+            // Rows go down: triangles whose outer side is visible turn to the left. For others, the
+            // inner side receives light.
             let [a, b, c] = face
                 .corners
                 .map(|corner| self.corners[corner as usize].truncate());
@@ -265,6 +298,27 @@ impl Seen<'_> {
             }
         })
     }
+}
+
+/// Pixels well within the outline.
+fn within(coverage: &Coverage) -> Vec<IVec2> {
+    let reach = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y].map(|step| WITHIN_PX * step);
+    let is_within = |at: &IVec2| reach.iter().all(|step| coverage.at(*at + *step) >= 1.0);
+    coverage.pixels().filter(is_within).collect()
+}
+
+/// What a pixel shows of the toy.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surfel {
+    /// By the photograph.
+    pub(crate) shown: Color,
+    /// Of the model's paint.
+    pub(crate) base: Color,
+    /// Unit vector in camera space, as is the place.
+    pub(crate) normal: DVec3,
+    pub(crate) point: DVec3,
+    /// Index of the material.
+    pub(crate) material: usize,
 }
 
 /// The toy's surface at a pixel.
@@ -291,7 +345,7 @@ impl Surface {
     }
 }
 
-/// The light on the toy: what each harmonic receives, for each channel.
+/// The light on the toy: coefficients of each harmonic, for each channel.
 #[derive(Clone, Debug)]
 pub(super) struct Light {
     factors: [Basis; 3],
@@ -299,11 +353,10 @@ pub(super) struct Light {
 }
 
 impl Light {
-    /// Fits the light to what a photograph shows of the surface, by iteratively reweighted least squares; none where that is too little.
+    /// Fits the light to the visible surface in a photograph, by iteratively reweighted least
+    /// squares; `None` if too little of it is visible.
     fn fitted(seen: &Seen<'_>, level: &Level, coverage: &Coverage) -> Option<Self> {
-        let reach = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y].map(|step| WITHIN_PX * step);
-        let is_within = |at: IVec2| reach.iter().all(|step| coverage.at(at + *step) >= 1.0);
-        let within: Vec<IVec2> = coverage.pixels().filter(|at| is_within(*at)).collect();
+        let within = within(coverage);
         let stride = within.len().div_ceil(MOST_PIXELS).max(1);
         let pixels = within.into_iter().step_by(stride);
         let pixels: Vec<(Surface, Color)> = pixels
@@ -343,7 +396,7 @@ fn fitted(pixels: &[(Surface, Color)], channel: usize) -> Basis {
             let paint = f64::from(surface.color[channel].max(DARKEST_PAINT));
             let shown = f64::from(shown[channel]);
             let row = paint * surface.basis();
-            // Errors of the model are a part of the light, those of the picture are noise.
+            // Errors of the model are proportional to the light, those of the picture are noise.
             #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
             let noise = f64::from(noise_deviation(shown as f32));
             let scale = noise.hypot(ROBUST * shown);
@@ -362,7 +415,7 @@ fn fitted(pixels: &[(Surface, Color)], channel: usize) -> Basis {
     factors.unwrap_or_else(Basis::zeros)
 }
 
-/// The light that a toy is seen in.
+/// The light of a toy.
 #[derive(Clone, Copy)]
 pub(super) struct Lit<'a> {
     pub(super) paint: &'a Paint,
@@ -370,7 +423,7 @@ pub(super) struct Lit<'a> {
 }
 
 impl<'a> Lit<'a> {
-    /// What the toy should look like where it is thought to be.
+    /// The predicted colours of the toy in its estimated place.
     pub(super) fn shaded(self, placement: &Placement, level: &Level, coverage: &Coverage) -> Shaded<'a> {
         Shaded {
             seen: self.paint.seen(placement, &level.intrinsics, coverage),
@@ -379,16 +432,36 @@ impl<'a> Lit<'a> {
     }
 }
 
-/// What the toy should look like, over a rectangle of the picture.
+/// Predicted colours of the toy, over a rectangle of the picture.
 pub(super) struct Shaded<'a> {
     seen: Seen<'a>,
     light: &'a Light,
 }
 
 impl Shaded<'_> {
-    /// None where the toy does not cover the pixel's centre.
+    /// `None` if the toy does not cover the pixel's centre.
     pub(super) fn at(&self, at: IVec2) -> Option<Color> {
         self.seen.at(at).map(|surface| self.light.shade(&surface))
+    }
+
+    /// The toy's own colour there, whatever the light.
+    pub(super) fn color(&self, at: IVec2) -> Option<Color> {
+        self.seen
+            .at(at)
+            .map(|surface| surface.color.map(|channel| channel.max(DARKEST_PAINT)))
+    }
+
+    /// The point of the toy that a pixel's centre shows, where the toy was given, in camera space.
+    pub(super) fn given(&self, at: IVec2) -> Option<DVec3> {
+        let seen = &self.seen;
+        let hit = seen.nearest[index_in(seen.size_px, at - seen.origin_px)?];
+        (hit.inverse_depth > 0.0).then(|| {
+            let corners = seen.paint.faces[hit.face as usize].corners.into_iter();
+            let corners = corners.zip(hit.weights);
+            corners
+                .map(|(corner, weight)| weight * seen.paint.positions[corner as usize])
+                .sum()
+        })
     }
 }
 
@@ -398,7 +471,7 @@ fn texture_size(texture: &Texture) -> DVec2 {
 
 /// Mean of some texels around a place, in linear light, over a square of a side in texels; (0, 0) is the corner of the first texel.
 fn mean_texel(texture: &Texture, linear: &[f32; 256], (uv, wraps): (DVec2, [Wrap; 2]), side: f64) -> Color {
-    /// Along each side of the square: the light of a square of more texels is about that of as many of them.
+    /// Along each side of the square: more texels would hardly change the mean.
     const MOST_TEXELS: f64 = 4.0;
     let size = texture_size(texture);
     let n = side.min(MOST_TEXELS).round();
@@ -424,7 +497,7 @@ fn mean_texel(texture: &Texture, linear: &[f32; 256], (uv, wraps): (DVec2, [Wrap
     sum.map(|sum| sum / (n * n) as f32)
 }
 
-/// The texel that a coordinate falls on, of so many along it.
+/// The texel at a coordinate, of `n` texels.
 fn texel(at: f64, wrap: Wrap, n: u32) -> u32 {
     let at = match wrap {
         Wrap::Repeat => at.rem_euclid(1.0),

@@ -1,4 +1,4 @@
-//! Where a toy is thought to be, against where it was given: a rigid motion, and a size.
+//! The place of a toy relative to the given one: a rigid motion, and a size.
 
 use glam::{DMat4, DVec3};
 use nalgebra::{SMatrix, SVector};
@@ -7,7 +7,8 @@ use super::contour::Element;
 use crate::rigid_motion::{RigidMotion, Vector6};
 use app_scene::scene::{Intrinsics, PoseUncertainty};
 
-/// Six numbers of a rigid step, then the logarithm of the size, then the offset of the whole outline in pixels.
+/// Number of unknowns: six numbers of a rigid step, then the logarithm of the size, then the offset
+/// of the whole outline in pixels.
 pub(super) const N_UNKNOWNS: usize = 8;
 /// Index of the size, and of the offset.
 pub(super) const SIZE: usize = 6;
@@ -20,9 +21,9 @@ pub(super) type Information = SMatrix<f64, N_UNKNOWNS, N_UNKNOWNS>;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placement {
     pub(super) motion: RigidMotion,
-    /// Over the size as given, about where the pivot is now.
+    /// Size over the given one, about the pivot.
     pub(super) size: f64,
-    /// How far the outline seems to be out of the toy all round, in pixels.
+    /// Outward offset of the whole outline, in pixels.
     pub(super) offset_px: f64,
 }
 
@@ -40,7 +41,7 @@ impl Placement {
         centre + self.size * (self.motion.apply(point) - centre)
     }
 
-    /// Camera space to camera space.
+    /// Transform from camera space to camera space.
     pub(super) fn matrix(&self) -> DMat4 {
         let centre = self.motion.centre();
         DMat4::from_translation(centre)
@@ -49,7 +50,7 @@ impl Placement {
             * self.motion.matrix()
     }
 
-    /// Followed by a step, no farther than a pose is uncertain.
+    /// Followed by a step, within a pose's uncertainty.
     pub(super) fn then(&self, step: &Unknowns, uncertainty: &PoseUncertainty) -> Self {
         let rigid = Vector6::from_iterator(step.iter().take(6).copied());
         Self {
@@ -59,7 +60,8 @@ impl Placement {
         }
     }
 
-    /// What each unknown counts at a point where the toy is now, if a metre along each axis counts `per_m`.
+    /// The derivative by each unknown at a point of the toy, if a metre along each axis counts
+    /// `per_m`.
     pub(super) fn row(&self, point: DVec3, per_m: DVec3) -> Unknowns {
         let from_centre = point - self.motion.centre();
         let rigid = self.motion.row(from_centre, per_m);
@@ -69,7 +71,7 @@ impl Placement {
         row
     }
 
-    /// How far a piece of the outline moves along its normal, in pixels, for each unknown.
+    /// Shift of a piece of the outline along its normal, in pixels, per unit of each unknown.
     pub(super) fn outward(&self, element: &Element, k: &Intrinsics) -> Unknowns {
         let (point, per_m) = element.rim(k);
         let mut row = self.row(point, per_m);

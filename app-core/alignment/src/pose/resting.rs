@@ -1,8 +1,10 @@
-//! The pose of a toy that rests on a receiver, from farther off: a ghost that was dropped by hand is centimetres and tens of degrees away,
-//! but upright and on its plane.
+//! Estimates the pose of a toy that rests on a receiver from a distant start: a ghost that was
+//! dropped by hand is centimetres and tens of degrees away, but upright and on its plane.
 //!
-//! With six freedoms the coarse rounds tilt such a toy until some outline fits. So these rounds hold it to the plane, one turn about the
-//! normal and two shifts, from several turns, and from several places where it may be far away; only what fits best is then freed.
+//! With six degrees of freedom the coarse rounds would tilt such a toy until some outline fits. So
+//! these rounds keep it on the plane, with one turn about the normal and two shifts, from several
+//! turns, and from several places if it may be far away; only the best results are then optimised
+//! freely.
 
 use std::f64::consts::PI;
 
@@ -15,22 +17,25 @@ use crate::picture::Pyramid;
 use crate::rigid_motion::RigidMotion;
 use app_scene::scene::PoseUncertainty;
 
-/// Between turns about the normal that are started from, and the farthest of them where nobody says how far it may be turned.
+/// Spacing of the initial turns about the normal, and the largest of them if the uncertainty is not
+/// stated.
 const TURN_RAD: f64 = PI / 12.0;
 const MOST_TURN_RAD: f64 = PI / 4.0;
-/// Between places that are started from, over the toy's radius; none but that given where nobody says how far away it may be.
+/// Spacing of the initial places, over the toy's radius; only the given place if the uncertainty is
+/// not stated.
 const SHIFT: f64 = 0.4;
-/// At most so many places either way.
+/// Largest number of initial places in each direction.
 const MOST_SHIFTS: i32 = 4;
-/// Starts that are followed through all rounds: the best after the first rounds of those that there are.
+/// Number of starts that are followed through all rounds: the best after the first rounds.
 const N_FOLLOWED: usize = 7;
 const N_FIRST_ROUNDS: usize = 4;
-/// Coarse rounds are gone through as often: each time they reach as far again.
+/// Number of repetitions of the coarse rounds, each with the full reach.
 const N_ROUNDS: usize = 2;
-/// Of the starts, those that are freed.
+/// Number of starts that are then optimised freely.
 const N_FREED: usize = 2;
 
-/// Finds the pose, starting from that of a subject, which rests on a plane of that normal; none where too little of the outline is seen.
+/// Estimates the pose, starting from a subject's, which rests on a plane of that normal; `None` if
+/// too little of the outline is visible.
 pub(crate) fn find_resting(
     subject: Subject<'_>,
     pyramid: &Pyramid,
@@ -58,7 +63,7 @@ pub(crate) fn find_resting(
 }
 
 impl Search<'_> {
-    /// Starts that are worth to be followed: all, where they are few.
+    /// The best starts; all of them, if they are few.
     fn followed(&mut self, start: &RigidMotion, held: &Held) -> Vec<RigidMotion> {
         let radius_m = self.shape.radius_m;
         let turns: Vec<f64> = turns(self.uncertainty.rotation_rad.unwrap_or(MOST_TURN_RAD)).collect();
@@ -85,7 +90,7 @@ impl Search<'_> {
     }
 }
 
-/// None, and more to either side; each once, up to half a turn.
+/// Zero, and more to either side; each once, up to half a turn.
 fn turns(most_rad: f64) -> impl Iterator<Item = f64> {
     #[allow(clippy::cast_possible_truncation, reason = "a dozen at most")]
     let n = (most_rad.min(PI) / TURN_RAD).round() as i32;
@@ -96,7 +101,7 @@ fn turns(most_rad: f64) -> impl Iterator<Item = f64> {
     std::iter::once(0.0).chain(turns).map(|step| step * TURN_RAD)
 }
 
-/// On a disc of a radius, in metres, the middle first.
+/// Shifts on a disc of the given radius in metres, the centre first.
 fn shifts(most_m: f64, apart_m: f64) -> impl Iterator<Item = DVec2> {
     #[allow(clippy::cast_possible_truncation, reason = "bounded")]
     let n = (most_m / apart_m).min(f64::from(MOST_SHIFTS)) as i32;

@@ -1,60 +1,68 @@
-//! The step that brings the outline where the picture has it, with all that is known besides, and how well the pose is known then.
+//! The step that fits the outline to the picture's under all priors, and the uncertainty of the
+//! resulting pose.
 
 use std::collections::BTreeMap;
 
-use glam::IVec2;
+use glam::{DVec2, IVec2};
 
 use super::motion::Measured;
 use super::placement::{Information, OFFSET, Placement, SIZE, Unknowns};
 use super::standing::{DEVIATION_M, Standing};
+use super::texture::{self, Likeness};
 use crate::report::PoseDeviation;
 use crate::robust;
 use app_scene::scene::Intrinsics;
 
-/// A found pose is taken in place of another one if the picture is likelier with it by that natural logarithm.
+/// Natural logarithm of the likelihood ratio for which an estimated pose replaces another one.
 ///
-/// Right poses of disturbed starts have 10 and more, exact poses against those found from them at most 3.
+/// Correct poses of disturbed starts have 10 and more, exact poses compared with estimates from
+/// them at most 3.
 pub(super) const LEAST_EVIDENCE: f64 = 6.0;
-/// One deviation of how far the whole outline may be out of the toy, or within it, in pixels: by a halo, or a model that is too thin.
+/// Standard deviation of the offset of the whole outline, in pixels: by a halo, or a model that is
+/// too thin.
 pub(super) const OFFSET_PX: f64 = 0.1;
-/// Scale of the robust weights over the median of the pieces, and its bounds in pixels (Geman and McClure 1987).
+/// Scale of the robust weights over the median of the pieces, and its bounds in pixels (Geman and
+/// McClure 1987).
 const ROBUST: f64 = 3.0;
 const LEAST_ROBUST_PX: f64 = 0.1;
 const MOST_ROBUST_PX: f64 = 0.5;
-/// How many pieces along the outline err alike: halos, textures and the blocks of a compressed picture span some ten pixels.
+/// Correlation length along the outline in pieces: halos, textures and the blocks of a compressed
+/// picture span some ten pixels.
 pub(super) const ALIKE: f64 = 12.0;
-/// One deviation of a step, over the toy's radius, which holds back what the outline does not determine (Levenberg 1944).
+/// Standard deviation of a step, over the toy's radius, which regularises unconstrained directions
+/// (Levenberg 1944).
 pub(super) const STEP: f64 = 0.2;
-/// One deviation of the logarithm of the size: if it is held, and if it is looked for.
+/// Standard deviation of the logarithm of the size: if it is fixed, and if it is estimated.
 const HELD: f64 = 1e-6;
 const FREE: f64 = 0.02;
-/// Side of the squares of the picture within which residuals err alike, in pixels.
+/// Side of the squares of the picture with correlated residuals, in pixels.
 const BLOCK_PX: i32 = 40;
-/// What is claimed over what the blocks say, of which there are few; and over the root mean square of the outline, by which the model itself
-/// may be off. Chosen on five scenes through six cameras so that nine errors in ten are within two deviations; four other scenes
-/// then had 97 %.
+/// Ratio of the claimed deviation to that of the blocks, which are few; and to the root mean square
+/// of the outline, for errors of the model. Chosen on five scenes through six cameras so that nine
+/// errors in ten are within two deviations; four other scenes then had 97 %.
 const OF_BLOCKS: f64 = 2.5;
 const OF_MISFIT: f64 = 0.5;
 
-/// Deviation of the smoothing along the outline, in pixels.
+/// Standard deviation of the smoothing along the outline, in pixels.
 const SMOOTHED_PX: f64 = 10.0;
-/// Pieces whose normals differ by more, as a cosine, are on another rim.
+/// Cosine between the normals of pieces on the same rim.
 const SAME_RIM: f64 = 0.5;
-/// Pieces count in proportion to their precision up to about that one, in 1/px2, and alike beyond it.
+/// Precision up to which pieces are weighted proportionally, in 1/px2; above, they are weighted
+/// equally.
 const PRECISE: f64 = 50.0;
 
-/// What is known of a toy's pose besides its outline.
+/// Prior knowledge of a toy's pose.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'a> {
     pub(super) k: &'a Intrinsics,
     pub(super) radius_m: f64,
     pub(super) standing: Option<&'a Standing>,
-    /// Whether the size is looked for.
+    /// Whether the size is estimated.
     pub(super) is_size_open: bool,
 }
 
 impl Known<'_> {
-    /// The information that this is, and how it pulls at a placement.
+    /// Its information, and its gradient at a placement.
     fn priors(&self, placement: &Placement) -> (Information, Unknowns) {
         let (mut information, mut pull) = (Information::zeros(), Unknowns::zeros());
         for rigid in 0..SIZE {
@@ -83,25 +91,30 @@ impl Known<'_> {
     }
 }
 
-/// Pieces of the outline against a placement, with the weights that they have.
+/// Pieces of the outline and points of the texture for a placement, with their weights.
 pub(super) struct Balance<'a> {
     known: Known<'a>,
     rows: Vec<Weighted>,
-    /// What is known besides, and its pull.
+    /// Information and gradient of the priors.
     priors: (Information, Unknowns),
-    /// Of outline and priors.
+    /// Information of outline, texture and priors.
     information: Information,
 }
 
 struct Weighted {
     block: IVec2,
     row: Unknowns,
-    residual_px: f64,
+    /// In pixels for the outline, a difference of logarithms for the texture.
+    residual: f64,
     weight: f64,
 }
 
 impl<'a> Balance<'a> {
-    pub(super) fn new(measured: &[Measured], placement: &Placement, known: Known<'a>) -> Self {
+    pub(super) fn new(
+        (measured, texture): (&[Measured], Vec<texture::Row>),
+        placement: &Placement,
+        known: Known<'a>,
+    ) -> Self {
         let residual_px = |one: &Measured| one.offset_px - placement.offset_px;
         let robust_px = robust_px(measured.iter().map(residual_px));
         let robust = |one: &Measured| robust::weight((residual_px(one) / robust_px).powi(2));
@@ -117,53 +130,59 @@ impl<'a> Balance<'a> {
         } else {
             1.0
         };
-        let rows = measured.iter().map(|one| Weighted {
-            block: one.element.at_px.as_ivec2().div_euclid(IVec2::splat(BLOCK_PX)),
+        let outline = measured.iter().map(|one| Weighted {
+            block: block(one.element.at_px),
             row: placement.outward(&one.element, known.k),
-            residual_px: residual_px(one),
+            residual: residual_px(one),
             weight: one.precision * robust(one) * one.element.length_px / (unit_variance * ALIKE),
         });
-        let rows: Vec<Weighted> = rows.collect();
-        let outline = rows.iter().fold(Information::zeros(), |sum, one| {
+        let texture = texture.into_iter().map(|one| Weighted {
+            block: block(one.at_px),
+            row: one.row,
+            residual: one.residual,
+            weight: one.weight,
+        });
+        let rows: Vec<Weighted> = outline.chain(texture).collect();
+        let seen = rows.iter().fold(Information::zeros(), |sum, one| {
             sum + one.weight * one.row * one.row.transpose()
         });
         let priors = known.priors(placement);
         Self {
             known,
             rows,
-            information: outline + priors.0,
+            information: seen + priors.0,
             priors,
         }
     }
 
-    /// The step in weighted least squares; none where nothing tells it.
+    /// The weighted least squares step; `None` if it is unconstrained.
     pub(super) fn step(&self) -> Option<Unknowns> {
-        let outline = self.rows.iter();
-        let outline = outline.fold(Unknowns::zeros(), |sum, one| {
-            sum + one.weight * one.residual_px * one.row
+        let seen = self.rows.iter();
+        let seen = seen.fold(Unknowns::zeros(), |sum, one| {
+            sum + one.weight * one.residual * one.row
         });
         let factor = self.information.cholesky()?;
-        let mut step = factor.solve(&(outline + self.priors.1));
+        let mut step = factor.solve(&(seen + self.priors.1));
         if !self.known.is_size_open {
             step[SIZE] = 0.0;
         }
         (!self.rows.is_empty()).then_some(step)
     }
 
-    /// One deviation of the placement, whose outline has a root mean square of as many pixels: by how much the residuals of one
-    /// part of the picture pull against those of another, and by the misfit.
+    /// Standard deviation of the placement, whose outline has the given root mean square distance
+    /// in pixels: by the scatter of residuals between parts of the picture, and by the misfit.
     ///
     /// Source: the sandwich of White 1982, clustered.
     pub(super) fn deviation(&self, misfit_px: f64, depth_m: f64) -> PoseDeviation {
         let mut blocks: BTreeMap<[i32; 2], Unknowns> = BTreeMap::new();
         for one in &self.rows {
             let pull = blocks.entry(one.block.to_array()).or_insert_with(Unknowns::zeros);
-            *pull += one.weight * one.residual_px * one.row;
+            *pull += one.weight * one.residual * one.row;
         }
         let pulls = blocks
             .values()
             .fold(self.priors.0, |sum, pull| sum + pull * pull.transpose());
-        // It was solved with, so that it has an inverse.
+        // It has an inverse, since it was solved with before.
         let inverse = self
             .information
             .try_inverse()
@@ -179,7 +198,11 @@ impl<'a> Balance<'a> {
     }
 }
 
-/// Scale of the weights: what is that much farther than most does not fit.
+fn block(at_px: DVec2) -> IVec2 {
+    at_px.as_ivec2().div_euclid(IVec2::splat(BLOCK_PX))
+}
+
+/// Scale of the weights: far above the median, a residual is an outlier.
 fn robust_px(residuals_px: impl Iterator<Item = f64>) -> f64 {
     let mut away_px: Vec<f64> = residuals_px.map(f64::abs).collect();
     away_px.sort_by(f64::total_cmp);
@@ -187,22 +210,24 @@ fn robust_px(residuals_px: impl Iterator<Item = f64>) -> f64 {
     (ROBUST * median_px).clamp(LEAST_ROBUST_PX, MOST_ROBUST_PX)
 }
 
-/// How well an outline fits a picture.
+/// The misfit of an outline and a picture, and of the toy's texture within the outline.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Misfit {
-    /// Mean robust loss of its pieces, less what it is off by all round, in square pixels.
+    /// Mean robust loss of its pieces, without the common offset, in square pixels.
     pub(super) loss_px2: f64,
-    /// The length that was measured, in pixels.
+    /// Measured length, in pixels.
     pub(super) length_px: f64,
+    /// `None` if the texture is not compared.
+    pub(super) texture: Option<Likeness>,
 }
 
 impl Misfit {
     /// Scale of the loss: a piece counts at most the square of it.
     const ROBUST_PX: f64 = 0.5;
-    /// Evidence counts once for as many pixels along the outline.
+    /// Length along the outline that counts as one piece of evidence, in pixels.
     const EVIDENCE_PX: f64 = 20.0;
 
-    /// Of pieces, once the whole outline is moved out of the toy as far as explains them best and may be.
+    /// The misfit of pieces, with the best offset of the whole outline within its prior.
     pub(super) fn of(measured: &[Measured]) -> Self {
         let offset_px = offset_px(measured);
         let scale = Self::ROBUST_PX * Self::ROBUST_PX;
@@ -215,25 +240,35 @@ impl Misfit {
         Self {
             loss_px2: if length_px > 0.0 { sum / length_px } else { scale },
             length_px,
+            texture: None,
         }
     }
 
-    /// Logarithm of how much likelier the picture is with this outline than with another one.
+    /// Whether the picture shows the texture of the toy's model.
+    pub(super) fn is_texture_of_model(&self) -> bool {
+        self.texture.is_some_and(|texture| texture.is_of_model())
+    }
+
+    /// Logarithm of the likelihood ratio of this outline and texture to others.
     pub(super) fn likelier_than(&self, other: &Self) -> f64 {
-        // Of an outline that cannot be measured nothing is known but that.
+        // An outline that cannot be measured has no other information.
         let length_px = if other.length_px > 0.0 {
             self.length_px.min(other.length_px)
         } else {
             self.length_px
         };
         let n = length_px / Self::EVIDENCE_PX;
-        // A loss of nothing is that of a picture without noise.
+        // A loss of zero belongs to a picture without noise.
         let least_px2 = f64::EPSILON;
-        0.5 * n * (other.loss_px2.max(least_px2) / self.loss_px2.max(least_px2)).ln()
+        let texture = match (&self.texture, &other.texture) {
+            (Some(own), Some(other)) => own.likelier_than(other),
+            _ => 0.0,
+        };
+        0.5 * n * (other.loss_px2.max(least_px2) / self.loss_px2.max(least_px2)).ln() + texture
     }
 }
 
-/// How far the outline is out of the toy all round, as far as that may be.
+/// Offset of the whole outline out of the toy, within its prior.
 fn offset_px(measured: &[Measured]) -> f64 {
     const N_ROUNDS: usize = 4;
     let mut offset_px = 0.0;
@@ -250,8 +285,8 @@ fn offset_px(measured: &[Measured]) -> f64 {
     offset_px
 }
 
-/// The root mean square of what is left of displacements that are smoothed along the outline, in pixels: what a model is wrong by
-/// keeps its sign over centimetres, which halos and compressed pictures do not.
+/// The root mean square of displacements smoothed along the outline, in pixels: a model's errors
+/// keep their sign over centimetres, those of halos and compression do not.
 pub(super) fn smoothed_px(measured: &[Measured]) -> f64 {
     let offset_px = offset_px(measured);
     let smooth_px = smoothed(measured)
@@ -260,7 +295,8 @@ pub(super) fn smoothed_px(measured: &[Measured]) -> f64 {
     (smooth_px.sum::<f64>() / measured.len().max(1) as f64).sqrt()
 }
 
-/// Displacements of all pieces, in pixels, each the mean of those along the same rim; pieces stand row by row.
+/// Displacements of all pieces, in pixels, each averaged along the same rim; pieces are sorted row
+/// by row.
 fn smoothed(measured: &[Measured]) -> Vec<f64> {
     const REACH_PX: f64 = 3.0 * SMOOTHED_PX;
     let weight = |one: &Measured| one.robust * one.precision / (one.precision + PRECISE);

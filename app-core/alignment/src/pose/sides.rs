@@ -1,6 +1,7 @@
-//! The two sides of the outline, carried across the band of pixels beside it.
+//! Extrapolates the two sides of the outline across the band of pixels beside it.
 //!
-//! On either side it is a ratio that is carried: of the photograph to the shaded model within the outline, and to the plate beyond it.
+//! On either side a ratio is extrapolated: of the photograph to the shaded model inside the
+//! outline, and to the plate outside.
 
 use glam::IVec2;
 
@@ -9,38 +10,41 @@ use super::paint::Shaded;
 use crate::picture::{Color, Level};
 use crate::raster::Coverage;
 
-/// Linear light that ratios are taken above, where a plate or a paint is black in a channel.
+/// Lower bound of linear light in ratios, for a plate or a paint that is black in a channel.
 const FLOOR: f32 = 5e-4;
-/// Samples on either side of the band, and where the first is beyond it, in pixels.
+/// Number of samples on either side of the band, and distance of the first from it, in pixels.
 const N_SAMPLES: i32 = 3;
 const BEYOND_PX: f64 = 0.75;
-/// A pixel that is covered but for that part shows the toy alone; one that is covered by no more, the background.
+/// Uncovered fraction of a pixel that shows the toy alone; also the covered fraction of one that
+/// shows the background alone.
 const ALONE: f32 = 0.001;
 
-/// What lies beside a picture's outline.
+/// The surroundings of a picture's outline.
 #[derive(Clone, Copy)]
 pub(super) struct Beside<'a> {
     /// The photograph, with its plate.
     pub(super) level: &'a Level,
-    /// Of the toy where it is thought to be.
+    /// Coverage by the toy in its estimated place.
     pub(super) coverage: &'a Coverage,
-    /// What it should look like there; none where that is not known, and its colours are carried as they are.
+    /// Its predicted colours there; `None` if unknown, and its colours are then extrapolated
+    /// directly.
     pub(super) shaded: Option<&'a Shaded<'a>>,
 }
 
-/// What is carried across the band at one piece of the outline.
+/// The extrapolated ratios at one piece of the outline.
 #[derive(Clone, Copy)]
 pub(super) struct Sides {
-    /// Of the toy over the shaded model.
+    /// The toy over the shaded model.
     toy: Color,
     /// The shaded model at the rim.
     rim: Color,
-    /// Of the background over the plate; without a plate the background itself.
+    /// The background over the plate; without a plate the background itself.
     background: Color,
 }
 
 impl Sides {
-    /// Means just within and just beyond a band of a half width, along the normal; none where one side is not seen alone.
+    /// Means just inside and just outside of a band of half the given width, along the normal;
+    /// `None` if one side is not visible alone.
     pub(super) fn new(beside: &Beside<'_>, element: &Element, half_px: f64) -> Option<Self> {
         let Beside { level, coverage, .. } = beside;
         let (mut toy, mut model) = (Mean::default(), Mean::default());
@@ -69,7 +73,7 @@ impl Sides {
         })
     }
 
-    /// Toy and background alone at a pixel; none where the plate is unknown.
+    /// Toy and background alone at a pixel; `None` if the plate is unknown.
     pub(super) fn at(&self, beside: &Beside<'_>, at: IVec2) -> Option<[Color; 2]> {
         let plate = beside.plate(at)?;
         let model = beside.model(at).unwrap_or(self.rim);
@@ -109,7 +113,7 @@ impl Mean {
         self.n += 1.0;
     }
 
-    /// None where there is nothing.
+    /// `None` without samples.
     fn over(&self, other: &Self) -> Option<Color> {
         let floor = self.n * FLOOR;
         (self.n > 0.0)

@@ -1,4 +1,5 @@
-//! Where an outline asks the surface to be: pieces of it, each between two points of the surface.
+//! Measured displacements of the surface at an outline: pieces of it, each between two points of
+//! the surface.
 
 use std::collections::BTreeMap;
 
@@ -9,27 +10,28 @@ use crate::raster::project;
 use crate::shape::Shape;
 use app_scene::scene::Intrinsics;
 
-/// Pieces in squares of that side, in pixels, are one; in larger ones where an outline is longer than that many of them.
+/// Side of the squares within which pieces are merged, in pixels; larger if an outline has more of
+/// them than the limit.
 const CELL_PX: f64 = 4.0;
 const MOST_CELLS: f64 = 400.0;
-/// A piece lies on the outline of the surface no farther from it, in pixels.
+/// Largest distance of a piece from the outline of the surface, in pixels.
 const ON_EDGE_PX: f64 = 1.5;
-/// What a piece is displaced by besides, in pixels: no field is as rough as a surface may be.
+/// Further noise of a piece, in pixels: no field is as rough as a surface may be.
 const ROUGH_PX: f64 = 0.2;
 
 /// Neighbouring pieces of an outline as one.
 pub(super) struct Sighting {
     pub(super) at_px: DVec2,
-    /// Out of the toy.
+    /// Normal, out of the toy.
     pub(super) normal: DVec2,
-    /// How far it is out of the surface as given.
+    /// Distance from the surface as given, positive outside.
     pub(super) offset_px: f64,
     pub(super) variance_px2: f64,
-    /// How far it moves in pixels for each metre of each point, along each axis.
+    /// Shift in pixels per metre of each point's displacement, along each axis.
     pub(super) row: Vec<(usize, DVec3)>,
 }
 
-/// A piece of the outline, and how it moves with the ends of the edge that it lies on.
+/// A piece of the outline, and its dependence on the ends of its edge.
 struct Piece<'a> {
     measured: &'a Measured,
     row: [(usize, DVec3); 2],
@@ -41,13 +43,13 @@ impl Piece<'_> {
     }
 }
 
-/// Side of the squares that so many pieces are put together in, in pixels.
+/// Side of the squares for the given number of pieces, in pixels.
 pub(super) fn cell_px(n_pieces: usize) -> f64 {
     CELL_PX.max(n_pieces as f64 / MOST_CELLS)
 }
 
 impl Sighting {
-    /// Of an outline that was measured with a shape whose points were displaced.
+    /// Sightings of an outline that was measured with a displaced shape.
     pub(super) fn all(
         measured: &[Measured],
         (shape, displacements_m): (&Shape, &[DVec3]),
@@ -72,7 +74,7 @@ impl Sighting {
             .collect()
     }
 
-    /// None where nothing is known of the pieces.
+    /// `None` if nothing is known of the pieces.
     fn of(pieces: &[Piece<'_>], displacements_m: &[DVec3]) -> Option<Self> {
         let total: f64 = pieces.iter().map(Piece::weight).sum();
         let (mut at_px, mut normal, mut offset_px) = (DVec2::ZERO, DVec2::ZERO, 0.0);
@@ -97,7 +99,7 @@ impl Sighting {
     }
 }
 
-/// Which of four ways a normal points.
+/// The quadrant of a normal.
 fn side(normal: DVec2) -> i64 {
     if normal.x.abs() > normal.y.abs() {
         i64::from(normal.x > 0.0)
@@ -106,17 +108,17 @@ fn side(normal: DVec2) -> i64 {
     }
 }
 
-/// Edges between the triangles of a shape that face the eye and those that do not: their ends, projected.
+/// Edges between front faces and back faces of a shape: their ends, projected.
 struct Rims(Vec<[(usize, DVec2); 2]>);
 
 impl Rims {
     fn new(shape: &Shape, k: &Intrinsics) -> Self {
         let corners = project(shape.points.iter().copied(), k);
         let at = |corner: u32| corners[corner as usize].truncate();
-        // Rows go down: triangles whose outer side is seen turn to the left.
+        // Rows go down: triangles whose outer side is visible turn to the left.
         let faces_eye = |[a, b, c]: &[u32; 3]| (at(*b) - at(*a)).perp_dot(at(*c) - at(*a)) < 0.0;
         let mut facing: Vec<bool> = shape.faces.triangles.iter().map(faces_eye).collect();
-        // Where an edge has no second triangle.
+        // Stands for the missing second triangle of an edge.
         facing.push(false);
         let rims = shape.faces.edges.iter().filter(|edge| {
             let [one, other] = edge.sides.map(|side| facing[side as usize]);
@@ -128,7 +130,7 @@ impl Rims {
         )
     }
 
-    /// The ends of the edge that is nearest to a place, and how much of each is there; none where none is near.
+    /// The ends of the edge nearest to a place, with their weights; `None` if none is near.
     fn at(&self, at_px: DVec2) -> Option<[(usize, f64); 2]> {
         let mut nearest = ON_EDGE_PX * ON_EDGE_PX;
         let mut found = None;

@@ -1,41 +1,42 @@
-//! A toy that stands: the points that bear it stay on their plane.
+//! A toy that stands: its support points stay on their plane.
 //!
-//! An outline tells a toy's distance ten times worse than its place beside the view. A table knows it: the lowest points of what stands
-//! on it are on it.
+//! An outline constrains a toy's distance ten times worse than its lateral place. The table helps:
+//! the lowest points of a standing toy are on it.
 
 use glam::DVec3;
 
 use crate::report::Stand;
 use crate::shape::Shape;
 
-/// How far the points that bear a toy may be from their plane, in metres: one deviation. Felt pads, soft paws, and a table that is
-/// not quite flat.
+/// Standard deviation of the distance between a toy's support points and their plane, in metres:
+/// felt pads, soft paws, and a table that is not quite flat.
 pub(super) const DEVIATION_M: f64 = 1.5e-4;
-/// A toy that leans farther from how it would stand on a plane is not meant to stand there, in radians.
+/// Largest inclination of a standing toy, in radians.
 const MOST_LEAN_RAD: f64 = 0.12;
-/// Planes that are a guess lean less than that from the toy's feet, in radians: else it is not these feet that it stands on.
+/// Largest inclination of a guessed plane against the toy's feet, in radians: beyond it, the toy
+/// stands on other feet.
 const MOST_GUESSED_LEAN_RAD: f64 = 0.5;
-/// Rounds in which the bearing points are exchanged; each goes lower.
+/// Number of rounds in which support points are exchanged; each round goes lower.
 const N_ROUNDS: usize = 64;
-/// How far out the points are that such a search starts from, over the toy's radius, and again how high.
+/// Distance of the initial points of such a search, over the toy's radius, and again their height.
 const FAR: f64 = 10.0;
-/// Points that lie less below a plane, over the toy's radius, lie on it.
+/// Tolerance for points on a plane, over the toy's radius.
 const ON_PLANE: f64 = 1e-6;
 
 /// A plane in camera space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plane {
-    /// Of unit length, towards the toy.
+    /// Unit normal, towards the toy.
     pub(crate) normal: DVec3,
-    /// A point of it.
+    /// A point on it.
     pub(crate) point: DVec3,
 }
 
-/// What a toy may stand on.
+/// The ground that a toy may stand on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ground {
     pub(crate) plane: Plane,
-    /// Whether it is known that the toy stands there.
+    /// Whether the toy certainly stands there.
     pub(crate) is_certain: bool,
 }
 
@@ -51,7 +52,7 @@ impl Plane {
     }
 }
 
-/// The points that bear a toy, where they were given, and how high above the plane they are to be.
+/// The support points of a toy in its given place, and their heights above the plane.
 #[derive(Clone, Debug)]
 pub(super) struct Standing {
     pub(super) plane: Plane,
@@ -60,7 +61,8 @@ pub(super) struct Standing {
 }
 
 impl Standing {
-    /// With all three points on the plane; none where a toy would have to lean far, or would stand on nothing that is wide.
+    /// With all three points on the plane; `None` if a toy would have to be inclined too far, or
+    /// has no wide enough support.
     pub(super) fn on(shape: &Shape, plane: Plane) -> Option<Self> {
         let points = bearing(shape, &plane, MOST_LEAN_RAD)?;
         Some(Self {
@@ -70,7 +72,7 @@ impl Standing {
         })
     }
 
-    /// With the same points as high as they are given.
+    /// With the same points at their given heights.
     pub(super) fn as_given(&self) -> Self {
         Self {
             heights_m: self.points.map(|point| self.plane.height_m(point)),
@@ -78,7 +80,7 @@ impl Standing {
         }
     }
 
-    /// Logarithm of how much likelier the heights of the feet are once they are moved.
+    /// Logarithm of the likelihood ratio of the feet's heights after and before a motion.
     pub(super) fn evidence(&self, moved: impl Fn(DVec3) -> DVec3) -> f64 {
         let squares =
             |point: DVec3, height_m: f64| ((self.plane.height_m(point) - height_m) / DEVIATION_M).powi(2);
@@ -87,7 +89,7 @@ impl Standing {
             .sum()
     }
 
-    /// How the toy is on the plane once its points are moved.
+    /// The toy's position on the plane after its points are moved.
     pub(super) fn stand(&self, moved: impl Fn(DVec3) -> DVec3) -> Stand {
         let feet = self.points.map(moved);
         let heights_m = feet.map(|foot| self.plane.height_m(foot));
@@ -106,7 +108,7 @@ impl Standing {
         }
     }
 
-    /// How far the points are from where they are to be, in metres.
+    /// Distances of the points from their target heights, in metres.
     pub(super) fn away_m(&self) -> f64 {
         let away = self.points.iter().zip(self.heights_m);
         away.fold(0.0, |most, (point, height_m)| {
@@ -115,13 +117,14 @@ impl Standing {
     }
 }
 
-/// The feet of a toy that stands on a plane which is a guess; none if it would have to lean far.
+/// The feet of a toy that stands on a guessed plane; `None` if it would have to be inclined too
+/// far.
 pub(crate) fn feet(shape: &Shape, plane: &Plane) -> Option<[DVec3; 3]> {
     bearing(shape, plane, MOST_GUESSED_LEAN_RAD)
 }
 
-/// The three points that a toy rests on once it is put down: of all planes that have no point below them, the one that is highest under
-/// the toy's middle.
+/// The three points that a toy rests on after it is put down: of all planes without points below,
+/// the one that is highest under the toy's centre.
 fn bearing(shape: &Shape, plane: &Plane, most_lean_rad: f64) -> Option<[DVec3; 3]> {
     let (across, along) = plane.normal.any_orthonormal_pair();
     // In the plane's own frame, the height last.
@@ -138,7 +141,8 @@ fn bearing(shape: &Shape, plane: &Plane, most_lean_rad: f64) -> Option<[DVec3; 3
         let order = |(_, a): &(usize, &DVec3), (_, b): &(usize, &DVec3)| height(a).total_cmp(&height(b));
         local.iter().enumerate().min_by(order).map(|(index, _)| index)
     };
-    // A triangle around the middle, far out and above everything: its corners are exchanged for points of the toy.
+    // A triangle around the centre, far away and above everything: its corners are exchanged for
+    // points of the toy.
     let far_m = FAR * shape.radius_m;
     let mut corners = [0.0_f64, 1.0, 2.0].map(|third| {
         let angle = third * std::f64::consts::TAU / 3.0;
@@ -169,7 +173,7 @@ fn bearing(shape: &Shape, plane: &Plane, most_lean_rad: f64) -> Option<[DVec3; 3
     (lean_rad <= most_lean_rad).then(|| [a, b, c].map(|index| shape.points[index]))
 }
 
-/// Rise of the plane through three points along the first two axes; none where it is upright.
+/// Slope of the plane through three points along the first two axes; `None` if it is vertical.
 fn tilt_of([a, b, c]: &[DVec3; 3]) -> Option<DVec3> {
     let normal = (*b - *a).cross(*c - *a);
     let is_upright = normal.z.abs() <= 1e-9 * normal.length();

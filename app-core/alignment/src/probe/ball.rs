@@ -13,11 +13,12 @@ pub(super) struct Ball {
 }
 
 impl Ball {
-    /// What a pixel's line of sight is mirrored to; none beside the ball, or in it.
+    /// The reflection of a pixel's line of sight; `None` beside the ball, or inside it.
     pub(super) fn reflect(&self, at_px: DVec2) -> Option<Reflection> {
         let (from, along) = (self.eye.place(), self.eye.sight(at_px));
         let nearest = -from.dot(along);
-        // From the foot of the line: the difference of squares would lose a far camera's digits.
+        // From the foot of the perpendicular: the difference of squares would lose a far camera's
+        // digits.
         let foot = from + nearest * along;
         let half_squared = self.radius_m * self.radius_m - foot.length_squared();
         let is_before = from.length() > self.radius_m && nearest > 0.0;
@@ -28,11 +29,12 @@ impl Ball {
         Reflection::of(at, at.try_normalize()?, -along)
     }
 
-    /// Normal at a pixel as if the viewer were infinitely far away, and the direction to that viewer.
+    /// Normal at a pixel for a viewer at infinity, and the direction to that viewer.
     pub(super) fn normal_for_far_viewer(&self, at_px: DVec2) -> Option<(DVec3, DVec3)> {
         let viewer = self.eye.place().try_normalize()?;
         let along = self.eye.sight(at_px);
-        // Where the line of sight crosses the plane through the middle that the viewer faces.
+        // Intersection of the line of sight with the plane through the centre that faces the
+        // viewer.
         let from = self.eye.place();
         let steep = along.dot(viewer);
         if steep >= 0.0 {

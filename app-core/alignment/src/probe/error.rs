@@ -1,38 +1,38 @@
-//! Pictures of probes that tell nothing.
+//! Errors of probes' pictures.
 
 use thiserror::Error;
 
 use super::ProbeView;
 use app_scene::scene::{Image, InputError};
 
-/// Why no light can be read off a picture of a probe.
+/// The reason why no light can be estimated from a picture of a probe.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ProbeError {
-    /// A value that cannot be.
+    /// An invalid value.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// The picture has more or fewer bytes than pixels of 4 bytes.
-    #[error("the picture of the probe has not 4 bytes for each of {width_px} x {height_px} pixels")]
+    /// The number of bytes does not fit the picture's size.
+    #[error("the picture of the probe does not have 4 bytes for each of {width_px} x {height_px} pixels")]
     Size {
         /// Columns.
         width_px: u32,
         /// Rows.
         height_px: u32,
     },
-    /// Nothing of the probe's front is in the picture.
-    #[error("the probe is out of the picture, or seen from behind")]
+    /// The picture does not show the probe's front.
+    #[error("the probe is outside the picture, or only its back is visible")]
     OutOfView,
     /// Too few pixels show the probe.
-    #[error("the probe is seen on {n_pixels} pixels, too few to tell a direction")]
+    #[error("the probe covers {n_pixels} pixels, too few for a direction: take the picture from nearer")]
     TooSmall {
-        /// So many.
+        /// Number of pixels.
         n_pixels: usize,
     },
 }
 
 impl ProbeError {
-    /// Whether the camera looked elsewhere, or from too far, rather than anything being wrong.
+    /// Whether the camera looked elsewhere, or was too far away, without any other error.
     #[must_use]
     pub fn is_out_of_view(&self) -> bool {
         matches!(self, Self::OutOfView | Self::TooSmall { .. })

@@ -22,7 +22,7 @@ impl Eye {
         }
     }
 
-    /// Where the camera's centre is.
+    /// The camera's centre.
     pub(super) fn place(&self) -> DVec3 {
         self.probe_from_camera.w_axis.truncate()
     }
@@ -34,7 +34,7 @@ impl Eye {
         self.probe_from_camera.transform_vector3(in_camera).normalize()
     }
 
-    /// Where a point is seen, in pixels; none behind the camera.
+    /// The image of a point, in pixels; `None` behind the camera.
     pub(super) fn pixel(&self, point: DVec3) -> Option<DVec2> {
         self.intrinsics
             .pixel_of(self.camera_from_probe.transform_point3(point))

@@ -9,13 +9,14 @@ use app_scene::disjoint::DisjointSets;
 use app_scene::geometry::color::linear_of_codes;
 use app_scene::scene::Image;
 
-/// A pixel is bright where each channel is more than this part of white. Source: Casas et al. 2019, equation 2 and the text below.
+/// Fraction of white above which all channels of a bright pixel are. Source: Casas et al. 2019,
+/// equation 2 and the text below.
 const BRIGHT: f64 = 0.9;
-/// Light that a lens spreads lies as far around a bright region, in pixels.
+/// Width of the halo of light that a lens spreads around a bright region, in pixels.
 const HALO_PX: i32 = 3;
-/// And what surrounds that is its background.
+/// Width of the background around the halo.
 const AROUND_PX: i32 = 5;
-/// Fewer pixels of a probe tell nothing.
+/// Number of the probe's pixels that a search needs.
 const LEAST_PIXELS: usize = 100;
 
 /// A bright region.
@@ -23,13 +24,13 @@ const LEAST_PIXELS: usize = 100;
 pub(super) struct Highlight {
     /// Its bright pixels, in the order of rows.
     pub(super) bright: Vec<UVec2>,
-    /// Those and its halo, with linear light over the background's: white is 1.
+    /// The bright pixels and the halo, with linear light minus the background's: white is 1.
     pub(super) weighted: Vec<(UVec2, f64)>,
-    /// Whether it touches pixels that do not show the probe.
+    /// Whether it touches pixels outside of the probe.
     pub(super) is_at_rim: bool,
 }
 
-/// Middle of a pixel.
+/// Centre of a pixel.
 pub(super) fn middle_px(pixel: UVec2) -> DVec2 {
     pixel.as_dvec2() + 0.5
 }
@@ -108,7 +109,7 @@ struct Window {
 }
 
 impl Window {
-    /// None where the probe is out of the picture.
+    /// `None` if the probe is outside of the picture.
     fn around(image: &Image, surface: &Surface<'_>) -> Option<Self> {
         let all = UVec2::new(image.width_px, image.height_px);
         let (mut min, mut max) = (DVec2::ZERO, all.as_dvec2());
@@ -150,7 +151,7 @@ impl Window {
         is_in.then(|| at.y as usize * self.size.x as usize + at.x as usize)
     }
 
-    /// Region of each bright pixel: those that touch, by a side or a corner, are one.
+    /// Region of each bright pixel: pixels that touch by a side or a corner belong to one region.
     fn regions(&self, bright: &[bool]) -> Vec<Option<usize>> {
         let mut sets = DisjointSets::new(self.n_pixels());
         for (index, _) in bright.iter().enumerate().filter(|(_, bright)| **bright) {
@@ -160,7 +161,7 @@ impl Window {
                 }
             }
         }
-        // A region's first pixel is its name, and comes first.
+        // The first pixel of a region is its name.
         let mut regions = vec![None; self.n_pixels()];
         let mut n_regions = 0;
         for (index, _) in bright.iter().enumerate().filter(|(_, bright)| **bright) {
@@ -175,7 +176,8 @@ impl Window {
         regions
     }
 
-    /// Regions with the pixels beside them that show the probe and are in none; of several that of the first counts.
+    /// Regions with the adjacent pixels of the probe that are in none; of several regions the first
+    /// one gets a pixel.
     fn grown(&self, owners: &[Option<usize>], shown: &[bool]) -> Vec<Option<usize>> {
         let around = |index: usize| {
             let steps = (-1..=1).flat_map(|y| (-1..=1).map(move |x| IVec2::new(x, y)));
@@ -200,7 +202,7 @@ impl Window {
         }
     }
 
-    /// Whether a pixel touches one that does not show the probe, or the window's border.
+    /// Whether a pixel touches one outside of the probe, or the window's border.
     fn is_at_rim(&self, at: UVec2, shown: &[bool]) -> bool {
         let at = at - self.first;
         let index = at.y as usize * self.size.x as usize + at.x as usize;

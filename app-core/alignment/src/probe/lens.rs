@@ -8,7 +8,7 @@ use super::eye::Eye;
 use super::reflection::Reflection;
 use app_scene::scene::{Facet, FacetSlope};
 
-/// Nearer to the axis, as a part of the radius, a facet has no direction to lean to.
+/// Distance from the axis, over the radius, below which a facet has no direction to lean to.
 const MIDDLE: f64 = 1e-3;
 
 /// A lens in its own space: a disc in y = 0 with its front along +Y.
@@ -20,7 +20,7 @@ pub(super) struct Lens<'a> {
 }
 
 impl Lens<'_> {
-    /// The point of the disc that a pixel shows, and the direction from there to the viewer.
+    /// The point of the disc at a pixel, and the direction from there to the viewer.
     fn point(&self, at_px: DVec2) -> Option<(DVec3, DVec3)> {
         let (from, along) = (self.eye.place(), self.eye.sight(at_px));
         if from.y <= 0.0 || along.y >= 0.0 {
@@ -31,12 +31,13 @@ impl Lens<'_> {
         (at.length() <= self.radius_m).then_some((at, -along))
     }
 
-    /// The point of the disc that a pixel shows.
+    /// The point of the disc at a pixel.
     pub(super) fn place(&self, at_px: DVec2) -> Option<DVec3> {
         self.point(at_px).map(|(at, _)| at)
     }
 
-    /// What a pixel's line of sight is mirrored to: L = 2 (N · V) N − V, with the facet's normal N and V to the viewer.
+    /// The reflection of a pixel's line of sight: L = 2 (N · V) N − V, with the facet's normal N
+    /// and V to the viewer.
     pub(super) fn reflect(&self, at_px: DVec2) -> Option<Reflection> {
         let (at, viewer) = self.point(at_px)?;
         let slope_rad = self.slope.at(at.length() / self.radius_m, self.radius_m);
@@ -45,7 +46,8 @@ impl Lens<'_> {
         Reflection::of(at, normal.normalize(), viewer)
     }
 
-    /// The facet that mirrors a light of a direction in this space at a pixel: N halves the angle between L and V.
+    /// The facet that reflects light from the given direction at a pixel: N bisects the angle
+    /// between L and V.
     pub(super) fn facet_at(&self, at_px: DVec2, light: DVec3) -> Option<Facet> {
         let (at, viewer) = self.point(at_px)?;
         let normal = (light + viewer).try_normalize()?;

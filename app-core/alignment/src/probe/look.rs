@@ -1,4 +1,4 @@
-//! One picture of a probe, looked at.
+//! Evaluates one picture of a probe.
 
 use glam::{DVec2, DVec3};
 
@@ -8,11 +8,11 @@ use super::surface::Surface;
 use super::{Form, ProbeView, Sighting, published, reading};
 use app_scene::scene::Facet;
 
-/// Reads the lights off a picture.
+/// Estimates the lights from a picture.
 ///
 /// # Errors
-/// When a value cannot be, the picture has not the bytes that its size needs, or the probe is out of the picture, behind the camera, or
-/// seen from behind or as too small.
+/// When a value is invalid, the number of bytes does not fit the picture's size, or the probe is
+/// out of the picture, behind the camera, seen from behind or too small.
 pub fn look(view: &ProbeView<'_>, form: Form) -> Result<Sighting, ProbeError> {
     error::check(view)?;
     let surface = Surface::new(view);
@@ -37,13 +37,15 @@ pub fn look(view: &ProbeView<'_>, form: Form) -> Result<Sighting, ProbeError> {
     })
 }
 
-/// The facet that shows a light of known direction at a pixel: one entry of a lens's [`FacetSlope::Table`](app_scene::scene::FacetSlope::Table). A lamp that is moved once
-/// from the axis to the horizon calibrates a lens; entries have to be sorted.
+/// The facet that shows a light of known direction at a pixel: one entry of a lens's
+/// [`FacetSlope::Table`](app_scene::scene::FacetSlope::Table). One move of a lamp from the axis to
+/// the horizon calibrates a lens; sort the entries afterwards.
 ///
-/// None where the pixel shows no lens, or the lens's middle, or where no facet of a lens could mirror that light.
+/// `None` if the pixel shows no lens, or the lens's centre, or if no facet of a lens could reflect
+/// that light.
 ///
 /// # Errors
-/// When a value cannot be.
+/// When a value is invalid.
 pub fn facet_at(
     view: &ProbeView<'_>,
     at_px: DVec2,

@@ -1,50 +1,52 @@
-//! Where a near light is, by rays of several views: the point that is nearest to all of them.
+//! The position of a near light from rays of several views: the point nearest to all of them.
 
 use glam::{DMat3, DVec3};
 
-/// Rays agree where they miss each other by no more deviations.
+/// Largest distance of agreeing rays, in standard deviations.
 const MISSED: f64 = 3.0;
-/// A distance is told by as many deviations of itself.
+/// Significance of a distance, in standard deviations.
 const TOLD: f64 = 3.0;
-/// Rounds of weights that follow from the distances.
+/// Number of rounds in which weights are updated by the distances.
 const N_ROUNDS: usize = 3;
-/// Normal equations of rays that are parallel to rounding, as their determinant over that of even ones.
+/// Determinant of the normal equations of numerically parallel rays, over that of evenly spread
+/// ones.
 const SINGULAR: f64 = 1e-15;
 
 /// A ray to a light, in the world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
     pub(super) origin: DVec3,
-    /// Unit.
+    /// Unit vector.
     pub(super) direction: DVec3,
-    /// One deviation of the direction, in radians.
+    /// Standard deviation of the direction, in radians.
     pub(super) deviation_rad: f64,
 }
 
-/// Where rays meet.
+/// The intersection of rays.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meeting {
     pub(super) position: DVec3,
-    /// From the first ray's origin, in metres.
+    /// Distance from the first ray's origin, in metres.
     pub(super) distance_m: f64,
-    /// One deviation of one over that, in 1/m.
+    /// Standard deviation of the inverse distance, in 1/m.
     pub(super) nearness_deviation_per_m: f64,
 }
 
 impl Meeting {
-    /// Whether it is nearer than infinity by more than noise.
+    /// Whether it is significantly nearer than infinity.
     pub(super) fn is_told(&self) -> bool {
         TOLD * self.nearness_deviation_per_m * self.distance_m < 1.0
     }
 }
 
-/// Whether two rays can be of one light: parallel or crossing before both, as far as their deviations tell.
+/// Whether two rays can belong to one light: parallel or crossing in front of both, within their
+/// deviations.
 pub(super) fn agree(a: &Ray, b: &Ray) -> bool {
     let between_rad = a.direction.angle_between(b.direction);
     if between_rad <= MISSED * a.deviation_rad.hypot(b.deviation_rad) {
         return true;
     }
-    // The nearest points of two lines. Their directions are not parallel by now.
+    // The nearest points of two lines, which are not parallel here.
     let (offset, cosine) = (b.origin - a.origin, a.direction.dot(b.direction));
     let sine_squared = 1.0 - cosine * cosine;
     if sine_squared <= 0.0 {
@@ -57,8 +59,8 @@ pub(super) fn agree(a: &Ray, b: &Ray) -> bool {
     at_a > 0.0 && at_b > 0.0 && miss_m <= MISSED * (a.deviation_rad * at_a).hypot(b.deviation_rad * at_b)
 }
 
-/// The point nearest to rays, each counted by what its deviation makes of its distance: least squares. None for less than two,
-/// for parallel ones, and where it lies behind one of them.
+/// The least squares intersection of rays, each weighted by its deviation at its distance. `None`
+/// for less than two rays, for parallel ones, and if it is behind one of them.
 pub(super) fn meet(rays: &[Ray]) -> Option<Meeting> {
     let first = rays.first()?;
     let mut distances_m = vec![1.0; rays.len()];
@@ -70,7 +72,7 @@ pub(super) fn meet(rays: &[Ray]) -> Option<Meeting> {
             let across = DMat3::IDENTITY - DMat3::from_cols(d * d.x, d * d.y, d * d.z);
             let weight = (ray.deviation_rad * distance_m).powi(-2);
             normal += weight * across;
-            // From the first origin, so that a world far away costs no digits.
+            // Relative to the first origin, so that a world far away costs no digits.
             side += weight * (across * (ray.origin - first.origin));
         }
         let even = (normal.x_axis.x + normal.y_axis.y + normal.z_axis.z) / 3.0;

@@ -9,9 +9,10 @@ use super::surface::Surface;
 
 /// Each bright region as a light.
 ///
-/// The lens is flattened by its known pose before, which the paper takes for granted. The direction to the viewer is the lens's
-/// axis, R = (0, 0, 1) there; of a ball, the direction to the camera from its middle, as the chrome spheres have it that the paper
-/// follows. A light's size is what its region spans.
+/// The lens is rectified by its known pose first, which the paper assumes. The direction to the
+/// viewer is the lens's axis, R = (0, 0, 1) there; for a ball, the direction from its centre to the
+/// camera, as for the chrome spheres of the earlier work that the paper follows. A light's size is
+/// that of its region.
 pub(super) fn lights(
     highlights: &[Highlight],
     surface: &Surface<'_>,
@@ -30,7 +31,7 @@ pub(super) fn lights(
         Some(SeenLight {
             origin_in_world: seen.at,
             direction_in_world: seen.toward,
-            // Of a middle of whole pixels.
+            // A centre of whole pixels has no known deviation.
             deviation_rad: f64::INFINITY,
             angular_radius_rad,
             power: highlight.weighted.iter().map(|(_, light)| light).sum(),

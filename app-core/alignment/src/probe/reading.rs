@@ -1,4 +1,4 @@
-//! A highlight read as a light: its middle, what is known of it, and whether it is one.
+//! Converts a highlight to a light: its centre, its uncertainty, and whether it is a light.
 
 use glam::{DMat2, DMat4, DVec2, DVec3, UVec2};
 
@@ -7,31 +7,32 @@ use super::reflection::Reflection;
 use super::surface::Surface;
 use super::{Reason, Rejected, SeenLight};
 
-/// Steps in which a pixel's place is varied, in pixels.
+/// Step of difference quotients, in pixels.
 const STEP_PX: f64 = 0.5;
-/// One deviation of a highlight's middle, along each axis, in pixels.
+/// Standard deviation of a highlight's centre, along each axis, in pixels.
 ///
 /// Measured on rendered pictures with noise of a code: .005 to .09.
 const MIDDLE_PX: f64 = 0.1;
-/// No direction is known better, in radians: poses of camera and probe are not.
+/// Lower bound of a direction's standard deviation, in radians, from the poses of camera and probe.
 const LEAST_DEVIATION_RAD: f64 = 0.0005;
-/// Variance that a camera's lens and pixels add to a highlight, along each axis, in square pixels.
+/// Variance of the blur of a highlight by lens and pixels, along each axis, in square pixels.
 const BLUR_PX2: f64 = 0.4;
-/// The same where the highlight is cut off at white, so that the spot around it counts for more.
+/// The same for a clipped highlight, of which the surroundings count more.
 ///
-/// On the safe side: lights of less than 4 degrees come out as points, one of 10 degrees as 6 to 8 across.
+/// On the safe side: lights of less than 4 degrees come out as points, one of 10 degrees as 6 to 8
+/// across.
 const BLOOM_PX2: f64 = 1.5;
-/// A highlight is cut off where it comes as near to white.
+/// Fraction of white above which a highlight counts as clipped.
 const CUT_OFF: f64 = 0.95;
-/// A region so many times longer than wide, beyond blur, is no light.
+/// Largest ratio of length and width of a light, without blur.
 const LONGEST: f64 = 3.0;
-/// No light is wider, in radians: 40 degrees across.
+/// Largest angular radius of a light, in radians: 40 degrees across.
 const WIDEST_RAD: f64 = 0.35;
 
-/// How a line of sight is mirrored, and how that changes from pixel to pixel.
+/// The reflection of a line of sight, and its derivative in the picture.
 struct Local {
     seen: Reflection,
-    /// Change of the mirrored direction over a pixel, along rows and along columns.
+    /// Change of the reflected direction over a pixel, along rows and along columns.
     per_px: [DVec3; 2],
 }
 
@@ -58,7 +59,7 @@ impl Local {
     }
 }
 
-/// The light of a highlight, in the world, or why it is none.
+/// The light of a highlight, in the world, or the reason why it is none.
 pub(super) fn light(
     highlight: &Highlight,
     surface: &Surface<'_>,
@@ -113,13 +114,14 @@ fn first_px(bright: &[UVec2]) -> DVec2 {
 
 /// Means over a highlight, in the probe's space.
 struct Middle {
-    /// By light times solid angle: a light's disc is even in the sky, not in the mirror.
+    /// Weighted by light times solid angle: a light's disc is uniform in the sky, not in the
+    /// mirror.
     toward: DVec3,
     at: DVec3,
-    /// By light alone, as the variance is.
+    /// Weighted by light alone, like the variance.
     at_px: DVec2,
     variance_px2: DMat2,
-    /// What blur adds to that along each axis.
+    /// Contribution of blur to that along each axis.
     blur_px2: f64,
     power: f64,
 }
@@ -151,7 +153,8 @@ impl Middle {
             let off = middle_px(*pixel) - at_px;
             variance_px2 += DMat2::from_cols(off * off.x, off * off.y) * (weight / light);
         }
-        // Only what the light itself spans is even in the sky; blur is even in the picture, around the middle there.
+        // Only the light's own extent is uniform in the sky; blur is uniform in the picture, around
+        // the centre there.
         let variance = 0.5 * (variance_px2.x_axis.x + variance_px2.y_axis.y);
         let of_light = if variance > blur_px2 {
             1.0 - blur_px2 / variance
@@ -170,15 +173,16 @@ impl Middle {
     }
 }
 
-/// Length and width of a highlight as angles, without what blur adds.
+/// Length and width of a highlight as angles, without blur.
 struct Size {
     elongation: f64,
     angular_radius_rad: f64,
 }
 
 impl Size {
-    /// An even disc has a variance of a quarter of its squared radius along each axis. Length is counted in units of the width and
-    /// of blur: one along which the mirror spreads a pixel far is not long by that.
+    /// A uniform disc has a variance of a quarter of its squared radius along each axis. Length is
+    /// measured in units of the width and of blur: a highlight is not long just because the mirror
+    /// stretches a pixel.
     fn of(middle: &Middle, local: &Local) -> Self {
         let (long, [most_px2, least_px2]) = axes(&middle.variance_px2);
         let [per_long2, per_wide2] = [long, long.perp()].map(|along| local.squared_change(along));

@@ -2,17 +2,17 @@
 
 use glam::{DMat4, DVec3};
 
-/// A line of sight, mirrored.
+/// A reflected line of sight.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reflection {
-    /// Where.
+    /// Point of reflection.
     pub(super) at: DVec3,
     /// Unit vector from there.
     pub(super) toward: DVec3,
 }
 
 impl Reflection {
-    /// None where the viewer is behind the normal's face.
+    /// `None` if the viewer is behind the normal's face.
     pub(super) fn of(at: DVec3, normal: DVec3, viewer: DVec3) -> Option<Self> {
         let cosine = normal.dot(viewer);
         (cosine > 0.0).then(|| Self {

@@ -1,4 +1,4 @@
-//! The mirror that a picture shows: where each pixel's line of sight goes.
+//! The mirror in a picture: the reflected direction of each pixel's line of sight.
 
 use glam::{DVec2, DVec3};
 
@@ -32,7 +32,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// What a pixel's line of sight is mirrored to; none beside the mirror.
+    /// The reflection of a pixel's line of sight; `None` beside the mirror.
     pub(super) fn reflect(&self, at_px: DVec2) -> Option<Reflection> {
         match self {
             Self::Lens(lens) => lens.reflect(at_px),
@@ -48,7 +48,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Corners of a box around it that are before the camera; none where one is behind it.
+    /// Corners of a box around it in front of the camera; `None` if one is behind it.
     pub(super) fn corners_px(&self) -> Option<[DVec2; 8]> {
         let (eye, radius_m, height) = match self {
             Self::Lens(lens) => (&lens.eye, lens.radius_m, 0.0),

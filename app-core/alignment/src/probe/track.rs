@@ -1,4 +1,4 @@
-//! The lights that a probe tells, picture by picture.
+//! Tracks the lights of a probe, picture by picture.
 
 use serde::Serialize;
 
@@ -8,16 +8,16 @@ use super::near_light::{Meeting, Ray, agree, meet};
 use super::{Form, ProbeView, Rejected, SeenLight, Sighting};
 use app_scene::scene::{Light, Probe};
 
-/// Earlier views whose rays are kept.
+/// Number of earlier views whose rays are kept.
 const MOST_VIEWS: usize = 16;
-/// No light is taken for wider, in radians.
+/// Largest angular radius of a light, in radians.
 const WIDEST_RAD: f64 = 1.5;
 
-/// Follows a probe through pictures of it: the last lights stay while it is out of view, as the paper has it, and several views tell
-/// how far away a light is.
+/// Tracks a probe through its pictures: the last lights stay while it is out of view, as in the
+/// paper, and several views constrain the distance of a light.
 ///
-/// Lights are those of the latest view; earlier ones only add rays to them. So a light that was moved or put out is so at once, as
-/// soon as the probe is seen.
+/// Lights are those of the latest view; earlier ones only add rays to them. So a light that was
+/// moved or switched off changes at once, as soon as the probe is visible.
 #[derive(Clone, Debug, Default)]
 pub struct Track {
     form: Form,
@@ -27,24 +27,25 @@ pub struct Track {
     n_unseen: usize,
 }
 
-/// A light that a probe tells.
+/// A light estimated from a probe.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TrackedLight {
-    /// As a scene lists it: a sphere where views tell its distance, and else where the latest of them has it, since a mean of views from
-    /// several places would be off for a light that is near after all.
+    /// The light as a scene lists it: a sphere if views constrain its distance, and else a light in
+    /// the direction of the latest view, since a mean over views from several places would be off
+    /// for a near light.
     pub light: Light,
-    /// In the latest view that shows it.
+    /// The light in the latest view that shows it.
     pub seen: SeenLight,
-    /// From the probe, in metres; none where it is not told.
+    /// Distance from the probe, in metres; `None` if unconstrained.
     pub distance_m: Option<f64>,
-    /// One deviation of one over the distance, in 1/m; infinite where one view alone shows it.
+    /// Standard deviation of the inverse distance, in 1/m; infinite for a single view.
     pub nearness_deviation_per_m: f64,
-    /// Views that show it.
+    /// Number of views that show it.
     pub n_views: usize,
 }
 
 impl Track {
-    /// Has seen nothing.
+    /// A track without views.
     #[must_use]
     pub fn new(form: Form) -> Self {
         Self {
@@ -53,10 +54,10 @@ impl Track {
         }
     }
 
-    /// Looks at one more picture. Where the probe is out of view, its lights stay.
+    /// Adds one more picture. If the probe is out of view, its lights stay.
     ///
     /// # Errors
-    /// When a value of the view cannot be; nothing changes then.
+    /// When a value of the view is invalid; nothing changes then.
     pub fn look(&mut self, view: &ProbeView<'_>) -> Result<(), ProbeError> {
         let Sighting { lights, rejected } = match look(view, self.form) {
             Err(error) if error.is_out_of_view() => {
@@ -75,25 +76,25 @@ impl Track {
         Ok(())
     }
 
-    /// Lights of the latest view of the probe, those that give most first.
+    /// Lights of the latest view of the probe, the strongest first.
     #[must_use]
     pub fn lights(&self) -> &[TrackedLight] {
         &self.lights
     }
 
-    /// Bright regions of that view that are no lights.
+    /// Rejected bright regions of that view.
     #[must_use]
     pub fn rejected(&self) -> &[Rejected] {
         &self.rejected
     }
 
-    /// Pictures since then, which do not show the probe.
+    /// Number of later pictures, which do not show the probe.
     #[must_use]
     pub fn n_unseen(&self) -> usize {
         self.n_unseen
     }
 
-    /// A light of the latest view with the rays of earlier ones that agree with it, one a view.
+    /// A light of the latest view with the rays of earlier ones that agree with it, one per view.
     fn tracked(&self, seen: &SeenLight) -> TrackedLight {
         let mut rays = vec![ray(seen)];
         if self.form == Form::Exact {
@@ -103,7 +104,7 @@ impl Track {
                     let off = |ray: &Ray| ray.direction.angle_between(seen.direction_in_world);
                     off(a).total_cmp(&off(b))
                 });
-                // A light that was elsewhere before is another one.
+                // A light with another earlier place is a different one.
                 let Some(nearest) = nearest else { break };
                 rays.push(nearest);
             }
@@ -133,24 +134,24 @@ fn ray(seen: &SeenLight) -> Ray {
     }
 }
 
-/// What all pictures of a probe tell.
+/// Estimates from all pictures of a probe.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ProbeReport {
-    /// Lights, those that give most first.
+    /// Lights, the strongest first.
     pub lights: Vec<TrackedLight>,
-    /// The same in the published form, of the latest picture that shows the probe.
+    /// The same in the published form, from the latest picture that shows the probe.
     pub published: Vec<Light>,
-    /// Bright regions of that picture that are no lights.
+    /// Rejected bright regions of that picture.
     pub rejected: Vec<Rejected>,
-    /// Pictures after that one, which do not show the probe.
+    /// Number of later pictures, which do not show the probe.
     pub n_unseen: usize,
 }
 
 impl ProbeReport {
-    /// Looks at the pictures of a probe, one after the other.
+    /// Evaluates the pictures of a probe, one after the other.
     ///
     /// # Errors
-    /// When a value of one cannot be.
+    /// When a value of one is invalid.
     pub fn of(probe: &Probe) -> Result<Self, ProbeError> {
         let mut tracks = [Form::Exact, Form::Published].map(Track::new);
         for picture in &probe.pictures {

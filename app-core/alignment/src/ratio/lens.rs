@@ -1,11 +1,12 @@
-//! The distortion of a lens that nobody lists, by toy and shadow together.
+//! Estimates the distortion of an unlisted lens, from toy and shadow together.
 //!
-//! A lens that is left out bends the outline of toy and shadow in a way that no pose and no light does. So it is looked for as a focal
-//! length is: photographs are taken for those of one lens after the other, each with the pose and the lights that fit best then. The
-//! first term comes first, and around it the second.
+//! An ignored lens bends the outline of toy and shadow in a way that no pose and no light does. So
+//! it is estimated like a focal length: one lens after the other is tried, each with the best pose
+//! and lights for it. The first term is estimated first, and then the second.
 //!
-//! Only where toy and shadow are is anything told, and there the two terms look much alike: they are right together, each by itself
-//! less so, and toward the picture's corners they are a continuation.
+//! Only the places of toy and shadow constrain it, and there the two terms are nearly equivalent:
+//! their sum is accurate, each alone less so, and toward the picture's corners they are an
+//! extrapolation.
 
 use super::optimum::searched;
 use super::trials::Unseen;
@@ -15,12 +16,14 @@ use app_scene::frame::FrameInput;
 use app_scene::lens::Distortion;
 use app_scene::scene::{Intrinsics, Light, Scene};
 
-/// The most that a lens adds at the corner that is farthest from the principal point, in parts of its distance from there.
+/// Largest distortion at the corner farthest from the principal point, as a fraction of its
+/// distance.
 const MOST: f64 = 0.12;
-/// The second term changes nothing at this part of the corner's squared distance: about as far out as shadows are.
+/// The second term is zero at this fraction of the corner's squared distance: the typical distance
+/// of shadows.
 const PIVOT: f64 = 0.3;
 
-/// Looks for the lens in a frame; `lights` are about where the frame's are.
+/// Estimates the lens in a frame; `lights` are approximate.
 pub(crate) fn find_lens(scene: &Scene, input: &FrameInput, lights: &[Light]) -> LensAlignment {
     let size_px = [scene.width_px, scene.height_px];
     let corner2 = corner2(&input.camera.intrinsics, size_px);
@@ -53,7 +56,7 @@ pub(crate) fn find_lens(scene: &Scene, input: &FrameInput, lights: &[Light]) -> 
     }
 }
 
-/// The least loss of lenses in a row.
+/// The lens of least loss in a family.
 fn along(bend: Bend, (scene, input, lights): (&Scene, &FrameInput, &[Light])) -> LensAlignment {
     let none = |outcome| LensAlignment {
         outcome,
@@ -81,7 +84,8 @@ fn along(bend: Bend, (scene, input, lights): (&Scene, &FrameInput, &[Light])) ->
     }
 }
 
-/// Squared distance of the farthest corner from the principal point, as the lens's terms count it.
+/// Squared distance of the farthest corner from the principal point, in the units of the lens's
+/// terms.
 fn corner2(intrinsics: &Intrinsics, size_px: [u32; 2]) -> f64 {
     let Intrinsics {
         fx_px,

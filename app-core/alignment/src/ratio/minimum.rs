@@ -1,9 +1,9 @@
-//! The least of a smooth loss of one number, by parabolas through few tries.
+//! Minimises a smooth loss of one number, by parabolas through few trials.
 
-/// Nearer to one that was tried than this part of the distance to the next, another is not worth its cost.
+/// A new trial must be farther from an earlier one than this fraction of their spacing.
 const APART: f64 = 0.05;
 
-/// A number that was tried, and its loss.
+/// A tried number, and its loss.
 #[derive(Clone, Copy, Debug)]
 struct Tried {
     at: f64,
@@ -13,16 +13,16 @@ struct Tried {
 /// The parabola through three tries.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parabola {
-    /// Where it is least.
+    /// Place of the minimum.
     pub(super) at: f64,
-    /// What is added to the loss at a distance of 1 from there.
+    /// Increase of the loss at a distance of 1 from there.
     pub(super) bend: f64,
-    /// The least loss that was tried.
+    /// The smallest loss of the trials.
     pub(super) loss: f64,
 }
 
 impl Parabola {
-    /// The middle one has the least loss; none where that of all three is the same.
+    /// The middle one has the least loss; `None` if all three are equal.
     fn through([a, b, c]: [Tried; 3]) -> Option<Self> {
         let slope = |from: Tried, to: Tried| (to.loss - from.loss) / (to.at - from.at);
         let bend = (slope(b, c) - slope(a, b)) / (c.at - a.at);
@@ -34,20 +34,21 @@ impl Parabola {
     }
 }
 
-/// Where to look.
+/// The range of a search.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {
-    /// Tried first.
+    /// First trial.
     pub(super) start: f64,
-    /// How far from it the next ones are.
+    /// Distance of the next trials from it.
     pub(super) step: f64,
-    /// Nothing farther from 0 is tried.
+    /// Largest absolute value to try.
     pub(super) most: f64,
-    /// Tries where a parabola is least.
+    /// Number of trials at the minimum of a parabola.
     pub(super) n_finer: usize,
 }
 
-/// Looks for the least loss; `Ok(None)` where there is none in the span, an error where a loss is not known.
+/// Minimises the loss; `Ok(None)` if there is no minimum within the range, an error if a loss is
+/// unknown.
 pub(super) fn least<E>(
     span: Span,
     mut loss: impl FnMut(f64) -> Result<f64, E>,
@@ -95,7 +96,7 @@ fn add<E>(tried: &mut Vec<Tried>, at: f64, loss: &mut impl FnMut(f64) -> Result<
     Ok(())
 }
 
-/// Of several the one in the middle; of three or more tries.
+/// The middle one of equal minima; of three or more trials.
 fn place_of_least(tried: &[Tried]) -> usize {
     let least = tried
         .iter()

@@ -1,17 +1,22 @@
-//! One number that nobody knows well: the focal length, or the scale of the world, by toy and shadow together.
+//! Estimates one uncertain number, the focal length or the scale of the world, from toy and shadow
+//! together.
 //!
-//! A **focal length** that is off slides the toy along the view, since its outline keeps its size; its shadow then falls beside the
-//! real one. No light makes up for that: where the toy stands on a receiver the shadow begins at its foot, wherever the light is.
-//! The **scale** of a tracker's world is off where its metre is none: camera and receivers are then too far from one another for
-//! the size of the toy, which slides along the view in the same way. It is the toy's transform that is scaled: so all else stays as it is
-//! given, and one picture suffices, since the toy's size is known and its shadow tells how far it is from the receiver.
+//! A wrong **focal length** shifts the toy along the view, since its outline keeps its size; its
+//! shadow then falls beside the real one. No light can compensate that: if the toy stands on a
+//! receiver, the shadow begins at its foot, wherever the light is. A wrong **scale** of a tracker's
+//! world makes the distances between camera and receivers wrong relative to the size of the toy,
+//! which is shifted along the view in the same way. The toy's transform is scaled: so all else
+//! stays as given, and one picture suffices, since the toy's size is known and its shadow gives its
+//! distance from the receiver.
 //!
-//! So such numbers are tried, each with the pose that fits the outline best and the lights that fit the shadow best (`trials`),
-//! until the shadow's loss is least (`optimum`, `minimum`): in a small picture, and around what that tells in a larger one.
+//! So such numbers are tried, each with the pose that fits the outline best and the lights that fit
+//! the shadow best (`trials`), until the shadow's loss is least (`optimum`, `minimum`): in a small
+//! picture, and then near that minimum in a larger one.
 //!
-//! All else is held. A toy that is larger than its model, or a table that is nearer than listed, moves the shadow's foot as another
-//! focal length does; the outline tells them apart by perspective. Where that fits worse, nothing is applied. By a scale no outline
-//! changes: a focal length that is off is taken for one.
+//! All else is fixed. A toy larger than its model, or a table nearer than listed, moves the
+//! shadow's foot like another focal length does; the perspective of the outline distinguishes them.
+//! If that fits worse, nothing is applied. A scale changes no outline: a wrong focal length may be
+//! mistaken for one.
 
 mod lens;
 mod minimum;
@@ -34,16 +39,16 @@ pub(super) use unknown::Unknown;
 /// Largest logarithm of a ratio.
 const MOST: f64 = 0.04;
 
-/// One number that is the same for all frames and plates of a scene, if any is asked for.
+/// One number common to all frames and plates of a scene, if requested.
 #[derive(Debug, Default)]
 pub(super) struct Ratio {
     unknown: Option<Unknown>,
-    /// In the latest view that it was looked for in.
+    /// The estimate in the latest view.
     found: Option<RatioAlignment>,
 }
 
 impl Ratio {
-    /// One that is looked for.
+    /// An unknown number.
     pub(super) fn of(unknown: Unknown) -> Self {
         Self {
             unknown: Some(unknown),
@@ -51,29 +56,30 @@ impl Ratio {
         }
     }
 
-    /// Whether it is still to be looked for.
+    /// Whether it is still unknown.
     pub(super) fn is_open(&self) -> bool {
         self.unknown.is_some() && self.found.is_none_or(|found| !found.is_seen())
     }
 
-    /// What was found.
+    /// The estimate.
     pub(super) fn report(&self, of: Unknown) -> Option<RatioAlignment> {
         self.found.filter(|_| self.unknown == Some(of))
     }
 
-    /// That it was asked for and is not told.
+    /// The warning that it was requested and is unconstrained.
     pub(super) fn warning(&self) -> Option<AlignmentWarning> {
         let found = self.found?;
         let is_told = matches!(found.outcome, RatioOutcome::Corrected | RatioOutcome::AsGiven);
         (!is_told).then_some(match self.unknown? {
             Unknown::FocalLength => AlignmentWarning::FocalLengthNotTold,
             Unknown::WorldScale => AlignmentWarning::WorldScaleNotTold,
-            // Looked for before all else, and reported by itself.
+            // Estimated before all else, and reported separately.
             Unknown::Lens(_) => return None,
         })
     }
 
-    /// Looks for it in a frame, and corrects the scene's plates; `lights` are about where the frame's are. Whether it is another.
+    /// Estimates it in a frame, and corrects the scene's plates; `lights` are approximate. Returns
+    /// whether the number changed.
     pub(super) fn find(&mut self, scene: &mut Scene, input: &FrameInput, lights: &[Light]) -> bool {
         let Some(unknown) = self.unknown else {
             return false;
@@ -86,13 +92,13 @@ impl Ratio {
         found.is_applied()
     }
 
-    /// What was found of an unknown, where it is applied.
+    /// The applied estimate of an unknown, if any.
     fn applied(&self, of: Unknown) -> Option<f64> {
         let found = self.report(of).filter(RatioAlignment::is_applied);
         found.map(|found| found.ratio)
     }
 
-    /// A camera as given, with the focal length that was found.
+    /// A given camera with the estimated focal length.
     pub(super) fn camera(&self, given: &Camera) -> Camera {
         let ratio = self.applied(Unknown::FocalLength);
         let camera = ratio.map(|ratio| given.with_focal_length(ratio));
@@ -100,7 +106,7 @@ impl Ratio {
         possible.unwrap_or(*given)
     }
 
-    /// A pose of the toy as given, in the world's scale that was found.
+    /// A given pose of the toy, in the estimated scale of the world.
     pub(super) fn pose(&self, given: &DMat4) -> DMat4 {
         let ratio = self.applied(Unknown::WorldScale);
         let pose = ratio.map(|ratio| *given * DMat4::from_scale(DVec3::splat(ratio)));

@@ -1,4 +1,4 @@
-//! The value of an unknown with the least loss: in a small picture, and around what that tells in a larger one.
+//! The optimal value of an unknown: in a small picture, and then near it in a larger one.
 
 use super::minimum::{Parabola, Span, least};
 use super::trials::{Trial, Trials, Unseen};
@@ -7,42 +7,45 @@ use crate::report::RatioOutcome;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, Scene};
 
-/// Logarithms of ratios that are tried first, and what a lens adds at the farthest corner: how far apart. The largest is asked for.
+/// Spacing of the first trials, in logarithms of ratios, or in the lens's distortion at the
+/// farthest corner. The caller gives the largest.
 const COARSE: Span = Span {
     start: 0.0,
     step: 0.01,
     most: 0.0,
     n_finer: 0,
 };
-/// The same in the larger picture: where the loss is nearly a parabola.
+/// The same in the larger picture, in which the loss is nearly a parabola.
 const FINE: Span = Span {
     step: 0.002,
     n_finer: 1,
     ..COARSE
 };
-/// A ratio is applied where the loss falls to less than this part of that of the given one: as lights are.
+/// A ratio is applied if the loss falls to less than this fraction of the given one's, as for
+/// lights.
 const GAIN: f64 = 0.96;
-/// A logarithm whose deviation is larger is not told.
+/// Largest standard deviation of a constrained logarithm.
 const MOST_DEVIATION: f64 = 0.004;
-/// The same for what a lens adds at the farthest corner: where toy and shadow are, it adds a fifth of that.
+/// The same for the distortion at the farthest corner: at toy and shadow, it is a fifth of that.
 const MOST_LENS_DEVIATION: f64 = 0.02;
-/// A smaller one does not show: a sixth of a millimetre along the view at the distance of an arm.
+/// Smallest visible change: a sixth of a millimetre along the view at arm's length.
 const LEAST: f64 = 5e-4;
-/// Deviations that it must differ by.
+/// Significance of a change, in standard deviations.
 const TOLD: f64 = 2.0;
-/// What the outline's distance may rise to, over that with what was given.
+/// Largest rise of the outline's distance, over that with the given value.
 const WORSE_OUTLINE: f64 = 1.015;
 
-/// The number with the least loss.
+/// The number of least loss.
 pub(super) struct Found {
     pub(super) at: f64,
     pub(super) outcome: RatioOutcome,
     pub(super) deviation: f64,
-    /// As given, and as found.
+    /// Errors with the given and with the estimated value.
     pub(super) errors: [f64; 2],
 }
 
-/// Looks for the least loss up to a largest number, in the small picture, and around that in the larger one; none where it is in neither.
+/// Minimises the loss up to a largest number, in the small picture, and near that in the larger
+/// one; `None` if either has no minimum.
 pub(super) fn searched(
     unknown: Unknown,
     most: f64,
@@ -86,7 +89,7 @@ fn outcome(found: &Parabola, given: &Trial, (outline_px, most_deviation): (f64, 
 }
 
 impl Unknown {
-    /// A deviation that is larger tells nothing.
+    /// Largest standard deviation of a constrained value.
     fn most_deviation(self) -> f64 {
         match self {
             Self::FocalLength | Self::WorldScale => MOST_DEVIATION,
@@ -95,8 +98,8 @@ impl Unknown {
     }
 }
 
-/// How far the logarithm may be off before the loss has risen by what errors of the model are taken for: noise alone would promise ten
-/// times as much.
+/// Change of the logarithm at which the loss has risen by the model's error: noise alone would give
+/// a tenth of it.
 fn deviation(found: &Parabola) -> f64 {
     ((1.0 / GAIN - 1.0) * found.loss / found.bend).sqrt()
 }

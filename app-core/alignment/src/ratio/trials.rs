@@ -1,4 +1,4 @@
-//! One number after the other, each with the pose and the lights that fit it best.
+//! Trials of a number, each with the pose and the lights that fit it best.
 
 use glam::{DMat4, DVec3};
 
@@ -12,53 +12,54 @@ use crate::receivers::{SAME_CAMERA, nearest};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Light, Plate, Scene};
 
-/// The smallest picture with as many pixels is looked at in the end: larger ones move what is found by a ten-thousandth.
+/// Number of pixels of the picture of the last trials: larger ones change the result by a
+/// ten-thousandth.
 const LARGER_PIXELS: i32 = 40_000;
-/// Rounds that lights are moved for, in a picture that they were followed in before, and in a larger one.
+/// Rounds for lights, in a picture in which they were tracked before, and in a larger one.
 const N_ROUNDS: usize = 1;
 const N_ROUNDS_LARGER: usize = 2;
 
-/// Toy or shadows cannot be seen with a ratio.
+/// Toy or shadows are not visible with a ratio.
 #[derive(Debug)]
 pub(super) struct Unseen;
 
-/// What a ratio leaves unexplained.
+/// The residuals with a ratio.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Trial {
-    /// Of the shadows, in variances.
+    /// Loss of the shadows, in variances.
     pub(super) loss: f64,
-    /// Of the outline, in pixels.
+    /// Distance of the outline, in pixels.
     pub(super) outline_px: f64,
 }
 
 /// Toy and lights with a ratio.
 struct Tried {
     at: f64,
-    /// As found, with its focal length.
+    /// The estimated camera, with its focal length.
     camera: Camera,
     world_from_object: DMat4,
     outline_px: f64,
     followed: Followed,
-    /// The picture that it was followed in last.
+    /// The picture in which it was tracked last.
     level: usize,
 }
 
-/// The trials so far. A ratio is named by its logarithm.
+/// The trials so far. A ratio is identified by its logarithm.
 pub(super) struct Trials<'a> {
     unknown: Unknown,
     input: &'a FrameInput,
     given: Plate,
-    /// With that plate alone.
+    /// The scene with that plate alone.
     scene: Scene,
     cameras: Finder,
-    /// At least one.
+    /// At least one trial.
     tried: Vec<Tried>,
     level: usize,
     around: Around,
 }
 
 impl<'a> Trials<'a> {
-    /// Starts with what is given.
+    /// Starts with the given value.
     pub(super) fn new(
         unknown: Unknown,
         scene: &Scene,
@@ -101,7 +102,7 @@ impl<'a> Trials<'a> {
         })
     }
 
-    /// Tries a ratio, or tries it again.
+    /// Tries a ratio, or repeats a trial.
     pub(super) fn at(&mut self, at: f64) -> Result<Trial, Unseen> {
         let Self {
             unknown,
@@ -151,7 +152,7 @@ impl<'a> Trials<'a> {
         Ok(Trial { loss, outline_px })
     }
 
-    /// Goes on in a larger picture.
+    /// Continues in a larger picture.
     pub(super) fn enlarge(&mut self) -> Result<(), Unseen> {
         let first = self.tried.first().ok_or(Unseen)?;
         let followed = first.followed.clone();
@@ -167,14 +168,15 @@ impl<'a> Trials<'a> {
         Ok(())
     }
 
-    /// Distance of the outline with the ratio that was tried next to one.
+    /// Distance of the outline with the ratio tried nearest to the given one.
     pub(super) fn outline_px(&self, at: f64) -> Option<f64> {
         nearest_to(&self.tried, at).map(|near| self.tried[near].outline_px)
     }
 }
 
 impl Tried {
-    /// The pose with another ratio that gives an outline of the same size: farther away as the focal length is longer, or the toy larger.
+    /// The pose with another ratio and an outline of the same size: farther away for a longer focal
+    /// length, or a larger toy.
     fn slid(&self, unknown: Unknown, at: f64, camera: &Camera) -> DMat4 {
         let camera_from_object = self.camera.world_from_camera.inverse() * self.world_from_object;
         let ratio = (at - self.at).exp();
@@ -184,7 +186,7 @@ impl Tried {
                 DMat4::from_translation(DVec3::new(0.0, 0.0, z_m))
             }
             Unknown::WorldScale => DMat4::from_scale(DVec3::splat(ratio)),
-            // What a lens moves differs from place to place: the pose starts where it was.
+            // The shift by a lens varies over the picture: the pose starts unchanged.
             Unknown::Lens(_) => DMat4::IDENTITY,
         };
         camera.world_from_camera * slide * camera_from_object
@@ -196,7 +198,8 @@ fn nearest_to(tried: &[Tried], at: f64) -> Option<usize> {
     (0..tried.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
-/// A frame with a number, and its camera: where no plate was taken from there, it is found by the plate.
+/// A frame with a number, and its camera: if no plate was taken from there, it is estimated
+/// relative to the plate.
 fn photograph(scene: &mut Scene, cameras: &mut Finder, taken: Taken) -> (Photograph, Camera) {
     let Taken { plate, frame } = taken;
     let mut camera = frame.camera;
@@ -219,9 +222,9 @@ fn photograph(scene: &mut Scene, cameras: &mut Finder, taken: Taken) -> (Photogr
     (Photograph::new(scene, &seen, None), camera)
 }
 
-/// The pose that fits the outline best.
+/// The pose with the best outline.
 fn posed(scene: &Scene, photograph: &Photograph, start: (&DMat4, Start)) -> Result<(DMat4, f64), Unseen> {
-    // A toy that cannot be posed is an error of the alignment that follows.
+    // A toy that cannot be posed is an error of the following alignment.
     let found = photograph.tried_pose(scene, start).ok().flatten();
     found
         .filter(|(_, outline_px)| *outline_px <= MOST_OUTLINE_PX)

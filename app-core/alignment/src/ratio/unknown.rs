@@ -1,4 +1,4 @@
-//! What is asked for, and a plate and a frame as they are with one value of it.
+//! The unknown to estimate, and a plate and a frame with one value of it.
 
 use std::sync::Arc;
 
@@ -6,20 +6,20 @@ use app_scene::frame::FrameInput;
 use app_scene::lens::{Distortion, Lens};
 use app_scene::scene::{Camera, Image, Plate};
 
-/// What is asked for.
+/// The unknown to estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Unknown {
     FocalLength,
     WorldScale,
-    /// One of a row of lenses.
+    /// A lens of a family.
     Lens(Bend),
 }
 
-/// Lenses in a row: a distortion, and by what the next one differs.
+/// A one-parameter family of lenses: a distortion and its direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bend {
     pub(super) from: Distortion,
-    /// For what adds 1 at the farthest corner.
+    /// The distortion that is 1 at the farthest corner.
     pub(super) by: Distortion,
 }
 
@@ -31,7 +31,7 @@ impl Bend {
         }
     }
 
-    /// A photograph as a pinhole would have taken it; none where the lens folds it.
+    /// A photograph undistorted to a pinhole's; `None` if the lens folds it.
     fn pinhole(self, at: f64, camera: &Camera, image: &Arc<Image>) -> Option<Arc<Image>> {
         let distortion = self.at(at);
         if distortion == Distortion::NONE {
@@ -43,14 +43,14 @@ impl Bend {
     }
 }
 
-/// A plate and a frame as they are with a number.
+/// A plate and a frame with a number.
 pub(super) struct Taken {
     pub(super) plate: Plate,
     pub(super) frame: FrameInput,
 }
 
 impl Unknown {
-    /// A plate and a frame with a number; none where a lens folds them.
+    /// A plate and a frame with a number; `None` if a lens folds them.
     pub(super) fn taken(self, at: f64, plate: &Plate, frame: &FrameInput) -> Option<Taken> {
         let (mut plate, mut frame) = (plate.clone(), frame.clone());
         match self {

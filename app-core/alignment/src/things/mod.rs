@@ -89,7 +89,7 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
     let seeds = Seeds::found(&compared.pixels, toy.hidden(&frame, &plate), (&frame, &plate));
     let grown = Grown::from(&seeds, Seed::Thing, &plate);
     let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
-    let in_frame = toy.before_in_frame(&seeds, &frame);
+    let in_frame = toy.in_frame(&seeds, &frame);
     if grown.is_none() && wrong.is_none() && in_frame.is_none() {
         return None;
     }
@@ -130,8 +130,8 @@ struct Found {
     on_planes: Vec<bool>,
     /// Where the plate is wrong.
     wrong: Option<Mask>,
-    /// Things before the toy that the frame alone shows, such as a hand.
-    in_frame: Option<(Grown, Vec<bool>)>,
+    /// Things that the frame alone shows, such as a hand.
+    in_frame: Option<InFrame>,
 }
 
 impl Found {
@@ -161,10 +161,19 @@ impl Found {
         }
     }
 
-    fn is_before_in_frame(&self, place: DVec2) -> bool {
-        let grown = self.in_frame.as_ref();
-        grown.is_some_and(|(grown, before)| grown.at(place).is_some_and(|thing| before[thing]))
+    /// The same of what the frame alone shows.
+    fn in_frame_at(&self, place: DVec2) -> Mark {
+        let in_frame = self.in_frame.as_ref();
+        let thing = in_frame.and_then(|in_frame| Some(in_frame.marks[in_frame.grown.at(place)?]));
+        thing.unwrap_or_default()
     }
+}
+
+/// Things that the frame alone shows.
+struct InFrame {
+    grown: Grown,
+    /// Of each thing: before the toy, beside it, or none.
+    marks: Vec<Mark>,
 }
 
 /// Where a level's plate is wrong: all that hangs together with seeds and differs from the model, and where the toy hides it what it grew to.
@@ -256,13 +265,13 @@ impl Sight<'_> {
             };
             match found.at(there) {
                 Mark::BeforeToy if toy.shows(at, frame, plate) => Mark::None,
-                Mark::None if found.is_before_in_frame(there) && !toy.is_shown(at, frame) => {
-                    if is_shade(at, frame, plate) {
-                        Mark::Thing
-                    } else {
-                        Mark::BeforeToy
-                    }
-                }
+                Mark::None => match found.in_frame_at(there) {
+                    Mark::BeforeToy if toy.is_shown(at, frame) => Mark::None,
+                    Mark::BeforeToy if !is_shade(at, frame, plate) => Mark::BeforeToy,
+                    Mark::Thing if toy.coverage.at(at) > 0.0 || is_shade(at, frame, plate) => Mark::None,
+                    Mark::BeforeToy | Mark::Thing => Mark::Thing,
+                    mark => mark,
+                },
                 mark => mark,
             }
         };
@@ -327,9 +336,9 @@ impl Toy {
         self.coverage.at(at) > 0.0 && most_around(at, |at| self.is_as_expected(at, frame))
     }
 
-    /// Things before the toy that a level's frame alone shows, of each whether it is one: none where no such thing is seen beside the toy,
-    /// or where the toy does not look otherwise than it should. `seeds` are of the plate.
-    fn before_in_frame(&self, seeds: &Seeds, frame: &Codes) -> Option<(Grown, Vec<bool>)> {
+    /// Things that a level's frame alone shows: before the toy if they are seen beside it and the toy does not look as it should, and
+    /// beside it if they are large. `None` without either. `seeds` are those of the plate.
+    fn in_frame(&self, seeds: &Seeds, frame: &Codes) -> Option<InFrame> {
         let within: Vec<IVec2> = self.coverage.pixels().filter(|at| self.is_within(*at)).collect();
         let as_expected = within
             .iter()
@@ -344,10 +353,23 @@ impl Toy {
                 hidden[thing] += 1;
             }
         }
-        let is_before =
-            |thing: usize| hidden[thing] >= LEAST_IN_FRAME && grown.n_seeds(thing) >= LEAST_BESIDE;
-        let before: Vec<bool> = (0..grown.n_things()).map(is_before).collect();
-        before.contains(&true).then_some((grown, before))
+        if std::env::var("THINGS").is_ok() {
+            for thing in 0..grown.n_things() {
+                eprintln!(
+                    "THINGS in frame {thing}: hidden {} seeds {}",
+                    hidden[thing],
+                    grown.n_seeds(thing)
+                );
+            }
+        }
+        let mark = |thing: usize| match (hidden[thing], grown.n_seeds(thing)) {
+            (LEAST_IN_FRAME.., LEAST_BESIDE..) => Mark::BeforeToy,
+            (_, LEAST_ALONE..) => Mark::Thing,
+            _ => Mark::None,
+        };
+        let marks: Vec<Mark> = (0..grown.n_things()).map(mark).collect();
+        let has_any = marks.iter().any(|mark| *mark != Mark::None);
+        has_any.then_some(InFrame { grown, marks })
     }
 
     /// For each thing of a level, whether it is before the toy.

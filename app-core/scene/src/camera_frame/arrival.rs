@@ -1,24 +1,25 @@
-//! Which camera frames are taken, and how much time lies between them.
+//! Selects the camera frames to use, and measures the time between them.
 
-/// Time after which what was filtered over frames no longer holds.
+/// Gap after which state filtered over frames is no longer valid.
 const LONGEST_GAP_S: f64 = 0.25;
-/// A picture that is older when it is delivered was timed by another clock.
+/// A picture that is older than this at delivery was timed by another clock.
 const OLDEST_NS: i64 = 1_000_000_000;
 
-/// A camera frame's place in time.
+/// The time stamp of a camera frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamp {
-    /// Counted by the camera.
+    /// Number of the frame, counted by the camera.
     pub id: u64,
-    /// On the camera's own clock, which no other is compared with.
+    /// Time on the camera's own clock, which is compared with no other.
     pub time_ns: i64,
-    /// Counts how often the tracker began a new world: resets and relocalisations.
+    /// Number of worlds that the tracker has begun: resets and relocalisations.
     pub world_epoch: u32,
 }
 
 impl Stamp {
-    /// Milliseconds from the picture until `now_ns` on a clock of the processor. None where that is not the camera's clock, by which
-    /// the picture would be of the future, or older than a camera's can be.
+    /// Milliseconds from the picture until `now_ns` on a clock of the processor. `None` if that is
+    /// not the camera's clock, which is concluded from an age that is negative or too large for a
+    /// camera.
     #[must_use]
     pub fn age_ms(&self, now_ns: i64) -> Option<f64> {
         let age_ns = now_ns.checked_sub(self.time_ns)?;
@@ -26,54 +27,54 @@ impl Stamp {
     }
 }
 
-/// What becomes of a frame that arrives.
+/// The handling of a frame that arrives.
 ///
-/// | | frame is taken | what was filtered | what was learned of the place |
+/// | | frame is used | filtered state | state learned about the place |
 /// | --- | --- | --- | --- |
 /// | `First` | yes | begins | begins |
 /// | `Next`, whatever the gap up to 250 ms | yes | goes on by the elapsed time | stays |
 /// | `AfterGap` | yes | begins anew | stays |
-/// | `NewWorld` | yes | begins anew | is dropped: poses of before are of another world |
+/// | `NewWorld` | yes | begins anew | is dropped: earlier poses belong to another world |
 /// | `Again` | no, the picture shown stays | stays | stays |
 /// | `Late` | no, the picture shown stays | stays | stays |
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Arrival {
-    /// The first of all.
+    /// The first frame.
     First,
-    /// Later than the last by so much.
+    /// A frame later than the last.
     Next {
-        /// Seconds.
+        /// Time since the last frame, in seconds.
         elapsed_s: f64,
     },
-    /// Later by more than filters can bridge.
+    /// A frame too late for filters to bridge the gap.
     AfterGap {
-        /// Seconds.
+        /// Time since the last frame, in seconds.
         elapsed_s: f64,
     },
-    /// In a world of its own.
+    /// A frame with a new world.
     NewWorld,
-    /// The last one once more.
+    /// The last frame once more.
     Again,
-    /// Older than the last, or of an older world.
+    /// A frame older than the last, or of an older world.
     Late,
 }
 
 impl Arrival {
-    /// Whether the frame is taken.
+    /// Whether the frame is used.
     #[must_use]
     pub fn is_taken(self) -> bool {
         !matches!(self, Self::Again | Self::Late)
     }
 }
 
-/// Follows the stamps of a camera's frames.
+/// Compares the stamps of a camera's frames.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Arrivals {
     latest: Option<Stamp>,
 }
 
 impl Arrivals {
-    /// What becomes of the frame of `stamp`; those that are taken are the latest from then on.
+    /// Classifies the frame of `stamp`; a used frame becomes the latest.
     pub fn arrive(&mut self, stamp: Stamp) -> Arrival {
         let arrival = self.latest.map_or(Arrival::First, |latest| after(latest, stamp));
         if arrival.is_taken() {
@@ -93,7 +94,7 @@ fn after(latest: Stamp, stamp: Stamp) -> Arrival {
     if stamp.world_epoch > latest.world_epoch {
         return Arrival::NewWorld;
     }
-    // In 128 bits, since clocks may begin anywhere.
+    // In 128 bits, since clocks may begin at any number.
     let elapsed_ns = i128::from(stamp.time_ns) - i128::from(latest.time_ns);
     let elapsed_s = elapsed_ns as f64 * 1e-9;
     if elapsed_s < 0.0 {

@@ -1,21 +1,22 @@
-//! How a picture lies on a screen: turned by quarters, its aspect kept.
+//! The placement of a picture on a screen: rotated by quarter turns, with its aspect ratio kept.
 
 use glam::{DAffine2, DMat2, DVec2, Vec2Swizzles};
 
-/// What is done where picture and screen are of different aspects.
+/// The handling of different aspect ratios of picture and screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Fit {
-    /// The screen is full, and the picture cropped alike on both sides, as phones show their cameras.
+    /// The picture fills the screen and is cropped equally on both sides, as in phones' camera
+    /// apps.
     #[default]
     Fill,
     /// The whole picture is shown, black beside it.
     Whole,
 }
 
-/// How the picture of a camera is shown.
+/// The presentation of a camera's picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Display {
-    /// Quarter turns, clockwise, that the picture is shown by: a sensor keeps its place in the phone.
+    /// Clockwise quarter turns of the picture: a sensor is fixed in the phone.
     pub quarter_turns: u8,
     /// Cropped or whole.
     pub fit: Fit,

@@ -1,13 +1,14 @@
-//! How a camera's planes encode colour.
+//! The colour encoding of a camera's planes.
 //!
-//! Source: ITU-R BT.601-7, 2.5, and BT.709-6, 3 and 4 (luma coefficients and quantisation); JFIF 1.02 for full range.
+//! Source: ITU-R BT.601-7, 2.5, and BT.709-6, 3 and 4 (luma coefficients and quantisation); JFIF
+//! 1.02 for full range.
 
 use glam::{Mat3, Vec3};
 
 /// Coefficients of red and blue in luma.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LumaCoefficients {
-    /// ITU-R BT.601: what most phones' camera planes have, whatever their size.
+    /// ITU-R BT.601: the encoding of most phones' camera planes, whatever their size.
     Bt601,
     /// ITU-R BT.709.
     Bt709,
@@ -25,13 +26,14 @@ pub enum CodeRange {
 /// Encoding of colour as luma and two chroma components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct YcbcrEncoding {
-    /// Which luma.
+    /// The luma coefficients.
     pub coefficients: LumaCoefficients,
-    /// Which codes.
+    /// The range of codes.
     pub range: CodeRange,
 }
 
-/// Affine map from (luma, Cb, Cr), each from 0 to 1 as a texture has it, to sRGB codes from 0 to 1, which may lie beyond.
+/// Affine map from (luma, Cb, Cr), each from 0 to 1 as in a texture, to sRGB codes from 0 to 1,
+/// which may exceed the range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SrgbFromYcbcr {
     pub matrix: Mat3,
@@ -40,7 +42,8 @@ pub struct SrgbFromYcbcr {
 }
 
 impl YcbcrEncoding {
-    /// The map to sRGB codes, whose transfer the camera's planes share as far as a phone tells.
+    /// The map to sRGB codes. As far as phones document it, their camera planes have sRGB's
+    /// transfer function.
     pub fn srgb_from_ycbcr(self) -> SrgbFromYcbcr {
         let (red, blue) = match self.coefficients {
             LumaCoefficients::Bt601 => (0.299, 0.114),

@@ -1,11 +1,11 @@
-//! How far the effect is shown: it fades while what it needs is not known, and comes back.
+//! The strength of the whole effect: it fades out while its inputs are unknown, and fades in again.
 
-/// Time in which the effect goes, from whole to nothing: a false shadow is seen at once.
+/// Duration of the fade-out: a false shadow is noticed at once.
 const OUT_S: f64 = 0.15;
-/// Time in which it comes.
+/// Duration of the fade-in.
 const IN_S: f64 = 0.4;
 
-/// The effect's way between the camera's picture and the whole result.
+/// The fade between the camera's picture and the whole result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fade {
     /// From 0 to 1, linear in time.
@@ -13,8 +13,8 @@ pub struct Fade {
 }
 
 impl Fade {
-    /// Goes on by `elapsed_s` seconds, which count from 0, towards the whole effect where it `is_known` how to make it, else
-    /// towards nothing.
+    /// Advances by `elapsed_s` seconds, if positive, towards the whole effect if its inputs are
+    /// known (`is_known`), else towards none.
     pub fn step(&mut self, elapsed_s: f64, is_known: bool) {
         let elapsed_s = elapsed_s.max(0.0);
         let change = if is_known {
@@ -25,7 +25,8 @@ impl Fade {
         self.way = (self.way + change).clamp(0.0, 1.0);
     }
 
-    /// Part of the effect, from 0 to 1, without a kink at either end: for [`FrameInput::effect`](crate::frame::FrameInput).
+    /// Share of the effect, from 0 to 1, smooth at both ends: for
+    /// [`FrameInput::effect`](crate::frame::FrameInput).
     #[must_use]
     pub fn effect(&self) -> f64 {
         self.way * self.way * (3.0 - 2.0 * self.way)

@@ -1,4 +1,4 @@
-//! What a platform's AR session delivers with each camera picture.
+//! The data that a platform's AR session delivers with each camera picture.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use super::display::Display;
 use super::image::CameraImage;
 use crate::scene::{Camera, Intrinsics, LightEstimate};
 
-/// How well the platform follows the camera, and what a person can do about it.
+/// Quality of the platform's camera tracking, with the reason if a person can help.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Tracking {
     /// It has no pose.
@@ -23,11 +23,11 @@ pub enum Tracking {
     TooPlain,
     /// It is too dark.
     TooDark,
-    /// After an interruption the place is looked for.
+    /// It searches for the place after an interruption.
     Relocalising,
 }
 
-/// How a picture was exposed.
+/// The exposure of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposure {
     /// Seconds.
@@ -37,7 +37,7 @@ pub struct Exposure {
 }
 
 impl Exposure {
-    /// Duration times sensitivity, in seconds at ISO 100; none where that is no positive number.
+    /// Duration times sensitivity, in seconds at ISO 100; `None` if that is no positive number.
     #[must_use]
     pub fn amount(&self) -> Option<f64> {
         let amount = self.duration_s * self.iso / 100.0;
@@ -48,56 +48,65 @@ impl Exposure {
 /// A level plane that the platform found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundPlane {
-    /// Its name with the platform, the same from frame to frame.
+    /// The platform's identifier, the same in all frames.
     pub id: u64,
     /// Rigid: local y = 0, its normal along local +Y.
     pub world_from_plane: DMat4,
-    /// It reaches `|x| <= half_extent_m.x`, `|z| <= half_extent_m.y` as far as it was seen.
+    /// Seen extent: `|x| <= half_extent_m.x`, `|z| <= half_extent_m.y`.
     pub half_extent_m: DVec2,
 }
 
-/// A place in the world that the platform was asked to hold, and corrects as it learns.
+/// A place in the world that the platform keeps and corrects at our request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anchor {
-    /// The number that it was asked for by.
+    /// The number of the request.
     pub id: u64,
-    /// Rigid; where it is now.
+    /// Current pose; rigid.
     pub world_from_anchor: DMat4,
 }
 
-/// A camera picture and all that the platform says of it.
+impl Anchor {
+    /// Number of the toy's own anchor, if the platform recognises the toy by a scan. Its axes are
+    /// the scan's.
+    pub const OF_TOY: u64 = u64::MAX;
+}
+
+/// A camera picture and the platform's data about it.
 ///
-/// Pixels count from the top left of the sensor's picture, which is never turned; the world is in metres, +Y up.
+/// Pixels count from the top left of the sensor's picture, which is never turned; the world is in
+/// metres, +Y up.
 #[derive(Clone, Debug)]
 pub struct CameraFrame {
-    /// Which frame it is.
+    /// The time stamp.
     pub stamp: Stamp,
-    /// Milliseconds from the picture until it was delivered; none where no clock tells, see [`Stamp::age_ms`].
+    /// Milliseconds from the picture until its delivery; `None` if no clock measures it, see
+    /// [`Stamp::age_ms`].
     pub age_ms: Option<f64>,
     /// The picture.
     pub image: CameraImage,
-    /// Of this very picture: stabilised lenses move.
+    /// Intrinsics of this very picture: stabilised lenses move.
     pub intrinsics: Intrinsics,
-    /// None where the platform does not say.
+    /// `None` if the platform does not report it.
     pub exposure: Option<Exposure>,
-    /// How well the camera is followed.
+    /// Quality of the tracking.
     pub tracking: Tracking,
-    /// Where the camera was; none where the platform has no pose.
+    /// Pose of the camera; `None` if the platform has none.
     pub world_from_camera: Option<DMat4>,
-    /// Level planes known by now.
+    /// Level planes found so far.
     pub planes: Arc<[FoundPlane]>,
-    /// Anchors that are followed by now.
+    /// Anchors currently tracked.
     pub anchors: Arc<[Anchor]>,
-    /// Where the printed card is, from [card space](crate::card), rigid; none where it is not seen in this picture, or not looked for.
+    /// Pose of the printed card, from [card space](crate::card), rigid; `None` if it is not visible
+    /// in this picture, or not searched for.
     pub world_from_card: Option<DMat4>,
-    /// What the platform estimates of the light.
+    /// The platform's estimate of the light.
     pub light_estimate: Option<LightEstimate>,
-    /// How the picture is to be shown.
+    /// Presentation of the picture.
     pub display: Display,
 }
 
 impl CameraFrame {
-    /// The camera, where its pose can be trusted.
+    /// The camera, if its pose can be trusted.
     #[must_use]
     pub fn camera(&self) -> Option<Camera> {
         let world_from_camera = self.world_from_camera.filter(|pose| pose.is_finite())?;

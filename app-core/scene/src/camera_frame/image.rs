@@ -1,4 +1,4 @@
-//! The camera's picture, in whichever form it comes.
+//! The camera's picture, in either format.
 
 use std::fmt;
 use std::sync::Arc;
@@ -7,12 +7,13 @@ use super::planar_image::PlanarImage;
 use super::planes::half_size_px;
 use crate::scene::Image;
 
-/// A camera's picture. Two are the same one if they share their memory: what is known of it is not worked out again.
+/// A camera's picture. Two are identical if they share their memory: results computed for a picture
+/// are then reused.
 #[derive(Clone)]
 pub enum CameraImage {
-    /// sRGB codes, as recorded sessions have them.
+    /// sRGB codes, as in recorded sessions.
     Rgba(Arc<Image>),
-    /// Luma and chroma, as phones have them; decoded on the device.
+    /// Luma and chroma, as phones deliver them; decoded on the device.
     Planes(Arc<PlanarImage>),
 }
 
@@ -26,7 +27,7 @@ impl CameraImage {
         }
     }
 
-    /// As sRGB codes; planes are decoded at the first call.
+    /// The picture as sRGB codes; planes are decoded at the first call.
     #[must_use]
     pub fn rgba(&self) -> &Arc<Image> {
         match self {
@@ -35,7 +36,8 @@ impl CameraImage {
         }
     }
 
-    /// The same with bytes of its own, for whoever keeps several: a platform has few to lend.
+    /// A copy with its own bytes, for callers that keep several pictures: a platform lends only
+    /// few.
     #[must_use]
     pub fn kept(&self) -> Self {
         match self {
@@ -44,7 +46,7 @@ impl CameraImage {
         }
     }
 
-    /// Whether both are one picture.
+    /// Whether both share their memory.
     pub fn is(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Rgba(one), Self::Rgba(other)) => Arc::ptr_eq(one, other),
@@ -53,7 +55,7 @@ impl CameraImage {
         }
     }
 
-    /// Bytes of it.
+    /// Number of bytes in memory.
     pub fn n_bytes(&self) -> usize {
         match self {
             Self::Rgba(image) => image.rgba8.len(),
@@ -64,7 +66,7 @@ impl CameraImage {
         }
     }
 
-    /// Whether it is of a size, with all of its bytes.
+    /// Whether it has the given size, and all of its bytes.
     pub fn is_of_size(&self, size_px: [u32; 2]) -> bool {
         match self {
             Self::Rgba(image) => image.is_of_size(size_px),

@@ -1,4 +1,4 @@
-//! A camera frame as phones deliver it: planes of luma and chroma, when it was taken, and how it is to be shown.
+//! A camera frame as phones deliver it: planes of luma and chroma, time, and presentation.
 
 mod arrival;
 mod display;

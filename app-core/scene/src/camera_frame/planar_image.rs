@@ -9,28 +9,28 @@ use super::encoding::YcbcrEncoding;
 use super::planes::{PlaneError, Planes, check_size, half_size_px};
 use crate::scene::Image;
 
-/// Planes without padding, the chroma as Cb and Cr by turns, as textures take them.
+/// Planes without padding, with interleaved Cb and Cr, in the layout of textures.
 pub struct PlanarImage {
     size_px: [u32; 2],
     encoding: YcbcrEncoding,
-    /// Luma and chroma; of what was lent, once somebody asks for them.
+    /// Luma and chroma; for a lent picture, copied on demand.
     bytes: OnceLock<[Vec<u8>; 2]>,
     lent: Option<Box<dyn LentPlanes>>,
-    /// Decoded, once somebody asks for it.
+    /// The decoded picture, made on demand.
     rgba: OnceLock<Arc<Image>>,
 }
 
-/// Planes that stay in the platform's memory: passes read them where they lie.
+/// Planes in the platform's memory: passes read them in place.
 ///
-/// They keep the platform's buffer; it is copied only for whoever reads pixels on the processor, as an alignment does about
-/// once a second.
+/// They keep the platform's buffer, which is copied only for callers that read pixels on the
+/// processor, as an alignment does about once a second.
 pub trait LentPlanes: Any + Send + Sync {
-    /// Copies the planes; none if the platform does not let them be read.
+    /// Copies the planes; `None` if the platform does not permit reading them.
     fn read(&self) -> Option<PlanarImage>;
 }
 
 impl PlanarImage {
-    /// Copies `planes`, so that the camera's buffer may be given back.
+    /// Copies `planes`, so that the camera's buffer can be returned.
     ///
     /// # Errors
     /// When they do not hold a picture of their size.
@@ -44,10 +44,10 @@ impl PlanarImage {
         })
     }
 
-    /// A picture that stays where the platform has it.
+    /// A picture in the platform's memory.
     ///
     /// # Errors
-    /// When no picture has that size.
+    /// When the size is invalid.
     pub fn lent(
         size_px: [u32; 2],
         encoding: YcbcrEncoding,
@@ -69,7 +69,7 @@ impl PlanarImage {
         self.size_px
     }
 
-    /// What the codes mean.
+    /// The colour encoding.
     #[must_use]
     pub fn encoding(&self) -> YcbcrEncoding {
         self.encoding
@@ -81,20 +81,20 @@ impl PlanarImage {
         &self.bytes()[0]
     }
 
-    /// Cb and Cr by turns, row by row, of half the size, rounded up.
+    /// Cb and Cr interleaved, row by row, of half the size, rounded up.
     #[must_use]
     pub fn chroma(&self) -> &[u8] {
         &self.bytes()[1]
     }
 
-    /// The planes where the platform has them, if they are lent and of this type.
+    /// The platform's planes, if they are lent and of this type.
     #[must_use]
     pub fn lent_as<T: LentPlanes>(&self) -> Option<&T> {
         let lent: &dyn Any = &**self.lent.as_ref()?;
         lent.downcast_ref()
     }
 
-    /// A copy, where the planes are lent.
+    /// A copy, if the planes are lent.
     pub(super) fn kept(&self) -> Option<Self> {
         self.lent.as_ref().map(|_| Self {
             size_px: self.size_px,
@@ -105,13 +105,15 @@ impl PlanarImage {
         })
     }
 
-    /// As sRGB codes with alpha 255: decoded at the first call, for whoever reads pixels on the processor.
+    /// The picture as sRGB codes with alpha 255: decoded at the first call, for callers that read
+    /// pixels on the processor.
     #[must_use]
     pub fn rgba(&self) -> &Arc<Image> {
         self.rgba.get_or_init(|| Arc::new(self.decode()))
     }
 
-    /// Luma and chroma. What cannot be read, or is of another size, is black: nothing is found in it.
+    /// Luma and chroma. Unreadable planes, or planes of another size, are black: nothing is found
+    /// in them.
     fn bytes(&self) -> &[Vec<u8>; 2] {
         self.bytes.get_or_init(|| {
             let read = self.lent.as_ref().and_then(|lent| lent.read());
@@ -146,7 +148,8 @@ impl PlanarImage {
         }
     }
 
-    /// Chroma in codes at a pixel, bilinear between the four samples around it, and that of the edge beyond it.
+    /// Chroma in codes at a pixel, bilinear between the four samples around it, and clamped at the
+    /// edge.
     fn chroma_at(&self, pixel: [u32; 2]) -> [f32; 2] {
         let [columns, rows] = half_size_px(self.size_px);
         let [across, down] = [(pixel[0], columns), (pixel[1], rows)].map(|(at, n)| neighbours(at, n));
@@ -164,7 +167,8 @@ impl PlanarImage {
     }
 }
 
-/// The chroma sample that a luma sample is of, with three quarters, and that on its other side.
+/// The two chroma samples next to a luma sample: its own with weight three quarters, and its
+/// neighbour.
 fn neighbours(luma: u32, n: u32) -> [(u32, f32); 2] {
     let own = luma / 2;
     let other = if luma.is_multiple_of(2) {

@@ -1,4 +1,5 @@
-//! Planes of luma and chroma, as cameras of phones hand them over: strided, padded, interleaved either way.
+//! Planes of luma and chroma as phones' cameras deliver them: strided, padded, interleaved in
+//! either order.
 
 use thiserror::Error;
 
@@ -7,16 +8,16 @@ use super::encoding::YcbcrEncoding;
 /// One component's bytes in a camera's buffer.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane<'a> {
-    /// From the component's first byte on; they may end with its last, in mid-row.
+    /// Bytes from the component's first on; they may end with its last, within a row.
     pub bytes: &'a [u8],
     /// Bytes from one row to the next.
     pub row_stride: usize,
-    /// Bytes from one sample of a row to the next: 2 where two components are interleaved.
+    /// Bytes from one sample of a row to the next: 2 if two components are interleaved.
     pub pixel_stride: usize,
 }
 
-/// A picture of luma and two chroma components of half its width and height, rounded up (4:2:0). A chroma sample lies
-/// amid its four luma samples, as in JPEG.
+/// A picture of luma and two chroma components of half its width and height, rounded up (4:2:0). A
+/// chroma sample lies in the centre of its four luma samples, as in JPEG.
 #[derive(Clone, Copy, Debug)]
 pub struct Planes<'a> {
     /// Width and height of the luma.
@@ -27,25 +28,25 @@ pub struct Planes<'a> {
     pub blue: Plane<'a>,
     /// Red difference, Cr.
     pub red: Plane<'a>,
-    /// What the codes mean.
+    /// The colour encoding.
     pub encoding: YcbcrEncoding,
 }
 
-/// Planes that do not hold their picture.
+/// Invalid planes.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum PlaneError {
-    /// No pixel, or more than can be.
+    /// The size is zero or above the limit.
     #[error("camera planes: {} x {} px; 1 to 8192 of each are possible", size_px[0], size_px[1])]
     Size {
         /// Width and height.
         size_px: [u32; 2],
     },
-    /// Rows or samples that overlap.
+    /// Rows or samples overlap.
     #[error(
         "camera planes, {plane}: rows {row_stride} and samples {pixel_stride} bytes apart cannot hold {n_columns} samples a row"
     )]
     Stride {
-        /// Which component.
+        /// Name of the component.
         plane: &'static str,
         /// Bytes from row to row.
         row_stride: usize,
@@ -54,22 +55,22 @@ pub enum PlaneError {
         /// Samples in a row.
         n_columns: usize,
     },
-    /// Bytes that end before the last sample.
+    /// The bytes end before the last sample.
     #[error("camera planes, {plane}: {n_bytes} bytes, {n_bytes_needed} are needed")]
     TooShort {
-        /// Which component.
+        /// Name of the component.
         plane: &'static str,
-        /// As given.
+        /// Number of bytes.
         n_bytes: usize,
-        /// Up to the last sample.
+        /// Number of bytes up to the last sample.
         n_bytes_needed: usize,
     },
 }
 
-/// Most pixels along a side.
+/// Largest number of pixels along a side.
 const MAX_SIDE_PX: u32 = 8192;
 
-/// Refuses a size that no picture has.
+/// Refuses an invalid size.
 pub(super) fn check_size(size_px: [u32; 2]) -> Result<(), PlaneError> {
     if size_px.iter().all(|side| (1..=MAX_SIDE_PX).contains(side)) {
         Ok(())
@@ -85,7 +86,7 @@ pub fn half_size_px(size_px: [u32; 2]) -> [u32; 2] {
 }
 
 impl<'a> Planes<'a> {
-    /// Luma, and Cb and Cr by turns, row by row without padding.
+    /// Luma, and interleaved Cb and Cr, row by row without padding.
     pub(super) fn packed(&self) -> Result<[Vec<u8>; 2], PlaneError> {
         check_size(self.size_px)?;
         let size = self.size_px.map(|side| side as usize);
@@ -105,7 +106,7 @@ impl<'a> Planes<'a> {
         Ok([luma, chroma])
     }
 
-    /// Luma, then Cb and Cr by turns: iPhones' planes, and those of many Android phones.
+    /// Luma, then interleaved Cb and Cr: the planes of iPhones, and of many Android phones.
     #[must_use]
     pub fn nv12(
         size_px: [u32; 2],
@@ -123,7 +124,7 @@ impl<'a> Planes<'a> {
         }
     }
 
-    /// Luma, then Cr and Cb by turns: the other Android phones'.
+    /// Luma, then interleaved Cr and Cb: the planes of other Android phones.
     #[must_use]
     pub fn nv21(
         size_px: [u32; 2],
@@ -179,7 +180,7 @@ impl<'a> Plane<'a> {
         }
     }
 
-    /// Whether all samples are there.
+    /// Whether the bytes reach to the last sample.
     fn check(&self, plane: &'static str, [n_columns, n_rows]: [usize; 2]) -> Result<(), PlaneError> {
         let stride = PlaneError::Stride {
             plane,
@@ -210,7 +211,7 @@ impl<'a> Plane<'a> {
         Ok(())
     }
 
-    /// Samples of a row, which `check` has found to be there.
+    /// Samples of a row; `check` has succeeded before.
     fn row(&self, row: usize, n_columns: usize) -> impl Iterator<Item = u8> + 'a {
         let from = self.bytes.get(row * self.row_stride..).unwrap_or_default();
         from.iter().step_by(self.pixel_stride).take(n_columns).copied()

@@ -1,8 +1,9 @@
-//! A card that is printed and laid on the table: something patterned that platforms follow, with a place for the lens of a light
-//! probe.
+//! A card that is printed and laid on the table: a patterned image that platforms track, with a
+//! place for the lens of a light probe.
 //!
-//! Card space is in metres, right-handed, with its origin in the middle of the pattern: +X to the right of the printed page, +Y out of
-//! it, +Z down the page. That is how ARKit and ARCore both place an image that they follow.
+//! Card space is in metres, right-handed, with its origin in the centre of the pattern: +X to the
+//! right of the printed page, +Y out of it, +Z down the page. ARKit and ARCore both use this space
+//! for a tracked image.
 
 mod pattern;
 mod split_mix;
@@ -16,10 +17,10 @@ pub use split_mix::SplitMix;
 
 /// Place for a lens of the size of a bank card, with some room: its corner and its size, from the pattern's corner.
 pub const LENS_M: [DVec2; 2] = [DVec2::new(0.0, 0.158), DVec2::new(0.092, 0.060)];
-/// Of the disc that a lens of that size has room for.
+/// Radius of the largest disc that fits on such a lens.
 const LENS_RADIUS_M: f64 = 0.027;
 
-/// The lens that lies in its place: its facets as steep as the paper takes them, since nobody has calibrated it.
+/// The lens in its place: its facets have the paper's slopes, since it is not calibrated.
 #[must_use]
 pub fn lens_shape() -> ProbeShape {
     ProbeShape::FresnelLens {
@@ -28,7 +29,7 @@ pub fn lens_shape() -> ProbeShape {
     }
 }
 
-/// Where that lens is, rigid.
+/// Pose of that lens, rigid.
 #[must_use]
 pub fn card_from_lens() -> DMat4 {
     let [corner, size] = LENS_M;

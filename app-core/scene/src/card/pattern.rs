@@ -1,35 +1,35 @@
-//! The pattern, one of dead leaves: shapes of many sizes, drawn one over the other in an order by chance, so that there are corners
-//! at every scale. It is the same wherever it is drawn.
+//! The pattern of dead leaves: shapes of many sizes, drawn one over the other in a random order, so
+//! that there are corners at every scale. The generator is deterministic.
 
 use glam::{DMat2, DVec2};
 
 use super::split_mix::SplitMix;
 
-/// Side of the square pattern, which a platform knows as an image of this width.
+/// Side of the square pattern, which is the image width for a platform.
 pub const PATTERN_M: f64 = 0.150;
-/// Pixels along a side of the picture for a platform.
+/// Pixels along a side of the platform's reference image.
 pub const REFERENCE_PX: u32 = 600;
-/// Leaves a square metre, and their radii.
+/// Leaves per square metre, and their radii.
 const LEAVES_PER_M2: f64 = 300_000.0;
 const RADII_M: [f64; 2] = [0.001, 0.005];
-/// What the pattern's leaves are drawn from.
+/// Seed of the pattern.
 pub const SEED: u64 = 13;
-/// The grey of a leaf: far apart, and more black and white than between.
+/// The grey levels of leaves: far apart, with more black and white than others.
 const GRAYS: [u8; 6] = [0, 0, 90, 165, 255, 255];
 
-/// A picture in greys.
+/// A grey picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Gray {
     /// Width and height.
     pub size_px: [u32; 2],
     /// Rows from the top.
     pub codes: Vec<u8>,
-    /// Dots of a metre.
+    /// Dots per metre.
     pub dots_per_m: u32,
 }
 
 impl Gray {
-    /// Nothing on it.
+    /// A white picture.
     #[must_use]
     pub fn white(size_m: DVec2, dots_per_m: u32) -> Self {
         #[allow(clippy::cast_possible_truncation, reason = "some thousand dots")]
@@ -43,7 +43,7 @@ impl Gray {
         }
     }
 
-    /// Fills what is inside of a shape and of a rectangle, both in metres.
+    /// Fills the intersection of a shape and a rectangle, both in metres.
     fn fill(&mut self, [from_m, to_m]: [DVec2; 2], code: u8, is_inside: impl Fn(DVec2) -> bool) {
         let dots_per_m = f64::from(self.dots_per_m);
         let [width, height] = self.size_px;
@@ -65,7 +65,7 @@ impl Gray {
     }
 }
 
-/// The square pattern alone, small, as a platform takes it to know the card by.
+/// The square pattern alone, small, as a platform's reference image of the card.
 #[must_use]
 pub fn reference() -> Gray {
     #[allow(clippy::cast_possible_truncation, reason = "4000")]
@@ -79,14 +79,15 @@ pub fn reference() -> Gray {
     pattern
 }
 
-/// Leaves over a rectangle: corner and size.
+/// Draws leaves over a rectangle: corner and size.
 pub fn leaves(gray: &mut Gray, [at, size_m]: [DVec2; 2], random: &mut SplitMix) {
     let area = [at, at + size_m];
     #[allow(clippy::cast_possible_truncation, reason = "some thousand")]
     let n = (LEAVES_PER_M2 * size_m.x * size_m.y) as usize;
     for _ in 0..n {
         let center = at + DVec2::new(random.uniform(), random.uniform()) * size_m;
-        // As many of each size for what they cover: radii as one over their cube. Source: Lee, Mumford and Huang 2001.
+        // Radii are distributed as one over their cube, so that all sizes cover equal areas.
+        // Source: Lee, Mumford and Huang 2001.
         let [small, large] = RADII_M.map(|radius| radius.powi(-2));
         let radius = (large + (small - large) * random.uniform()).powf(-0.5);
         let turn = DMat2::from_angle(std::f64::consts::TAU * random.uniform());

@@ -1,19 +1,19 @@
-//! Numbers by chance that are the same wherever they are drawn.
+//! A deterministic random number generator.
 
-/// Draws from one seed, always the same ones. Source: Steele, Lea and Flood 2014 (SplitMix).
+/// Random numbers from a seed. Source: Steele, Lea and Flood 2014 (SplitMix).
 #[derive(Clone, Debug)]
 pub struct SplitMix {
     state: u64,
 }
 
 impl SplitMix {
-    /// From a seed.
+    /// A generator with a seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    /// From 0 to 1, without 0.
+    /// A number from 0 to 1, without 0.
     pub fn uniform(&mut self) -> f64 {
         self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.state;

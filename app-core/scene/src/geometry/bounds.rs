@@ -1,8 +1,8 @@
-//! Boxes and balls around points.
+//! Bounding boxes and bounding spheres of points.
 
 use glam::{DMat4, DVec3, DVec4, Vec3, Vec4Swizzles};
 
-/// A box in a space of metres.
+/// A box, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Smallest coordinates.
@@ -23,13 +23,13 @@ impl Bounds {
         })
     }
 
-    /// The middle of the box.
+    /// The centre of the box.
     #[must_use]
     pub fn centre(&self) -> DVec3 {
         0.5 * (self.min + self.max)
     }
 
-    /// The box around points; inside out when there is none.
+    /// The box around points; inverted if there is none.
     #[must_use]
     pub fn around(points: impl Iterator<Item = DVec3>) -> Self {
         let nothing = Self {
@@ -49,17 +49,17 @@ impl Bounds {
     }
 }
 
-/// A ball around all of a posed toy, in anchor space.
+/// A bounding sphere of a posed toy, in anchor space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// Its middle.
+    /// Its centre.
     pub centre: DVec3,
     /// In metres.
     pub radius_m: f64,
 }
 
 impl Sphere {
-    /// The ball around the middle of the points' bounding box; of no size without any point.
+    /// The sphere around the centre of the points' bounding box; of radius 0 without points.
     #[must_use]
     pub fn around(points: &[Vec3]) -> Self {
         let low = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
@@ -72,7 +72,7 @@ impl Sphere {
         }
     }
 
-    /// Whether a homogeneous light point is within; a direction never is.
+    /// Whether a homogeneous light point is inside; a direction never is.
     #[must_use]
     pub fn holds(&self, light_point: DVec4) -> bool {
         light_point.w != 0.0 && light_point.xyz().distance(self.centre) <= self.radius_m

@@ -1,4 +1,4 @@
-//! The transfer function of pictures.
+//! The transfer function of sRGB.
 
 /// Encodes a linear value in [0, 1]. Source: IEC 61966-2-1.
 #[must_use]
@@ -20,7 +20,7 @@ pub fn linear_from_srgb(encoded: f32) -> f32 {
     }
 }
 
-/// The code of 8 bits that is nearest to linear light; what is brighter than white is white.
+/// The code of 8 bits nearest to linear light; light brighter than white becomes white.
 #[must_use]
 #[allow(
     clippy::cast_possible_truncation,
@@ -31,8 +31,8 @@ pub fn code_of_linear(linear: f32) -> u8 {
     (255.0 * srgb_from_linear(linear.clamp(0.0, 1.0))).round() as u8
 }
 
-/// How much more linear light there is for each unit of the encoded value, at a linear value in [0, 1]: the derivative of
-/// [`linear_from_srgb`].
+/// The derivative of [`linear_from_srgb`] at a linear value in [0, 1]: linear light per unit of the
+/// encoded value.
 #[must_use]
 pub fn linear_per_srgb(linear: f32) -> f32 {
     if linear <= 0.003_130_8 {

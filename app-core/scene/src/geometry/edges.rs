@@ -2,15 +2,15 @@
 
 use std::collections::BTreeMap;
 
-/// An edge, with all triangles that have it.
+/// An edge, with all triangles around it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
     /// Its ends, lower index first.
     pub ends: [u32; 2],
-    /// The triangle that passes it from the lower to the higher index, and the one that passes it the other way; none if there are
-    /// not one of each.
+    /// The triangle that passes it from the lower to the higher index, and the one that passes it
+    /// the other way; `None` if there is not exactly one of each.
     pub beside: Option<[u32; 2]>,
-    /// Whether it is not passed as often one way as the other.
+    /// Whether it is passed more often in one direction than in the other.
     pub is_border: bool,
 }
 
@@ -36,11 +36,11 @@ pub fn edges(triangles: &[[u32; 3]]) -> Vec<Edge> {
     edges.collect()
 }
 
-/// Triangles, and edges with at most two of them beside each: an edge of more stands there several times, so that a mesh of which only
-/// some triangles are seen has an outline that is closed.
+/// Triangles, and edges with at most two triangles each: an edge of more triangles is listed
+/// several times, so that the outline of a partly visible mesh is closed.
 #[derive(Clone, Debug, Default)]
 pub struct Faces {
-    /// Corners, counter-clockwise seen from outside.
+    /// Corners, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Its edges.
     pub edges: Vec<PairedEdge>,
@@ -49,20 +49,21 @@ pub struct Faces {
 /// An edge of one or two triangles.
 #[derive(Clone, Copy, Debug)]
 pub struct PairedEdge {
-    /// In the order in which the first of the triangles has them.
+    /// Ends, in the order of the first triangle.
     pub corners: [u32; 2],
-    /// Indices of the triangle that has the corners in this order, and of the one that has them the other way round; where there is
-    /// none, the number of triangles.
+    /// Indices of the triangle that passes the edge in this order, and of the one that passes it
+    /// the other way; the number of triangles in place of a missing one.
     pub sides: [u32; 2],
 }
 
 impl Faces {
-    /// Pairs the edges: as many as can be, but none of a triangle with that of its own other side, which is never seen beside it.
+    /// Pairs as many edges as possible, but none of a triangle with its own back side, since both
+    /// are never seen together.
     pub fn new(triangles: Vec<[u32; 3]>) -> Self {
         #[allow(clippy::cast_possible_truncation, reason = "a toy has far fewer")]
         let none = triangles.len() as u32;
         let mut edges: Vec<PairedEdge> = Vec::with_capacity(2 * triangles.len());
-        // Places of edges that have one side, by their corners, with the corner opposite.
+        // Positions of edges with one side, by their ends, with the opposite corner.
         let mut open: BTreeMap<[u32; 2], Vec<(usize, u32)>> = BTreeMap::new();
         for (index, [a, b, c]) in (0..).zip(&triangles) {
             for [from, to, opposite] in [[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]] {

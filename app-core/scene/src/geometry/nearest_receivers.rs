@@ -1,4 +1,4 @@
-//! Which receivers matter most to a toy.
+//! The order of receivers by their distance from a toy.
 
 use std::cmp::Ordering;
 
@@ -6,7 +6,8 @@ use glam::{DVec2, DVec3};
 
 use crate::scene::Receiver;
 
-/// Indices of receivers, from the one nearest to any of `points_in_world`. In which order they are listed makes no difference.
+/// Indices of receivers, the one nearest to any of `points_in_world` first. The result does not
+/// depend on their order in the list.
 pub fn nearest_receivers(receivers: &[Receiver], points_in_world: &[DVec3]) -> Vec<usize> {
     let ranks: Vec<Vec<f64>> = receivers
         .iter()
@@ -20,7 +21,7 @@ pub fn nearest_receivers(receivers: &[Receiver], points_in_world: &[DVec3]) -> V
     indices
 }
 
-/// How far a receiver is, in metres, and of several as far something that tells them apart.
+/// Sort key of a receiver: its distance in metres, and further numbers that break ties.
 fn rank(receiver: &Receiver, points_in_world: &[DVec3]) -> Vec<f64> {
     let plane_from_world = receiver.world_from_plane.inverse();
     let distance_m = |point: &DVec3| {

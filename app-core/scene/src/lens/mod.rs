@@ -1,8 +1,8 @@
-//! A lens that bends straight lines: photographs through it are made those of a pinhole, and what was made of them is put back.
+//! Lens distortion: photographs are undistorted to a pinhole's, and results are distorted back.
 //!
-//! All passes are of a pinhole camera. So a photograph is resampled to what a pinhole of the same intrinsics would have
-//! seen, and of the finished picture only what **changed** is resampled back onto the photograph: what the toy and its shadow do not
-//! touch stays as the camera gave it, code by code.
+//! All passes assume a pinhole camera. So a photograph is resampled to the picture of a pinhole
+//! with the same intrinsics, and of the finished picture only the **changes** are resampled back
+//! onto the photograph: pixels that toy and shadow do not touch keep the camera's codes.
 
 mod resample;
 
@@ -15,31 +15,33 @@ use crate::scene::{FieldError, Image, Intrinsics};
 
 pub use resample::resampled;
 
-/// Coefficients of any real lens, and far more.
+/// Coefficients of any real lens, with a wide margin.
 pub const COEFFICIENT: RangeInclusive<f64> = -10.0..=10.0;
-/// A lens must go outwards as far beyond the farthest corner, in parts of its distance from the principal point.
+/// The radial map must increase up to this multiple of the farthest corner's distance from the
+/// principal point.
 const BEYOND: f64 = 1.5;
-/// Steps of Newton's method, and the last of them over the radius.
+/// Steps of Newton's method, and the relative size of the last step.
 const N_STEPS: usize = 30;
 const LAST_STEP: f64 = 1e-13;
 
 /// Radial distortion (Brown 1966), two terms.
 ///
-/// At the place `(x, y) = ((u - cx) / fx, (v - cy) / fy)` of a pinhole's picture, with `r2 = x x + y y`, is seen what the photograph
-/// has at `(1 + k1 r2 + k2 r2 r2) (x, y)`. Negative is a barrel, positive a cushion.
+/// The pinhole's point `(x, y) = ((u - cx) / fx, (v - cy) / fy)`, with `r2 = x x + y y`, is at `(1
+/// + k1 r2 + k2 r2 r2) (x, y)` in the photograph. Negative coefficients are a barrel, positive ones
+/// a pincushion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Distortion {
-    /// Of `r2`.
+    /// Coefficient of `r2`.
     pub k1: f64,
-    /// Of `r2 r2`.
+    /// Coefficient of `r2 r2`.
     pub k2: f64,
 }
 
 impl Distortion {
-    /// That of a pinhole.
+    /// No distortion: a pinhole.
     pub const NONE: Self = Self { k1: 0.0, k2: 0.0 };
 
-    /// Refuses a lens that shows two places of a picture's field of view at one.
+    /// Refuses a lens that maps two places of a picture's field of view to one.
     pub(crate) fn check(&self, intrinsics: &Intrinsics, size_px: [u32; 2]) -> Result<(), FieldError> {
         let Intrinsics {
             fx_px,
@@ -51,7 +53,7 @@ impl Distortion {
         let farthest_x = cx_px.abs().max((right - cx_px).abs()) / fx_px;
         let farthest_y = cy_px.abs().max((bottom - cy_px).abs()) / fy_px;
         let most2 = (BEYOND * BEYOND) * farthest_x.mul_add(farthest_x, farthest_y * farthest_y);
-        // A parabola in r2 is least at an end or at its vertex.
+        // The minimum of a parabola in r2 is at an end or at its vertex.
         let slope = |r2: f64| 1.0 + r2 * (3.0 * self.k1 + 5.0 * self.k2 * r2);
         let vertex2 = if self.k2 > 0.0 {
             (-0.3 * self.k1 / self.k2).clamp(0.0, most2)
@@ -70,14 +72,14 @@ impl Distortion {
         1.0 + r2 * (self.k1 + self.k2 * r2)
     }
 
-    /// Where the photograph has what a pinhole sees at a place, both in pixels.
+    /// The photograph's image of a pinhole's point, both in pixels.
     fn distorted(&self, intrinsics: &Intrinsics, at_px: DVec2) -> DVec2 {
         let [centre, focal] = centre_and_focal(intrinsics);
         let slope = (at_px - centre) / focal;
         centre + focal * slope * self.factor(slope.length_squared())
     }
 
-    /// Where a pinhole sees what the photograph has at a place, both in pixels; of a lens that was checked.
+    /// The pinhole's image of a photograph's point, both in pixels; for a checked lens.
     fn undistorted(&self, intrinsics: &Intrinsics, at_px: DVec2) -> DVec2 {
         let [centre, focal] = centre_and_focal(intrinsics);
         let slope = (at_px - centre) / focal;
@@ -106,7 +108,7 @@ fn centre_and_focal(intrinsics: &Intrinsics) -> [DVec2; 2] {
     ]
 }
 
-/// A lens with the intrinsics of a camera, for which it was checked.
+/// A lens with the intrinsics for which it was checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
     distortion: Distortion,
@@ -114,7 +116,7 @@ pub struct Lens {
 }
 
 impl Lens {
-    /// Refuses one that folds pictures of a size.
+    /// Refuses a lens that folds pictures of the given size.
     pub fn new(
         distortion: Distortion,
         intrinsics: &Intrinsics,
@@ -127,21 +129,22 @@ impl Lens {
         })
     }
 
-    /// What a pinhole would have seen, of the photograph's size and intrinsics. Beside the photograph its border goes on.
+    /// The picture of a pinhole with the photograph's size and intrinsics. The photograph's border
+    /// pixels are repeated outside.
     pub fn to_pinhole(self, photograph: &Image) -> Image {
         resampled(photograph, |at_px| {
             self.distortion.distorted(&self.intrinsics, at_px)
         })
     }
 
-    /// A map of what a pinhole sees, as the lens shows it: each pixel is one of the map's, and none, all zero, where the pinhole does not
-    /// reach. All four channels are taken as they are.
+    /// Distorts a map of the pinhole's picture: each pixel is one of the map's, or all zero outside
+    /// of the pinhole's picture. All four channels are copied unchanged.
     pub fn of_map(self, map: &Image) -> Image {
         resample::nearest(map, |at_px| self.distortion.undistorted(&self.intrinsics, at_px))
     }
 
-    /// The photograph with what was changed in its [`Self::to_pinhole`]: all three of one size. Where nothing changed it is as it was,
-    /// code by code; so it is where the pinhole does not reach.
+    /// The photograph with the changes of its [`Self::to_pinhole`]: all three of one size.
+    /// Unchanged pixels, and pixels outside of the pinhole's picture, keep their codes.
     pub fn with_changes(self, photograph: &Image, [before, after]: [&Image; 2]) -> Image {
         resample::with_changes(photograph, [before, after], |at_px| {
             self.distortion.undistorted(&self.intrinsics, at_px)

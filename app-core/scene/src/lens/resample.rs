@@ -1,22 +1,23 @@
-//! Pictures sampled elsewhere than at their pixels' centres, in linear light.
+//! Resampling of pictures in linear light.
 
 use glam::DVec2;
 
 use crate::geometry::color::{code_of_linear, linear_of_codes};
 use crate::scene::Image;
 
-/// Pixels a side of what is summed for one.
+/// Side of the square of pixels in a sample's sum.
 const SIDE: usize = 4;
-/// Change of light, over the larger of both values, from which another surface may be seen.
+/// Relative change of light above which another surface may be visible.
 const ANOTHER_SURFACE: f32 = 0.25;
 
-/// Where each pixel of a picture comes from, rows from the top.
+/// The centre of each pixel of a picture, rows from the top.
 fn places(image: &Image) -> impl Iterator<Item = DVec2> {
     let (width, height) = (image.width_px, image.height_px);
     (0..height).flat_map(move |y| (0..width).map(move |x| DVec2::new(f64::from(x), f64::from(y)) + 0.5))
 }
 
-/// The picture with each pixel as it is at `from`, in pixels of the same picture. Beside it its border goes on.
+/// Resamples the picture at `from` of each pixel, in pixels of the same picture. Border pixels are
+/// repeated outside.
 pub fn resampled(image: &Image, from: impl Fn(DVec2) -> DVec2) -> Image {
     let linear = linear_of_codes();
     let mut rgba8 = Vec::with_capacity(image.rgba8.len());
@@ -28,7 +29,8 @@ pub fn resampled(image: &Image, from: impl Fn(DVec2) -> DVec2) -> Image {
     Image { rgba8, ..*image }
 }
 
-/// The picture with each pixel the one at `from`, in pixels of the same picture; all zero where that is beside it.
+/// The picture with each pixel the nearest one at `from`, in pixels of the same picture; all zero
+/// outside.
 pub(super) fn nearest(image: &Image, from: impl Fn(DVec2) -> DVec2) -> Image {
     let size = DVec2::new(f64::from(image.width_px), f64::from(image.height_px));
     let pixels = places(image).map(|place| {
@@ -44,7 +46,7 @@ pub(super) fn nearest(image: &Image, from: impl Fn(DVec2) -> DVec2) -> Image {
     Image { rgba8, ..*image }
 }
 
-/// The photograph with what differs between two pictures, each pixel's at `from`, in pixels of theirs.
+/// The photograph with the difference of two pictures, resampled at `from` of each pixel.
 pub(super) fn with_changes(
     photograph: &Image,
     [before, after]: [&Image; 2],
@@ -67,8 +69,9 @@ pub(super) fn with_changes(
     made
 }
 
-/// How much of what resampling loses is kept, by how much the light of its channels changed: all where nothing changed, and none where
-/// another surface may be seen, on which it would draw the outline of the one before.
+/// The share of the resampling loss that is restored, by the change of light in the channels: all
+/// of it for unchanged pixels, and nothing if another surface may be visible, on which it would
+/// draw the old surface's outline.
 fn kept(was: [f32; 3], is: [f32; 3]) -> f32 {
     let change = |channel: usize| {
         let most = was[channel].max(is[channel]);
@@ -82,7 +85,8 @@ fn kept(was: [f32; 3], is: [f32; 3]) -> f32 {
     (1.0 - most / ANOTHER_SURFACE).max(0.0)
 }
 
-/// Pixels around a place and their weights: cubic convolution (Keys 1981, a = -1/2), the picture's border going on outside.
+/// The pixels around a place and their weights: cubic convolution (Keys 1981, a = -1/2), with
+/// repeated border pixels.
 struct Around {
     columns: [(usize, f32); SIDE],
     rows: [(usize, f32); SIDE],

@@ -11,13 +11,13 @@ use thiserror::Error;
 use super::{Camera, Intrinsics};
 use crate::words::Number;
 
-/// A value that is refused, and the path of its field.
+/// A refused value, and the path of its field.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{field}: {reason}")]
 pub struct InputError {
     /// Path of the field, as in `receivers[1].half_extent_m`.
     pub field: String,
-    /// Why it is refused.
+    /// The reason.
     pub reason: FieldError,
 }
 
@@ -31,7 +31,7 @@ impl InputError {
     }
 }
 
-/// Why the value of a field is refused.
+/// The reason why the value of a field is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FieldError {
@@ -63,16 +63,16 @@ pub enum FieldError {
     /// A list that needs an entry.
     #[error("the list is empty, but needs at least one entry")]
     Empty,
-    /// A list with more entries than are handled.
-    #[error("the list has {n} entries, but at most {max} are handled")]
+    /// A list with more entries than the limit.
+    #[error("the list has {n} entries, but the limit is {max}")]
     TooMany {
         /// Its length.
         n: usize,
-        /// Longest that is handled.
+        /// The limit.
         max: usize,
     },
-    /// A field that this kind of entry needs.
-    #[error("missing, but needed for this kind")]
+    /// A field that is required for this kind of entry.
+    #[error("missing, but required for this kind")]
     Missing,
     /// A vector without a direction.
     #[error("the vector is too short to have a direction")]
@@ -83,15 +83,13 @@ pub enum FieldError {
     /// A list whose entries are not in their order.
     #[error("it is not above that of the entry before")]
     Unordered,
-    /// A lens that shows two places at one.
-    #[error(
-        "the lens folds the picture: with growing distance from its middle, places must stay in their order"
-    )]
+    /// A lens that maps two places to one.
+    #[error("the lens folds the picture: with growing distance from its centre, places must stay in order")]
     Folds,
     /// A matrix whose last row is not 0 0 0 1.
     #[error("the matrix is not affine: its last row must be 0 0 0 1 (numbers are column-major)")]
     NotAffine,
-    /// A matrix that does more than rotate and move.
+    /// A matrix that is more than rotation and translation.
     #[error("the matrix is not rigid: its axes must be of length 1 and at right angles")]
     NotRigid,
     /// A matrix that stretches or shears.
@@ -100,7 +98,7 @@ pub enum FieldError {
     /// A matrix that swaps handedness.
     #[error("the matrix mirrors: its axes must be right-handed")]
     Mirrored,
-    /// A picture of more pixels than a camera of a phone has.
+    /// A picture with more pixels than phones' cameras have.
     #[error("{width_px} x {height_px} px are more than the {max_pixels} pixels that a picture may have")]
     PictureTooLarge {
         /// Columns.
@@ -118,57 +116,58 @@ pub enum FieldError {
     },
 }
 
-/// Distances and coordinates, in metres.
+/// Range of distances and coordinates, in metres.
 pub const COORDINATE_M: RangeInclusive<f64> = -1e6..=1e6;
-/// Lengths of things that must have an extent, in metres.
+/// Range of lengths that must be positive, in metres.
 pub const EXTENT_M: RangeInclusive<f64> = 1e-6..=1e6;
-/// Lengths of things that may be points, in metres.
+/// Range of lengths that may be zero, in metres.
 pub const RADIUS_M: RangeInclusive<f64> = 0.0..=1e9;
-/// Coordinates of lights, in metres: beyond the moon.
+/// Range of lights' coordinates, in metres: beyond the moon.
 pub const LIGHT_M: RangeInclusive<f64> = -1e9..=1e9;
-/// Pixels of one picture: a still of 4096 x 3072, larger than those of the cameras that track, which give at most
-/// 4032 x 3024. Maps of the whole picture take some 140 bytes a pixel.
+/// Limit for the pixels of one picture: a still of 4096 x 3072, larger than the pictures of
+/// tracking cameras, which have at most 4032 x 3024. Maps of the whole picture take some 140 bytes
+/// per pixel.
 pub const MAX_PICTURE_PIXELS: u64 = 4096 * 3072;
-/// Width and height of a session's pictures, in pixels.
+/// Range of the width and height of a session's pictures, in pixels.
 pub const SIDE_PX: RangeInclusive<f64> = 1.0..=16384.0;
-/// Focal lengths, in pixels.
+/// Range of focal lengths, in pixels.
 pub const FOCAL_PX: RangeInclusive<f64> = 1e-3..=1e6;
-/// Positions in a picture or beside it, in pixels.
+/// Range of positions in a picture or beside it, in pixels.
 pub const POSITION_PX: RangeInclusive<f64> = -1e6..=1e6;
-/// Times of frames, in seconds: three hundred years either way.
+/// Range of frames' times, in seconds: three hundred years in both directions.
 pub const TIME_SECS: RangeInclusive<f64> = -1e10..=1e10;
-/// Times within a clip, in seconds.
+/// Range of times within a clip, in seconds.
 pub const CLIP_TIME_SECS: RangeInclusive<f64> = 0.0..=1e10;
-/// Half the angle of a light's disc, in degrees: less than half the sky.
+/// Range of a light's angular radius, in degrees: less than half the sky.
 pub const ANGULAR_RADIUS_DEG: RangeInclusive<f64> = 0.0..=89.999;
-/// Exposures of pictures, relative to one that is the same for all of a scene.
+/// Range of pictures' exposures, relative to a reference common to all of a scene.
 pub const EXPOSURE: RangeInclusive<f64> = 1e-9..=1e9;
-/// Exposure of a darker picture over that of a frame.
+/// Range of a darker picture's exposure over that of a frame.
 pub const EXPOSURE_RATIO: RangeInclusive<f64> = 1e-6..=1.0;
-/// Distance of a facet from its lens's axis, over the lens's radius.
+/// Range of a facet's distance from its lens's axis, over the lens's radius.
 pub const OF_RADIUS: RangeInclusive<f64> = 1e-6..=1.0;
-/// Slopes of facets, in degrees: less than a right angle.
+/// Range of facets' slopes, in degrees: less than a right angle.
 pub const SLOPE_DEG: RangeInclusive<f64> = 0.0..=89.9;
-/// Intensities of light, in whatever unit.
+/// Range of light intensities, in any unit.
 pub const INTENSITY: RangeInclusive<f64> = 0.0..=1e9;
-/// Coefficients of radiance.
+/// Range of radiance coefficients.
 pub const HARMONIC: RangeInclusive<f64> = -1e9..=1e9;
-/// Colour temperatures, in kelvin.
+/// Range of colour temperatures, in kelvin.
 pub const KELVIN: RangeInclusive<f64> = 100.0..=1e6;
-/// How far a place may be off, in metres; an angle, in radians and degrees; a length, as a ratio.
+/// Range of a place's uncertainty, in metres.
 pub const UNCERTAINTY_M: RangeInclusive<f64> = 0.0..=1e6;
 pub(crate) const UNCERTAINTY_RAD: RangeInclusive<f64> = 0.0..=std::f64::consts::PI;
-/// Degrees that a direction may be said to be off.
+/// Range of a direction's uncertainty, in degrees.
 pub const UNCERTAINTY_DEG: RangeInclusive<f64> = 0.0..=180.0;
-/// Factors that a distance or a size may be said to be off.
+/// Range of a distance's or a size's uncertainty, as a factor.
 pub const UNCERTAINTY_RATIO: RangeInclusive<f64> = 1.0..=1e3;
 const SCALE: RangeInclusive<f64> = 1e-6..=1e6;
 
-/// How far a rotation's axes may be from unit length and right angles: what rounding to a few
-/// digits does, and not what a wrong convention does.
+/// Largest deviation of a rotation's axes from unit length and right angles: enough for numbers
+/// rounded to a few digits, but not for a wrong convention.
 const AXES_TOLERANCE: f64 = 1e-3;
 
-/// A number within a range, ends included. Infinities and NaN never are.
+/// A number within a range, ends included. Infinities and NaN are refused.
 pub fn number(value: f64, range: &RangeInclusive<f64>) -> Result<f64, FieldError> {
     if range.contains(&value) {
         Ok(value)
@@ -202,7 +201,7 @@ pub fn picture_size(width_px: u32, height_px: u32) -> Result<(), FieldError> {
     Ok(())
 }
 
-/// A list of a length that is handled.
+/// Refuses a list longer than the limit.
 pub fn at_most(n: usize, max: usize) -> Result<(), FieldError> {
     if n <= max {
         Ok(())
@@ -227,7 +226,7 @@ pub fn light_position(numbers: [f64; 3]) -> Result<DVec3, FieldError> {
     Ok(DVec3::from_array(numbers))
 }
 
-/// A direction of any length, made a unit vector.
+/// A direction of any length, normalised.
 pub fn direction(numbers: [f64; 3]) -> Result<DVec3, FieldError> {
     let vector = point(numbers)?;
     if vector.length() < 1e-9 {
@@ -236,7 +235,7 @@ pub fn direction(numbers: [f64; 3]) -> Result<DVec3, FieldError> {
     vector.try_normalize().ok_or(FieldError::NoDirection)
 }
 
-/// A transform that only rotates and moves.
+/// A transform that only rotates and translates.
 pub fn rigid(column_major: [f64; 16]) -> Result<DMat4, FieldError> {
     let matrix = affine(column_major)?;
     let axes = DMat3::from_mat4(matrix);
@@ -249,7 +248,7 @@ pub fn rigid(column_major: [f64; 16]) -> Result<DMat4, FieldError> {
     Ok(matrix)
 }
 
-/// A transform that rotates, moves and scales all axes alike.
+/// A transform that rotates, translates and scales all axes equally.
 pub fn similarity(column_major: [f64; 16]) -> Result<DMat4, FieldError> {
     let matrix = affine(column_major)?;
     let axes = DMat3::from_mat4(matrix);

@@ -1,4 +1,4 @@
-//! The lights that a scene lists, and all that follows from their kind.
+//! The lights that a scene lists, and all properties that depend on their kind.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec4};
 use serde::Serialize;
@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::check::{self, InputError};
 use crate::geometry::disc::vogel_disc;
 
-/// A light whose direct shadow is moved.
+/// A light whose direct shadow is retargeted.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Light {
@@ -17,11 +17,11 @@ pub enum Light {
         /// Radius of the bulb, zero or more.
         radius_m: f64,
     },
-    /// A light too far away for its distance to matter.
+    /// A light at infinity.
     Directional {
         /// Unit vector from the scene towards the light.
         direction_to_light_in_world: DVec3,
-        /// Half the angle that the light's disc fills, from 0 to just under 90 degrees.
+        /// Angular radius of the light's disc, from 0 to just under 90 degrees.
         angular_radius_rad: f64,
     },
 }
@@ -36,7 +36,7 @@ impl Light {
         }
     }
 
-    /// A far light, by the unit vector towards it and half the angle that it fills.
+    /// A light at infinity, from the unit vector towards it and its angular radius.
     #[must_use]
     pub const fn directional(direction_to_light_in_world: DVec3, angular_radius_rad: f64) -> Self {
         Self::Directional {
@@ -70,7 +70,7 @@ impl Light {
         Ok(())
     }
 
-    /// The same light elsewhere: its centre, or the direction to it, is what the one or the other function returns.
+    /// The same light at another place: the functions map its centre, or the direction to it.
     #[must_use]
     pub fn map(&self, position: impl FnOnce(DVec3) -> DVec3, direction: impl FnOnce(DVec3) -> DVec3) -> Self {
         match *self {
@@ -94,7 +94,7 @@ impl Light {
         )
     }
 
-    /// Centre of the light, in metres; none if it is too far away for that to matter.
+    /// Centre of the light, in metres; `None` for a light at infinity.
     #[must_use]
     pub fn position_in_world(&self) -> Option<DVec3> {
         match *self {
@@ -117,7 +117,8 @@ impl Light {
         self.centre_in(plane_from_world).y > 0.0
     }
 
-    /// Radius in metres of a bulb, slope of the rim of a far light: radius over distance of its disc.
+    /// Radius in metres of a bulb, or slope of the rim of a light at infinity: radius over distance
+    /// of its disc.
     #[must_use]
     pub fn radius(&self) -> f64 {
         match *self {
@@ -128,8 +129,8 @@ impl Light {
         }
     }
 
-    /// The same light so many times as wide, as seen from a place in the world: the slope of its rim is so many times as large. One that
-    /// the place is within stays as it is.
+    /// The light with its rim's slope times `factor`, as seen from a place in the world. A light
+    /// around that place stays the same.
     #[must_use]
     pub fn widened(&self, place_in_world: DVec3, factor: f64) -> Self {
         let Some(slope) = self.slope_from(place_in_world) else {
@@ -150,7 +151,8 @@ impl Light {
         }
     }
 
-    /// Vector from a place in the world to the light's centre, in metres, or the unit vector to a far light.
+    /// Vector from a place in the world to the light's centre, in metres, or the unit vector to a
+    /// light at infinity.
     #[must_use]
     pub fn vector_from(&self, place_in_world: DVec3) -> DVec3 {
         let centre = self.centre();
@@ -161,7 +163,7 @@ impl Light {
         }
     }
 
-    /// Unit vector from a place in the world to the light; none at its centre.
+    /// Unit vector from a place in the world to the light; `None` at its centre.
     #[must_use]
     pub fn direction_from(&self, place_in_world: DVec3) -> Option<DVec3> {
         match *self {
@@ -173,14 +175,16 @@ impl Light {
         }
     }
 
-    /// Distance of the light's centre from a place in the world, in metres; none of a far light.
+    /// Distance of the light's centre from a place in the world, in metres; `None` for a light at
+    /// infinity.
     #[must_use]
     pub fn distance_m_from(&self, place_in_world: DVec3) -> Option<f64> {
         let position = self.position_in_world()?;
         Some((position - place_in_world).length())
     }
 
-    /// Half the angle that the light fills as seen from a place in the world, in radians; a right angle from within.
+    /// Angular radius of the light as seen from a place in the world, in radians; a right angle
+    /// from inside.
     #[must_use]
     pub fn angular_radius_rad_from(&self, place_in_world: DVec3) -> f64 {
         match *self {
@@ -197,7 +201,8 @@ impl Light {
         }
     }
 
-    /// Slope of the light's rim as seen from a place in the world: radius over distance of its outline; none from within.
+    /// Slope of the light's rim as seen from a place in the world: radius over distance of its
+    /// outline; `None` from inside.
     #[must_use]
     pub fn slope_from(&self, place_in_world: DVec3) -> Option<f64> {
         let radius = self.radius();
@@ -228,7 +233,7 @@ impl Light {
         [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(x, y)| disc.point(DVec2::new(x, y)))
     }
 
-    /// (position, 1) or (unit direction to the light, 0).
+    /// The centre, homogeneous: (position, 1) or (unit direction to the light, 0).
     fn centre(&self) -> DVec4 {
         match *self {
             Self::Sphere {
@@ -247,7 +252,7 @@ impl Light {
         let radius = distance_m.map_or(self.radius(), |distance_m| {
             outline_radius_m(self.radius(), distance_m)
         });
-        // A light inside the toy has no side that faces it; any disc will do.
+        // For a light inside the toy, any disc will do.
         let (across, along) = axis.try_normalize().unwrap_or(DVec3::Y).any_orthonormal_pair();
         Disc {
             centre: self.centre(),
@@ -265,7 +270,7 @@ struct Disc {
 }
 
 impl Disc {
-    /// `at` is on the unit disc.
+    /// The point at `at` on the unit disc.
     fn point(&self, at: DVec2) -> DVec4 {
         let moved = self.centre.truncate() + at.x * self.across + at.y * self.along;
         let point = if self.centre.w == 0.0 {
@@ -277,8 +282,9 @@ impl Disc {
     }
 }
 
-/// Radius of a sphere's outline, seen from `distance_m`, on the plane through its centre across the line of sight: rays touch the
-/// sphere before they meet the plane. From within there is no outline, and any disc will do.
+/// Radius of a sphere's outline, seen from `distance_m`, on the plane through its centre across the
+/// line of sight: rays touch the sphere before they meet the plane. From inside there is no
+/// outline, and any disc will do.
 fn outline_radius_m(radius_m: f64, distance_m: f64) -> f64 {
     let tangent_m = (distance_m * distance_m - radius_m * radius_m).sqrt();
     if tangent_m > 0.0 {

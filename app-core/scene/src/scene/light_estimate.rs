@@ -1,38 +1,44 @@
-//! What a phone's platform estimates of the light.
+//! A phone platform's estimate of the light.
 
 use glam::DVec3;
 
 use super::check::{self, InputError};
 
-/// Numbers of a spherical harmonic's expansion up to the second degree, with three channels each.
+/// Number of spherical harmonics' coefficients up to the second degree, for three channels.
 pub const N_HARMONICS: usize = 27;
-/// Weight of the channels in luminance. Source: ITU-R BT.709.
+/// Weights of the channels in luminance. Source: ITU-R BT.709.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
-/// What ARCore's environmental HDR or ARKit estimates of the light in one frame, as far as the platform tells; learned from what a
-/// camera sees of a room, it may be wrong by tens of degrees.
+/// The light estimate of ARCore's environmental HDR or of ARKit in one frame, as far as the
+/// platform reports it. It is learned from the camera's view of a room, and may be wrong by tens of
+/// degrees.
 ///
-/// It is of one frame: those of several are never added up. A direction is looked along where the toy's shadow tells of no light by
-/// itself. Nothing else is used: shares and colours of lights are those of the real shadow, which holds the camera's own white
-/// balance, unlike an ambient intensity or a colour temperature.
+/// It belongs to one frame: estimates of several frames are never summed. The direction is a
+/// starting point of the search if the toy's shadow alone shows no light. Nothing else is used:
+/// shares and colours of lights are taken from the real shadow, which contains the camera's own
+/// white balance, unlike an ambient intensity or a colour temperature.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightEstimate {
-    /// Unit vector from the scene towards the main light. ARKit tells it with a face in view alone.
+    /// Unit vector from the scene towards the main light. ARKit reports it only with a face in
+    /// view.
     pub direction_to_light_in_world: Option<DVec3>,
     /// Its linear intensity in red, green and blue, relative to the exposure.
     pub intensity: Option<[f64; 3]>,
-    /// Intensity of the surroundings: ARKit's lumen, about 1000 where it is well lit, or ARCore's mean of the picture's codes.
+    /// Intensity of the surroundings: ARKit's lumen, about 1000 in a well-lit room, or ARCore's
+    /// mean of the picture's codes.
     pub ambient_intensity: Option<f64>,
-    /// Of the surroundings, in kelvin; about 6500 is neutral.
+    /// Colour temperature of the surroundings, in kelvin; about 6500 is neutral.
     pub color_temperature_k: Option<f64>,
-    /// Radiance from all around, linear, relative to the exposure: red, green and blue of each coefficient, in the order of (degree,
-    /// order) (0, 0), (1, -1), (1, 0), (1, 1), (2, -2) to (2, 2), real and without the Condon-Shortley phase: those of degree 1 go with
-    /// y, z and x of the world. The order of the numbers is ARCore's; ARKit has all of red first.
+    /// Radiance of the surroundings, linear, relative to the exposure: red, green and blue of each
+    /// coefficient, in the order of (degree, order) (0, 0), (1, -1), (1, 0), (1, 1), (2, -2) to (2,
+    /// 2), real and without the Condon-Shortley phase: the coefficients of degree 1 belong to y, z
+    /// and x of the world. The order of the numbers is ARCore's; ARKit has all of red first.
     pub spherical_harmonics: Option<[f64; N_HARMONICS]>,
 }
 
 impl LightEstimate {
-    /// Unit vector towards where most light comes from: the main light, or else what the harmonics of degree 1 point to.
+    /// Unit vector towards most of the light: the main light, or else the direction of the
+    /// harmonics of degree 1.
     ///
     /// Source: Sloan 2008, "Stupid Spherical Harmonics (SH) Tricks", optimal linear direction.
     #[must_use]

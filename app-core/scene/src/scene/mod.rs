@@ -1,7 +1,7 @@
-//! The scene of a toy: everything that stays the same for a whole session.
+//! The scene of a toy: all that stays the same for a whole session.
 //!
-//! World space is right-handed, +Y up, in metres.
-//! Camera space is +X right, +Y up and looks along -Z.
+//! World space is right-handed, +Y up, in metres. Camera space is +X right, +Y up and looks along
+//! -Z.
 
 pub mod check;
 mod light;
@@ -24,20 +24,22 @@ pub use probe::MAX_FURTHER_PICTURES;
 pub use probe::{Facet, FacetSlope, MAX_FACETS, MAX_PROBE_PICTURES, Probe, ProbePicture, ProbeShape};
 pub use uncertainty::{LightUncertainty, PoseUncertainty, Uncertainty};
 
-/// Lights whose shadows are moved; those of further ones stay as photographed, with a warning.
+/// Number of lights whose shadows are retargeted; shadows of further lights stay as photographed,
+/// with a warning.
 pub const MAX_LIGHTS: usize = 4;
-/// Receivers that shadows are moved on; on further ones they stay as photographed, with a warning.
+/// Number of receivers on which shadows are retargeted; on further receivers they stay as
+/// photographed, with a warning.
 pub const MAX_RECEIVERS: usize = 4;
 
-/// Plates that a scene may have. Each is held in memory as it was decoded, 4 bytes a pixel, and is compared with those that
-/// overlap it when the scene is set.
+/// Largest number of a scene's plates. Each is kept in memory decoded, 4 bytes per pixel, and
+/// compared with overlapping ones when the scene is set.
 pub const MAX_SCENE_PLATES: usize = 512;
 
 /// The inputs that precede the first frame: toy, receivers, lights, plates.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Scene {
-    /// Name for people; may be empty.
+    /// Name for people, or empty.
     pub name: String,
     /// Width of every camera picture of the session.
     pub width_px: u32,
@@ -45,42 +47,42 @@ pub struct Scene {
     pub height_px: u32,
     /// The toy's model.
     pub toy: Arc<Toy>,
-    /// Transform of the real toy at first; frames bring their own. From the model's scene space to world: a rotation,
-    /// a translation and one positive scale.
+    /// Initial transform of the real toy; frames have their own. From the model's scene space to
+    /// world: a rotation, a translation and one positive scale.
     pub world_from_object: DMat4,
     /// The pose of the real toy.
     pub physical_pose: Pose,
-    /// Whether the real toy rests on the receiver below it. Without it, alignment takes a toy that is given close to a receiver to rest there,
-    /// unless the picture speaks against it.
+    /// Whether the real toy rests on the receiver below it. If `None`, alignment assumes that a toy
+    /// close to a receiver rests there, unless the picture contradicts it.
     pub resting: Option<bool>,
     /// Planes that catch the shadow; at least one, in any order.
     pub receivers: Vec<Receiver>,
-    /// Known lights, unless a frame brings its own. Without any, alignment looks for them; where it finds none the toy moves in light from all
-    /// around.
+    /// Known lights, unless a frame has its own. If empty, alignment searches for them; if it finds
+    /// none, the toy moves in ambient light.
     pub lights: Vec<Light>,
     /// Pictures of the scene without the toy: up to [`MAX_SCENE_PLATES`], or none.
     pub plates: Vec<Plate>,
-    /// A light probe that lay in the scene, where there is one: it tells lights where none are listed.
+    /// A light probe in the scene, if any: lights are estimated from it if none are listed.
     pub probe: Option<Probe>,
-    /// How far camera, toy and lights may be off.
+    /// Uncertainty of camera, toy and lights.
     pub uncertainty: Uncertainty,
-    /// All that frames will show, where that is known beforehand: what is learned then covers all of it from the first frame on, and no
-    /// frame depends on those that were shown before it. Empty where only time will tell.
+    /// All poses and places that frames will show, if known beforehand: learning then covers all of
+    /// them from the first frame on, and no frame depends on those before it. Empty if unknown.
     pub film: Arc<[Shown]>,
 }
 
 /// A pose at a place.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shown {
-    /// The pose that the toy is shown in.
+    /// The shown pose of the toy.
     pub pose: Pose,
-    /// Where it is shown, if that is not where the real one stands.
+    /// Its place, if it differs from the real toy's.
     pub world_from_shown: Option<DMat4>,
 }
 
 impl Scene {
-    /// A scene without name, known lights, plates or probe, in which the real toy is as its file has it. `size_px` is width, then height, of
-    /// every camera picture.
+    /// A scene without name, known lights, plates or probe, with the real toy in the authored pose.
+    /// `size_px` is width, then height, of every camera picture.
     #[must_use]
     pub fn new(size_px: [u32; 2], toy: Arc<Toy>, world_from_object: DMat4, receivers: Vec<Receiver>) -> Self {
         let [width_px, height_px] = size_px;
@@ -122,7 +124,7 @@ impl Scene {
         self
     }
 
-    /// Sets the transform of the real toy at first.
+    /// Sets the initial transform of the real toy.
     #[must_use]
     pub fn with_world_from_object(mut self, world_from_object: DMat4) -> Self {
         self.world_from_object = world_from_object;
@@ -157,21 +159,21 @@ impl Scene {
         self
     }
 
-    /// Sets the light probe that lay in the scene.
+    /// Sets the light probe in the scene.
     #[must_use]
     pub fn with_probe(mut self, probe: Option<Probe>) -> Self {
         self.probe = probe;
         self
     }
 
-    /// Sets all that frames will show.
+    /// Sets all poses and places that frames will show.
     #[must_use]
     pub fn with_film(mut self, film: impl Into<Arc<[Shown]>>) -> Self {
         self.film = film.into();
         self
     }
 
-    /// Sets how far camera, toy and lights may be off.
+    /// Sets the uncertainty of camera, toy and lights.
     #[must_use]
     pub fn with_uncertainty(mut self, uncertainty: Uncertainty) -> Self {
         self.uncertainty = uncertainty;
@@ -221,12 +223,12 @@ impl Receiver {
     }
 }
 
-/// Appearance of a receiver, which decides how its shadow may be sampled.
+/// Appearance of a receiver, which determines how its shadow is sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
-    /// One colour all over.
+    /// Uniform colour.
     Uniform,
-    /// Colour varies over the surface.
+    /// Varying colour.
     Textured,
 }
 
@@ -260,7 +262,7 @@ pub struct Intrinsics {
 }
 
 impl Intrinsics {
-    /// The same projection, in pixels of a picture that is `factor` times as large.
+    /// The same projection for a picture `factor` times as large.
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
             fx_px: factor * self.fx_px,
@@ -270,7 +272,7 @@ impl Intrinsics {
         }
     }
 
-    /// Where a point in camera space is seen, in pixels; none behind the camera.
+    /// The image of a point in camera space, in pixels; `None` behind the camera.
     #[must_use]
     pub fn pixel_of(&self, point: DVec3) -> Option<DVec2> {
         let depth_m = -point.z;
@@ -293,7 +295,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The same camera with a focal length `ratio` times as long.
+    /// The same camera with its focal length multiplied by `ratio`.
     pub fn with_focal_length(&self, ratio: f64) -> Self {
         let intrinsics = Intrinsics {
             fx_px: ratio * self.intrinsics.fx_px,
@@ -304,7 +306,7 @@ impl Camera {
     }
 }
 
-/// A picture: sRGB-encoded, 8 bit, four bytes a pixel, rows from the top without padding.
+/// A picture: sRGB-encoded, 8 bit, four bytes per pixel, rows from the top without padding.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Image {
     /// Pixels in a row; at least one.
@@ -316,7 +318,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// Whether it is of a size, width first, with all of its bytes.
+    /// Whether it has the given size, width first, and all of its bytes.
     pub fn is_of_size(&self, size_px: [u32; 2]) -> bool {
         let n_bytes = 4 * u64::from(self.width_px) * u64::from(self.height_px);
         [self.width_px, self.height_px] == size_px && self.rgba8.len() as u64 == n_bytes
@@ -329,10 +331,10 @@ impl fmt::Debug for Image {
     }
 }
 
-/// A picture of the scene before the toy was put there.
+/// A picture of the scene without the toy.
 #[derive(Clone, Debug)]
 pub struct Plate {
-    /// The camera that took it.
+    /// The camera of the picture.
     pub camera: Camera,
     /// The picture, of the session's size.
     pub image: Arc<Image>,

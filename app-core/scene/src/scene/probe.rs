@@ -1,4 +1,4 @@
-//! A light probe: what it is, and the pictures of it.
+//! A light probe: its shape, and its pictures.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -8,37 +8,37 @@ use glam::DMat4;
 use super::check::{self, FieldError, InputError};
 use super::{Camera, Image};
 
-/// Pictures that a probe may have.
+/// Largest number of a probe's pictures.
 pub const MAX_PROBE_PICTURES: usize = 64;
-/// Of these, those besides the first.
+/// Largest number of pictures besides the first.
 pub const MAX_FURTHER_PICTURES: usize = MAX_PROBE_PICTURES - 1;
-/// Facets whose slope may be told.
+/// Largest number of facets in a slope table.
 pub const MAX_FACETS: usize = 1024;
 
-/// A mirror of a known shape that lies in the scene and shows the lights.
+/// A mirror of known shape in the scene that reflects the lights.
 #[derive(Clone, Debug)]
 pub struct Probe {
-    /// What it is.
+    /// Its shape.
     pub shape: ProbeShape,
-    /// Pictures of it, underexposed so that little but the lights is bright, in the order that they were taken.
+    /// Pictures of it, underexposed so that little but the lights is bright, in the order of time.
     pub pictures: Vec<ProbePicture>,
 }
 
-/// What a probe is.
+/// The shape of a probe.
 ///
-/// Probe space is in metres, right-handed, and has its origin in the middle of the disc or ball.
+/// Probe space is in metres, right-handed, and has its origin in the centre of the disc or ball.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ProbeShape {
     /// A flat reflective Fresnel lens: a disc in local y = 0, its front along local +Y, whose facets are rings about its axis.
     FresnelLens {
-        /// Of the disc, in metres.
+        /// Radius of the disc, in metres.
         radius_m: f64,
-        /// How steep its facets are.
+        /// Slope of its facets.
         slope: FacetSlope,
     },
-    /// A mirror ball, of whose pose the place alone counts.
+    /// A mirror ball; only the position of its pose matters.
     MirrorBall {
-        /// In metres.
+        /// Radius, in metres.
         radius_m: f64,
     },
 }
@@ -46,19 +46,22 @@ pub enum ProbeShape {
 /// Slope of a lens's facets: the angle between a facet's normal, which leans away from the axis, and the lens's.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FacetSlope {
-    /// That of the hemisphere above the disc, as the paper takes it: asin(distance from the axis / radius).
+    /// The slope of the hemisphere above the disc, as in the paper: asin(distance from the axis /
+    /// radius).
     Hemisphere,
-    /// Of a convex mirror that spreads light as if from a focus behind it: half of atan(distance from the axis / focal length).
+    /// The slope of a convex mirror with a virtual focus behind it: half of atan(distance from the
+    /// axis / focal length).
     Focal {
-        /// In metres.
+        /// Focal length, in metres.
         focal_m: f64,
     },
-    /// As calibrated, in order of their distances from the axis; straight lines between them, and 0 on the axis.
+    /// A calibration table, in order of the distances from the axis; linear between entries, and 0
+    /// on the axis.
     Table(Vec<Facet>),
 }
 
 impl FacetSlope {
-    /// Of a facet, in radians, by its distance from the axis over the lens's radius.
+    /// Slope of a facet, in radians, by its distance from the axis over the lens's radius.
     #[must_use]
     pub fn at(&self, of_radius: f64, radius_m: f64) -> f64 {
         match self {
@@ -81,11 +84,11 @@ pub struct Facet {
 /// A picture of a probe.
 #[derive(Clone, Debug)]
 pub struct ProbePicture {
-    /// sRGB codes, of the session's size where it is a session's.
+    /// sRGB codes; in a session, of the session's size.
     pub image: Arc<Image>,
-    /// The camera that took it.
+    /// The camera of the picture.
     pub camera: Camera,
-    /// Rigid transform: where the probe was.
+    /// Rigid transform: the probe's pose.
     pub world_from_probe: DMat4,
     /// Exposure of `image` over that of a frame, above 0 and at most 1.
     pub exposure_ratio: f64,
@@ -105,7 +108,7 @@ impl Probe {
 }
 
 impl ProbeShape {
-    /// Of disc or ball, in metres.
+    /// Radius of disc or ball, in metres.
     #[must_use]
     pub fn radius_m(&self) -> f64 {
         match self {
@@ -113,7 +116,7 @@ impl ProbeShape {
         }
     }
 
-    /// Refuses a shape that cannot be; `field` is its place in the session.
+    /// Refuses an invalid shape; `field` is its place in the session.
     ///
     /// # Errors
     /// When a length is out of range, or facets are too many or out of order.
@@ -161,7 +164,7 @@ fn check_facets(field: &str, facets: &[Facet]) -> Result<(), InputError> {
 }
 
 impl ProbePicture {
-    /// Refuses a picture that cannot be; `field` is its place in the session.
+    /// Refuses an invalid picture; `field` is its place in the session.
     ///
     /// # Errors
     /// When a value of its camera or its size is out of range.
@@ -175,7 +178,7 @@ impl ProbePicture {
     }
 }
 
-/// Between the entries on either side; as the last two beyond them.
+/// Linear between the entries, and extrapolated from the last two.
 fn interpolated(facets: &[Facet], of_radius: f64) -> f64 {
     let axis = Facet {
         at: 0.0,

@@ -1,46 +1,49 @@
-//! How far what is given may be off.
+//! Uncertainty of the given poses and lights.
 
 use super::check::{self, InputError};
 
-/// How far camera, toy and lights may be from where they are given, at most, as far as whoever gives them knows.
+/// Largest errors of the given camera, toy and lights, if their source knows them.
 ///
-/// Alignment moves nothing farther than that, and looks as far where it is more than alignment looks by itself: see each number.
-/// Zero holds what is given as it is.
+/// Alignment changes nothing by more than that, and extends its default search to that range: see
+/// each number. Zero fixes a given value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Uncertainty {
-    /// Of the toy in each frame.
+    /// Uncertainty of the toy in each frame.
     pub toy: PoseUncertainty,
-    /// Of the camera of each frame and plate, but for the first plate's, which is held.
+    /// Uncertainty of the camera of each frame and plate except the first plate's, which is fixed.
     pub camera: PoseUncertainty,
-    /// Of each light that is listed; those that no list has are looked for everywhere.
+    /// Uncertainty of each listed light; unlisted lights are searched everywhere.
     pub lights: LightUncertainty,
-    /// Whether where the receivers are is a guess, such as for photographs that were taken without a tracker. The toy is then found
-    /// against the camera alone, and all receivers are laid, as one, with the most level of them under the feet of the toy.
+    /// Whether the receivers are a guess, for example for photographs without a tracker. The toy is
+    /// then located relative to the camera alone, and all receivers are moved as one until the most
+    /// level of them is under the feet of the toy.
     pub are_receivers_guessed: bool,
 }
 
-/// How far a pose may be off.
+/// Uncertainty of a pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PoseUncertainty {
-    /// Distance in metres by which the middle of the toy, or the camera, may be elsewhere. Without it nothing is bounded: a toy is
-    /// looked for some centimetres around, a camera is held back beyond ten. Of a toy that rests on a receiver more is looked through
-    /// on the receiver.
+    /// Largest error of the position of the toy's centre, or of the camera, in metres. `None` sets
+    /// no bound: a toy is searched within some centimetres, and a camera is regularised beyond ten.
+    /// For a toy that rests on a receiver the search extends along the receiver.
     pub position_m: Option<f64>,
-    /// Angle in radians by which it may be turned, about whatever axis, from 0 to pi. Without it nothing is bounded: a toy that rests on
-    /// a receiver is looked for within 45 degrees about its normal, others within some; a camera within two. More is looked
-    /// through of such a toy, all round, and of a camera up to six degrees.
+    /// Largest error of the rotation in radians, about any axis, from 0 to pi. `None` sets no
+    /// bound: a toy that rests on a receiver is searched within 45 degrees about its normal, others
+    /// within some; a camera within two. A larger value extends the search of such a toy to all
+    /// directions, and of a camera to six degrees.
     pub rotation_rad: Option<f64>,
 }
 
-/// How far a light may be off.
+/// Uncertainty of a light.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightUncertainty {
-    /// Angle in radians, as seen from the toy, from 0 to pi. Without it nothing is bounded, and lights are looked for within 14 degrees;
-    /// more is looked through, up to 60 degrees.
+    /// Angle in radians, as seen from the toy, from 0 to pi. `None` sets no bound, and lights are
+    /// searched within 14 degrees; a larger value extends the search up to 60 degrees.
     pub direction_rad: Option<f64>,
-    /// Largest ratio of true distance and given one, or the other way round: 1 where the distance is known. Without it about 1.3.
+    /// Largest ratio of true and given distance, or the inverse: 1 if the distance is known. `None`
+    /// stands for about 1.3.
     pub distance_ratio: Option<f64>,
-    /// The same of the size as seen from the toy. Without it about 1.7.
+    /// The same for the size as seen from the toy. `None` stands for about 1.7.
     pub size_ratio: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Reads accessors: every offset, stride and count is checked before a byte is touched.
+//! Reads accessors: every offset, stride and count is checked before a byte is read.
 
 use std::cell::Cell;
 use std::ops::RangeInclusive;
@@ -14,7 +14,7 @@ use super::error::{Flaw, ToyProblem};
 use super::limits::{MAX_DECODED_VALUES, NUMBER, UV};
 use super::uv_transform::UvTransform;
 
-/// The JSON tree with its binary data, and how much has been decoded from it.
+/// The JSON tree with its binary data, and the number of decoded values.
 pub(super) struct Source<'a> {
     pub(super) root: &'a Root,
     container: &'a Container<'a>,
@@ -45,17 +45,17 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The extension of a texture that is in a format that is not read alone.
+    /// The extension of a texture that exists only in an unsupported format.
     pub(super) fn unread_texture(&self, texture: usize) -> Option<&'static str> {
         self.container.extras.unread_textures.get(&texture).copied()
     }
 
-    /// How a material moves texture coordinates.
+    /// A material's transform of texture coordinates.
     pub(super) fn uv_transform(&self, material: Option<usize>) -> Option<&UvTransform> {
         self.container.extras.uv_transforms.get(&material?)
     }
 
-    /// Adds `n_values` to the numbers that this file fills memory with.
+    /// Adds `n_values` to the decoded values of this file, which are limited.
     pub(super) fn charge(&self, field: &str, n_values: usize) -> Result<(), Flaw> {
         let found = self.n_decoded.get().saturating_add(n_values);
         self.n_decoded
@@ -63,7 +63,8 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// Reads finite numbers of a range, element after element; normalised integers become fractions.
+    /// Reads finite numbers of a range, element after element; normalised integers become
+    /// fractions.
     pub(super) fn floats_within(
         &self,
         field: &str,
@@ -119,7 +120,7 @@ impl<'a> Source<'a> {
         Ok(grouped(&self.floats_within(field, index, Type::Vec3, &NUMBER)?))
     }
 
-    /// The bytes of a buffer view, and its stride where it has one.
+    /// The bytes of a buffer view, and its stride if it has one.
     pub(super) fn view(
         &self,
         field: &str,
@@ -220,7 +221,7 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// The `n` elements that a sparse accessor replaces: rising, each below `count`.
+    /// The `n` elements that a sparse accessor replaces: in increasing order, each below `count`.
     fn sparse_indices(
         &self,
         field: &str,
@@ -257,7 +258,7 @@ pub(super) fn grouped<const N: usize, T: From<[f32; N]>>(values: &[f32]) -> Vec<
     values.as_chunks().0.iter().copied().map(T::from).collect()
 }
 
-/// A count as written; one that memory could not even address is refused by the budget right after.
+/// A count as written; one above the address space is refused by the limit right after.
 fn count(written: u64) -> usize {
     usize::try_from(written).unwrap_or(usize::MAX)
 }

@@ -1,4 +1,4 @@
-//! From a file to a toy: reads each part and selects what is drawn.
+//! Builds a toy from a file: reads each part and selects the drawn surfaces.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -36,7 +36,7 @@ pub(super) fn assemble(file: &str, bytes: &[u8]) -> Result<Toy, Flaw> {
     };
     let (mut geometries, mut surfaces) = read_scene(&source, &rig, &mut warnings)?;
 
-    // Primitives without a material count as one past the last of the file.
+    // Primitives without a material have an index of one past the last of the file.
     let mut is_used = vec![false; source.root.materials.len() + 1];
     surfaces
         .iter()
@@ -76,7 +76,7 @@ pub(super) fn assemble(file: &str, bytes: &[u8]) -> Result<Toy, Flaw> {
     })
 }
 
-/// Reads the drawn surfaces of the scene; fails where there are none.
+/// Reads the drawn surfaces of the scene; fails if there are none.
 fn read_scene(
     source: &Source,
     rig: &Rig,
@@ -110,7 +110,7 @@ fn read_scene(
     Ok((scene.geometries, scene.surfaces))
 }
 
-/// Walks the scene and reads each mesh when its first node comes by.
+/// Walks the scene and reads each mesh with its first node.
 struct SceneReader<'a> {
     source: &'a Source<'a>,
     rig: &'a Rig,

@@ -1,16 +1,16 @@
-//! Bytes that stand in the JSON tree itself: data URIs.
+//! Data URIs: bytes inside the JSON tree.
 
-/// What a URI leads to.
+/// The target of a URI.
 pub(super) enum Uri<'a> {
     /// Bytes within it.
     Data(Vec<u8>),
-    /// A data URI that cannot be read.
+    /// An invalid data URI.
     Broken,
-    /// Somewhere else.
+    /// A name outside of the file.
     Elsewhere(&'a str),
 }
 
-/// Takes a URI apart.
+/// Parses a URI.
 pub(super) fn read(uri: &str) -> Uri<'_> {
     let is_data = uri
         .get(..5)
@@ -55,7 +55,7 @@ fn sextet(symbol: u8) -> Option<u32> {
     Some(value.into())
 }
 
-/// The name that a URI stands for: `%20` and the like are bytes of it. `None` where they are no text.
+/// The decoded name of a URI: `%20` and the like are bytes of it. `None` if they are no text.
 pub(super) fn percent_decoded(uri: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

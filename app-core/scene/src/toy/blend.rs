@@ -1,4 +1,4 @@
-//! Poses between two poses, node by node.
+//! Interpolation of two poses, node by node.
 
 use std::sync::Arc;
 
@@ -8,8 +8,9 @@ use super::graph::{Local, Trs};
 use super::moment::{NodeId, NodePose, Pose};
 
 impl Toy {
-    /// The pose by its nodes that lies between two poses: `a` at a share of 0, `b` at 1. Rotations go the short way, evenly; all
-    /// else is mixed in proportion. A node that was authored as a matrix stays as it is.
+    /// The interpolated pose by its nodes: `a` at a share of 0, `b` at 1. Rotations take the
+    /// shorter way at constant speed; all else is linear. A node that was authored as a matrix
+    /// stays as it is.
     ///
     /// # Errors
     /// When either pose is none of this toy's.

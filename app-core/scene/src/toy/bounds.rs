@@ -34,7 +34,7 @@ impl Toy {
     /// The box around the toy in one pose, in object space.
     ///
     /// # Errors
-    /// As [`Toy::pose`], but for a position that is not from -1e12 to 1e12 along each axis.
+    /// As [`Toy::pose`], except that positions may be from -1e12 to 1e12 along each axis.
     pub fn bounds_of_pose(&self, pose: &Pose) -> Result<Bounds, ToyError> {
         let mut bounds = Bounds::EMPTY;
         self.include_pose(pose, &mut bounds)?;
@@ -43,8 +43,8 @@ impl Toy {
 
     /// The box around the toy over a clip, in object space.
     ///
-    /// It is taken at every key and 30 times a second (fewer in clips of more than some 1000 such moments), so a
-    /// movement between two of them can reach a little beyond it.
+    /// It is computed at every key and 30 times per second (less often in clips of more than some
+    /// 1000 such moments), so a movement between two of them can reach a little beyond it.
     ///
     /// # Errors
     /// As [`Toy::bounds_of_pose`].
@@ -78,7 +78,7 @@ impl Toy {
     }
 }
 
-/// The times of the keys and of a grid of 30 a second, rising.
+/// The times of the keys and of a grid of 30 per second, increasing.
 fn moments_secs(clip: &Clip) -> Vec<f64> {
     const STEPS_PER_SEC: f64 = 30.0;
     const MAX_STEPS: f64 = (MAX_BOUNDS_SAMPLES / 2) as f64;

@@ -1,8 +1,9 @@
-//! What casts the toy's shadow, with ever fewer triangles.
+//! Levels of detail of the shadow-casting mesh.
 //!
-//! A shadow needs no finer shape than its map has pixels, and the most of a frame's triangles are drawn for shadows: the toy once for
-//! each point of a light and each direction of ambient light. So the shape is simplified once, and each pass takes the coarsest
-//! that is near enough.
+//! A shadow needs no finer shape than its map has pixels, and most of a frame's triangles are drawn
+//! for shadows: the toy is drawn once for each point of a light and each direction of ambient
+//! light. So the shape is simplified once, and each pass uses the coarsest level that is accurate
+//! enough.
 
 use std::ops::RangeInclusive;
 
@@ -13,32 +14,35 @@ use super::moment::Pose;
 use super::pose::PosedMesh;
 use super::simplify::{Collapse, collapses};
 
-/// Moments of each clip that count beside the authored pose, in parts of its duration: the first of all clips, then the next.
+/// Moments of each clip that count besides the authored pose, as fractions of its duration: the
+/// first of all clips, then the next.
 const MOMENTS: [f64; 5] = [0.5, 0.0, 1.0, 0.25, 0.75];
-/// Poses in all, fewer of toys with many triangles: in each of them 200,000 take about a second.
+/// Number of poses, fewer for toys with many triangles: simplification takes about a second for
+/// 200,000 triangles in all poses.
 const N_POSES: RangeInclusive<usize> = 3..=16;
-/// Triangles in all poses, where more of these than the least are taken.
+/// Largest number of triangles over all poses, if more than the least number of poses is used.
 const MOST_POSED_TRIANGLES: usize = 500_000;
-/// The farthest that a shape is from the toy's, in parts of its radius.
+/// Largest error of a level, as a fraction of the toy's radius.
 const MOST_ERROR: f64 = 0.05;
-/// Fewer triangles gain nothing.
+/// Levels with fewer triangles gain nothing.
 const LEAST_TRIANGLES: usize = 64;
-/// Triangles of a shape, in parts of those of the next finer one.
+/// Ratio of triangles between a level and the next finer one.
 const STEP: f64 = 0.7;
 
-/// A shape near the toy's.
+/// A level of detail.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Caster {
-    /// How far it is from the toy's, in units of the file.
+    /// Its geometric error, in units of the file.
     pub error: f64,
-    /// Corners of triangles, as those of [`super::ShadowIndices`].
+    /// Corners of triangles, as in [`super::ShadowIndices`].
     pub indices: Vec<u32>,
-    /// How many of the corners are of closed pieces, which come first.
+    /// Number of corners of closed pieces, which come first.
     pub n_closed: usize,
 }
 
 impl Toy {
-    /// Shapes with fewer triangles than [`Toy::shadow_indices`], finest first. Made at the first call.
+    /// Levels with fewer triangles than [`Toy::shadow_indices`], finest first. Computed at the
+    /// first call.
     pub fn casters(&self) -> &[Caster] {
         self.casters.get_or_init(|| casters(self))
     }
@@ -59,7 +63,7 @@ fn casters(toy: &Toy) -> Vec<Caster> {
     for (index, collapse) in made.iter().enumerate() {
         moved[collapse.from as usize] = collapse.to;
         let is_step = fewer(n_before) >= collapse.n_left;
-        // All collapses of one error are made together.
+        // All collapses of equal error belong to one level.
         let is_whole = made.get(index + 1).is_none_or(|next| next.error > collapse.error);
         if is_step && is_whole {
             levels.push(caster(triangles, shape.n_closed, &mut moved, collapse));
@@ -78,7 +82,7 @@ fn caster(triangles: &[[u32; 3]], n_closed: usize, moved: &mut [u32], collapse: 
     let mut place_of = |corner: u32| {
         let mut at = corner;
         while moved[at as usize] != at {
-            // Vertices that were moved onto one that was moved on are moved at once from now on.
+            // Follow chains of moves, so that each vertex points to its final place.
             moved[at as usize] = moved[moved[at as usize] as usize];
             at = moved[at as usize];
         }
@@ -115,7 +119,7 @@ fn poses(toy: &Toy, n_poses: usize) -> Vec<Vec<Vec3>> {
     places.collect()
 }
 
-/// Of a ball around the corners' box.
+/// Radius of the sphere around the corners' box.
 fn radius(triangles: &[[u32; 3]], places: &[Vec3]) -> f64 {
     let corners = || triangles.iter().flatten().map(|corner| places[*corner as usize]);
     let least = corners().fold(Vec3::INFINITY, Vec3::min);

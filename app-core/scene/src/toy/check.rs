@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use super::error::{Flaw, ToyProblem};
 
-/// Refuses a count above its limit; `what` is counted.
+/// Refuses a count above its limit; `what` names the counted things.
 pub(super) fn check_limit(
     what: &'static str,
     found: usize,
@@ -18,7 +18,7 @@ pub(super) fn check_limit(
     Ok(found)
 }
 
-/// Refuses a count that is not the one needed; `what` is counted.
+/// Refuses a wrong count; `what` names the counted things.
 pub(super) fn check_count(
     what: &'static str,
     found: usize,

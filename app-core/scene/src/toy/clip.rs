@@ -33,20 +33,20 @@ pub struct Clip {
     pub name: Option<String>,
     /// Time of the last key; 0 or more.
     pub duration_secs: f64,
-    /// Why it cannot be read, if so.
+    /// The reason why it cannot be read, if so.
     pub(super) flaw: Option<String>,
     pub(super) channels: Vec<Channel>,
 }
 
-/// One moving value of one node.
+/// An animated property of a node.
 pub(super) struct Channel {
     pub(super) node: usize,
     pub(super) property: Property,
     pub(super) track: Track,
 }
 
-/// Reads all clips; those that cannot be read hold nothing but the reason. Nodes that are given by a matrix and animated are
-/// taken apart in `graph`.
+/// Reads all clips; for unreadable ones, only the reason is kept. Matrices of animated nodes are
+/// decomposed in `graph`.
 pub(super) fn read(
     source: &Source,
     graph: &mut Graph,
@@ -121,7 +121,7 @@ fn read_channels(
     Ok(channels)
 }
 
-/// Numbers of one value; `None` where the channel has nothing to move.
+/// Number of components of a value; `None` if the channel animates nothing.
 fn width(graph: &Graph, node: usize, property: Property) -> Option<usize> {
     match property {
         Property::MorphTargetWeights => {
@@ -133,7 +133,7 @@ fn width(graph: &Graph, node: usize, property: Property) -> Option<usize> {
     }
 }
 
-/// Takes the matrix of a node apart whose parts are animated.
+/// Decomposes the matrix of a node whose parts are animated.
 fn take_apart(
     graph: &mut Graph,
     node: usize,
@@ -182,7 +182,7 @@ fn read_track(
     };
     let output = format!("{field}.output");
     let values = match shape {
-        // Of any length, which is taken out in 64 bits.
+        // Quaternions of any length, normalised in 64 bits.
         Type::Vec4 => source.floats(&output, sampler.output, shape)?,
         _ => source.floats_within(&output, sampler.output, shape, &NUMBER)?,
     };

@@ -28,7 +28,7 @@ pub(super) fn integer_decoder(component: ComponentType) -> Option<fn(&[u8]) -> u
     })
 }
 
-/// The callers hand over chunks of exactly `N` bytes.
+/// The callers pass chunks of exactly `N` bytes.
 fn first<const N: usize>(bytes: &[u8]) -> [u8; N] {
     bytes.first_chunk().copied().unwrap_or([0; N])
 }

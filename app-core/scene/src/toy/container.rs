@@ -1,8 +1,8 @@
-//! From bytes to glTF: the JSON tree, mended, and the binary data beside it.
+//! From bytes to glTF: the normalised JSON tree, and the binary data beside it.
 //!
-//! The tree is taken without the crate's own validation, which panics on a `POSITION` beyond the last accessor and
-//! refuses application-specific attributes.
-//! Each reference is therefore looked up with [`get`], and each enumeration opened with [`allowed`].
+//! The tree is used without the crate's own validation, which panics on a `POSITION` beyond the
+//! last accessor and refuses application-specific attributes. Each reference is therefore resolved
+//! by [`get`], and each enumeration by [`allowed`].
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -20,12 +20,12 @@ use super::limits::{MAX_DECODED_VALUES, MAX_FILE_BYTES, MAX_JSON_BYTES};
 use super::mend::{self, CompressedView, Extras};
 use super::warning::ToyWarning;
 
-/// A glTF file taken apart, its references not yet checked.
+/// A parsed glTF file, its references not yet checked.
 pub(super) struct Container<'a> {
     pub(super) root: Root,
     /// The bytes of each buffer; `None` for those outside the file.
     pub(super) buffers: Vec<Option<Cow<'a, [u8]>>>,
-    /// Buffer views that were compressed.
+    /// Decompressed buffer views.
     pub(super) decompressed: HashMap<usize, Vec<u8>>,
     pub(super) extras: Extras,
 }
@@ -40,7 +40,8 @@ const HEADER_BYTES: u32 = 12;
 const JSON_CHUNK: &str = "JSON chunk";
 const JSON_WITHOUT_DATA: &str = "JSON text without its data URIs";
 
-/// Binary glTF: a header and two chunks, each filled up to four bytes. A file of more than 4 GiB has no true lengths.
+/// Binary glTF: a header and two chunks, each padded to four bytes. The lengths of a file of more
+/// than 4 GiB are wrong.
 ///
 /// Source: glTF 2.0 specification, section 4.4.
 #[must_use]
@@ -73,7 +74,7 @@ pub(super) fn read_tree(bytes: &[u8]) -> Result<Tree<'_>, Flaw> {
         JSON_WITHOUT_DATA,
     )?;
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
-    // Some exporters pad with zeros in place of blanks.
+    // Some exporters pad with zeros instead of blanks.
     let n_bytes = text
         .iter()
         .rposition(|byte| *byte != 0 && !byte.is_ascii_whitespace())
@@ -83,7 +84,7 @@ pub(super) fn read_tree(bytes: &[u8]) -> Result<Tree<'_>, Flaw> {
     let version = json.pointer("/asset/version");
     let is_first = match version.and_then(Value::as_str) {
         Some(version) => version.starts_with("1."),
-        // Version 1.0 had names in place of numbers.
+        // Version 1.0 had names instead of numbers.
         None => json.get("meshes").is_some_and(Value::is_object),
     };
     match is_first {
@@ -92,9 +93,9 @@ pub(super) fn read_tree(bytes: &[u8]) -> Result<Tree<'_>, Flaw> {
     }
 }
 
-/// Bytes of a JSON text without its data URIs, which become bytes and no values of their own.
+/// Number of bytes of a JSON text without its data URIs, which become bytes and no values.
 ///
-/// Behind a quotation mark stands `data:` only within a string, which ends at the next mark at the latest.
+/// A `data:` after a quotation mark is within a string, which ends at the next mark at the latest.
 fn n_bytes_beside_data(text: &[u8]) -> usize {
     let mut n_bytes = 0;
     let mut is_data = false;
@@ -121,7 +122,7 @@ fn chunks(bytes: &[u8]) -> Result<Chunks<'_>, Flaw> {
     Ok((glb.json, glb.bin))
 }
 
-/// Opens a file. `warnings` get what was repaired, and what is not followed.
+/// Opens a file. `warnings` receives repairs and unsupported features.
 pub(super) fn open<'a>(bytes: &'a [u8], warnings: &mut Vec<ToyWarning>) -> Result<Container<'a>, Flaw> {
     let Tree { mut json, bin } = read_tree(bytes)?;
     check_extensions(&json, warnings)?;
@@ -154,7 +155,7 @@ fn buffers<'a>(root: &Root, bin: Option<Cow<'a, [u8]>>) -> Result<Vec<Option<Cow
     buffers.collect()
 }
 
-/// Decodes the views that are compressed.
+/// Decodes the compressed views.
 fn decompressed(
     views: &[CompressedView],
     buffers: &[Option<Cow<'_, [u8]>>],
@@ -196,7 +197,8 @@ fn decompressed(
     Ok(all)
 }
 
-/// The container reader subtracts the header from the length it reads, which must not go below zero.
+/// The container reader subtracts the header from the stated length, which must not become
+/// negative.
 fn check_header_length(bytes: &[u8]) -> Result<(), Flaw> {
     match bytes.get(8..).and_then(<[u8]>::first_chunk) {
         Some(&length) if u32::from_le_bytes(length) < HEADER_BYTES => Err(ToyProblem::HeaderLength {
@@ -207,7 +209,7 @@ fn check_header_length(bytes: &[u8]) -> Result<(), Flaw> {
     }
 }
 
-/// Follows a reference of the JSON tree. `what` names the kind of thing in the error.
+/// Resolves a reference of the JSON tree. `what` names the kind of target in the error.
 pub(super) fn get<'r, T>(
     root: &'r Root,
     field: &str,
@@ -228,7 +230,7 @@ where
     })
 }
 
-/// Opens an enumeration of the JSON tree.
+/// Resolves an enumeration of the JSON tree.
 pub(super) fn allowed<T>(value: Checked<T>, field: &str) -> Result<T, Flaw> {
     match value {
         Checked::Valid(value) => Ok(value),

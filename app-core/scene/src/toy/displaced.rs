@@ -1,4 +1,5 @@
-//! The same toy with another shape: vertices displaced at rest, so that every pose carries it.
+//! The same toy with another shape: vertices are displaced at rest, so that every pose has the
+//! displacement.
 
 use std::sync::{Arc, OnceLock};
 
@@ -14,15 +15,17 @@ use super::surface::Surface;
 use crate::geometry::bounds::Bounds;
 
 impl Toy {
-    /// For each vertex the first that coincides with it in every pose: those of one are displaced alike, or the surface tears.
+    /// For each vertex the first that coincides with it in every pose: both must have the same
+    /// displacement, or the surface tears.
     #[must_use]
     pub fn first_alike(&self) -> Vec<u32> {
         first_alike(&self.surfaces, &self.geometries)
     }
 
-    /// This toy with its vertices displaced as much in a pose, in object space, and in every other pose with what moves them there;
-    /// normals follow the triangles. `displacements` has one for each vertex; those that it lacks stay, as do vertices that the pose
-    /// flattens. Triangles, materials and clips are those of this toy.
+    /// This toy with its vertices displaced in a pose, in object space, and in every other pose by
+    /// the carried displacement; normals follow the triangles. `displacements` has one entry per
+    /// vertex; missing ones mean no displacement, and vertices that the pose flattens stay.
+    /// Triangles, materials and clips are this toy's.
     ///
     /// # Errors
     /// As [`Toy::pose`].
@@ -48,10 +51,10 @@ impl Toy {
     }
 }
 
-/// No vertex is displaced by more, over the diagonal of its geometry's box.
+/// Limit for a vertex's displacement, over the diagonal of its geometry's box.
 const MOST_OF_EXTENT: f64 = 0.1;
 
-/// A geometry with each vertex moved by the mean of what those that draw it ask for.
+/// A geometry with each vertex moved by the mean displacement over its surfaces.
 fn displaced(geometry: &Geometry, drawn: &[&Surface], pose: &RigPose, displacements: &[DVec3]) -> Geometry {
     let mut out = geometry.clone();
     let bounds = Bounds::around(geometry.positions.iter().map(|position| position.as_dvec3()));
@@ -61,7 +64,7 @@ fn displaced(geometry: &Geometry, drawn: &[&Surface], pose: &RigPose, displaceme
             let displacement = *displacements.get(surface.first_vertex + vertex)?;
             let anchor_from_mesh = surface.anchor_from_mesh(geometry, vertex, pose);
             let in_mesh = anchor_from_mesh.matrix3.inverse() * displacement;
-            // A pose that all but flattens a part tells nothing of its shape.
+            // A pose that nearly flattens a part does not constrain its shape.
             (in_mesh.length() <= most).then_some(in_mesh)
         });
         let (sum, n_told) = in_mesh.fold((DVec3::ZERO, 0.0), |(sum, n), one| (sum + one, n + 1.0));
@@ -73,7 +76,7 @@ fn displaced(geometry: &Geometry, drawn: &[&Surface], pose: &RigPose, displaceme
     out
 }
 
-/// Turns the normals of a displaced geometry as far as the triangles around each turned.
+/// Rotates the normals of a displaced geometry like the triangles around them.
 fn turn_normals(before: &Geometry, after: &mut Geometry) {
     let Some(mut normals) = after.normals.take() else {
         return;
@@ -89,7 +92,7 @@ fn turn_normals(before: &Geometry, after: &mut Geometry) {
     after.normals = Some(normals);
 }
 
-/// For each vertex the unit normal of the triangles that have it, by their areas; zero where they have none.
+/// For each vertex the unit normal of its triangles, weighted by area; zero if they have none.
 fn face_normals(geometry: &Geometry) -> Vec<DVec3> {
     let mut normals = vec![DVec3::ZERO; geometry.positions.len()];
     for corners in geometry.triangles() {

@@ -1,4 +1,4 @@
-//! Errors of a toy's file: always the file, the field and the reason.
+//! Errors of a toy's file, each with file, field and reason.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::words::{Listed, Number, Text};
 
-/// A toy that cannot be used, or a request that it cannot meet.
+/// A toy that cannot be used, or an invalid request to a toy.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ToyError {
@@ -17,7 +17,7 @@ pub enum ToyError {
         file: String,
         /// Path of the field in the glTF, as in `meshes[0].primitives[1].attributes.POSITION`.
         field: String,
-        /// What is wrong with it.
+        /// The problem.
         problem: ToyProblem,
     },
     /// No clip has this name.
@@ -27,15 +27,15 @@ pub enum ToyError {
         file: String,
         /// The name asked for.
         name: String,
-        /// Every name that would have been found.
+        /// All valid names.
         known: Vec<String>,
     },
     /// A [`ClipId`](super::ClipId) of another toy.
-    #[error("{file}: clip: number {clip} is asked for, but it has {n_clips} clips")]
+    #[error("{file}: clip: there is no number {clip}; it has {n_clips} clips, counted from 0")]
     ForeignClip {
         /// The file as named by the caller.
         file: String,
-        /// The number asked for.
+        /// The requested number.
         clip: usize,
         /// Number of clips, counted from 0.
         n_clips: usize,
@@ -47,75 +47,75 @@ pub enum ToyError {
         file: String,
         /// The name asked for.
         name: String,
-        /// Every name that would have been found.
+        /// All valid names.
         known: Vec<String>,
     },
     /// A [`NodeId`](super::NodeId) of another toy.
-    #[error("{file}: node: number {node} is asked for, but it has {n_nodes} nodes")]
+    #[error("{file}: node: there is no number {node}; it has {n_nodes} nodes, counted from 0")]
     ForeignNode {
         /// The file as named by the caller.
         file: String,
-        /// The number asked for.
+        /// The requested number.
         node: usize,
         /// Number of nodes, counted from 0.
         n_nodes: usize,
     },
-    /// A clip that the file has, but that cannot be read.
+    /// A clip of the file that cannot be read.
     #[error("{file}: clip {:?}: cannot be read: {reason}", Text(name).to_string())]
     BrokenClip {
         /// The file as named by the caller.
         file: String,
         /// The name asked for.
         name: String,
-        /// What is wrong with it.
+        /// The reason.
         reason: String,
     },
-    /// A transform or a weight that no pose can be made of.
+    /// An invalid transform or weight in a pose.
     #[error("{file}: pose: node {node}: {reason}")]
     NodePose {
         /// The file as named by the caller.
         file: String,
         /// Number of the node.
         node: usize,
-        /// What is wrong with it.
+        /// The reason.
         reason: &'static str,
     },
-    /// A time before the clip, or none at all.
+    /// A time that is negative or not finite.
     #[error("{file}: clip time: {} s is not a time from 0 on", Number(*time_secs))]
     Time {
         /// The file as named by the caller.
         file: String,
-        /// The time asked for.
+        /// The requested time.
         time_secs: f64,
     },
-    /// Numbers in range whose product is not.
+    /// Valid numbers whose product is out of range.
     #[error("{file}: pose: the position of vertex {vertex} is not from -{max} to {max} along each axis")]
     PoseOverflow {
         /// The file as named by the caller.
         file: String,
-        /// First vertex at fault.
+        /// First vertex out of range.
         vertex: usize,
-        /// Largest coordinate allowed, in units of the space that the toy is posed in.
+        /// Largest coordinate allowed, in units of the posing space.
         max: f64,
     },
 }
 
-/// Why a field of a toy's file is refused.
+/// The reason why a field of a toy's file is refused.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ToyProblem {
     /// Another kind of file.
     #[error("is {what}, not glTF 2.0: {way_out}")]
     Foreign {
-        /// What it is.
+        /// The kind.
         what: &'static str,
-        /// What makes a toy of it.
+        /// The way to convert it.
         way_out: &'static str,
     },
-    /// Not the JSON that glTF asks for.
+    /// Not the JSON of glTF.
     #[error("not glTF: {0}")]
     Json(String),
-    /// Not the container that glTF asks for.
+    /// Not the container of binary glTF.
     #[error("not binary glTF: {0}")]
     Container(#[source] Box<gltf::Error>),
     /// The length in the header is impossible.
@@ -124,15 +124,15 @@ pub enum ToyProblem {
         /// The length as written.
         found: u32,
     },
-    /// A feature without which the file would look or move wrongly.
+    /// A required extension that is not supported.
     #[error("the file requires the extension {name:?}, which is not supported: {way_out}")]
     Extension {
         /// Name of the extension.
         name: String,
-        /// How the file is written without it.
+        /// The way to export the file without it.
         way_out: &'static str,
     },
-    /// Data outside the file.
+    /// A reference to data outside the file.
     #[error(
         "refers to data outside the file, which is not there: put the file beside its neighbours, or pack it with \
          `npx @gltf-transform/cli copy IN.gltf OUT.glb`"
@@ -141,60 +141,60 @@ pub enum ToyProblem {
     /// A file beside the toy's that cannot be read.
     #[error("{name}: {reason}")]
     Neighbour {
-        /// Its name, as seen from the toy's file.
+        /// Its name, relative to the toy's file.
         name: String,
-        /// What the caller said.
+        /// The caller's reason.
         reason: String,
     },
-    /// A data URI that is none.
+    /// An invalid data URI.
     #[error("is not a base64 data URI")]
     DataUri,
-    /// A stream of meshopt that breaks its format.
-    #[error("the compressed data is broken, or shorter or longer than it says")]
+    /// An invalid stream of meshopt.
+    #[error("the compressed data is broken, or has another length than stated")]
     Compressed,
-    /// More than is allowed.
+    /// A count above its limit.
     #[error("{found} {what} are more than the {limit} allowed")]
     TooMany {
-        /// What is counted.
+        /// The counted things.
         what: &'static str,
-        /// How many there are.
+        /// Their number.
         found: u64,
-        /// The most there may be.
+        /// The limit.
         limit: u64,
     },
-    /// Something that must be there.
+    /// A required part that is missing.
     #[error("missing")]
     Missing,
     /// A value that glTF does not define.
     #[error("not a value that glTF allows")]
     NotAllowed,
-    /// A reference to something that is not in the file.
+    /// A reference to a missing part of the file.
     #[error("refers to {what} {index}, but the file has {n}, counted from 0")]
     NoSuch {
-        /// What is referred to.
+        /// Kind of the target.
         what: &'static str,
         /// The index as written.
         index: usize,
-        /// How many there are.
+        /// Number of such parts.
         n: usize,
     },
-    /// An accessor of another shape.
+    /// An accessor of the wrong type.
     #[error("is {found}, but {expected} is needed")]
     WrongType {
-        /// The shape that fits here.
+        /// The required type.
         expected: String,
-        /// The shape as written.
+        /// The type in the file.
         found: String,
     },
     /// An accessor, a view or an image that reaches beyond its bytes.
     #[error("reaches to byte {end}, but there are {available}")]
     OutOfRange {
-        /// One past the last byte asked for.
+        /// End of the range.
         end: u64,
-        /// Bytes there are.
+        /// Number of available bytes.
         available: usize,
     },
-    /// Elements that overlap.
+    /// Overlapping elements.
     #[error("a stride of {stride} bytes is less than the {element} bytes of an element")]
     Stride {
         /// The stride as written.
@@ -207,23 +207,23 @@ pub enum ToyProblem {
     SparseIndex {
         /// The index as written.
         index: usize,
-        /// Elements of the accessor.
+        /// Number of elements of the accessor.
         count: usize,
     },
     /// NaN or infinity.
     #[error("{n_bad} of {n} numbers are not finite, the first in element {first}")]
     NotFinite {
-        /// How many numbers are at fault.
+        /// Number of invalid values.
         n_bad: usize,
-        /// How many there are.
+        /// Number of all values.
         n: usize,
-        /// The first element at fault.
+        /// The first element with one.
         first: usize,
     },
     /// A number too small or too large.
     #[error("{value} in element {element} is not from {min} to {max}")]
     Range {
-        /// The element at fault.
+        /// The element.
         element: usize,
         /// The number as written.
         value: f32,
@@ -232,47 +232,47 @@ pub enum ToyProblem {
         /// Largest allowed.
         max: f32,
     },
-    /// Two counts that must agree.
+    /// Two counts that must be equal.
     #[error("has {found} {what}, but {expected} are needed")]
     Count {
-        /// What is counted.
+        /// The counted things.
         what: &'static str,
-        /// How many there are.
+        /// Their number.
         found: usize,
-        /// How many there must be.
+        /// The required number.
         expected: usize,
     },
-    /// Key times that stand still or go back.
+    /// Key times that do not increase.
     #[error("key {key} is not later than the one before it")]
     KeyOrder {
-        /// The key at fault, from 0.
+        /// Index of the key, from 0.
         key: usize,
     },
     /// A matrix whose last row is not 0 0 0 1.
     #[error("matrix {element} is not affine")]
     NotAffine {
-        /// The element at fault.
+        /// The element.
         element: usize,
     },
-    /// An animated node that is given by a matrix.
+    /// An animated node with a shearing matrix.
     #[error("node {node} is given by a matrix that shears, which no animated node can have")]
     AnimatedMatrix {
-        /// The node at fault.
+        /// The node.
         node: usize,
     },
-    /// Nodes below themselves.
+    /// A cycle of nodes.
     #[error("node {node} stands in or below a cycle of nodes")]
     Cycle {
-        /// The first node at fault.
+        /// The first such node.
         node: usize,
     },
-    /// A node below two others.
+    /// A node with two parents.
     #[error("node {node} has two parents")]
     TwoParents {
-        /// The node at fault.
+        /// The node.
         node: usize,
     },
-    /// Nothing to draw.
+    /// A file without triangles.
     #[error("holds no triangles")]
     NoTriangles,
     /// A picture that cannot be decoded.

@@ -1,4 +1,5 @@
-//! Extensions of a file: which are followed, which do no harm, and which a toy cannot be drawn without.
+//! Extensions of a file: supported ones, harmless ones, and those without which a toy cannot be
+//! drawn.
 
 use serde_json::Value;
 
@@ -14,7 +15,7 @@ const FOLLOWED: [&str; 13] = [
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_texture_transform",
     "KHR_node_visibility",
-    // Each channel that is not followed is warned about.
+    // Unsupported channels have their own warning.
     "KHR_animation_pointer",
     "KHR_meshopt_compression",
     "EXT_meshopt_compression",
@@ -23,7 +24,8 @@ const FOLLOWED: [&str; 13] = [
     "KHR_xmp_json_ld",
 ];
 
-/// They change how light is reflected, or add a choice: shape and base colour are as without them.
+/// Extensions that change reflections, or add a variant: shape and base colour are independent of
+/// them.
 const GLOSS: [&str; 9] = [
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -36,11 +38,11 @@ const GLOSS: [&str; 9] = [
     "EXT_lights_ies",
 ];
 
-/// Textures in formats that are not read.
+/// Unsupported texture formats.
 pub(super) const TEXTURE_FORMATS: [&str; 3] = ["KHR_texture_basisu", "EXT_texture_avif", "MSFT_texture_dds"];
 pub(super) const DRACO: &str = "KHR_draco_mesh_compression";
 
-/// How a file is written without an extension.
+/// The way to export a file without an extension.
 pub(super) fn way_out(name: &str) -> &'static str {
     match name {
         DRACO => {
@@ -57,7 +59,7 @@ pub(super) fn way_out(name: &str) -> &'static str {
     }
 }
 
-/// The refusal of what only an extension tells.
+/// The refusal of data that only an extension provides.
 pub(super) fn lacking(name: &str, field: impl Into<String>) -> Flaw {
     let problem = ToyProblem::Extension {
         name: name.to_owned(),
@@ -66,7 +68,7 @@ pub(super) fn lacking(name: &str, field: impl Into<String>) -> Flaw {
     problem.at(field)
 }
 
-/// Refuses required extensions that are not followed; warns of the others.
+/// Refuses required unsupported extensions; warns about the others.
 pub(super) fn check_extensions(tree: &Value, warnings: &mut Vec<ToyWarning>) -> Result<(), Flaw> {
     for (i, name) in names(tree, "extensionsRequired").enumerate() {
         if !FOLLOWED.contains(&name) && !GLOSS.contains(&name) {

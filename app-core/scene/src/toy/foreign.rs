@@ -1,14 +1,14 @@
-//! Files that are no glTF 2.0: what they are by their first bytes, and the way from there to a toy.
+//! Files of other formats, recognised by their first bytes, and the way to convert them to a toy.
 
 use super::error::{Flaw, ToyProblem};
 
-/// What a file is, and how a toy is made of it.
+/// A format's name, and the way to convert it to a toy.
 type Kind = (&'static str, &'static str);
 
 const BLENDER: &str =
     "open it in Blender (File > Import) and export it as glTF 2.0, format glTF Binary (.glb)";
 
-/// First bytes by which a kind is known.
+/// First bytes of known formats.
 const MAGICS: [(&[u8], Kind); 15] = [
     (b"Kaydara FBX", ("an FBX model", BLENDER)),
     (b"; FBX", ("an FBX model", BLENDER)),
@@ -54,7 +54,7 @@ const MAGICS: [(&[u8], Kind); 15] = [
     ),
 ];
 
-/// The refusal of a file that is neither binary glTF nor JSON; `None` if it is not known either.
+/// The refusal of a file that is neither binary glTF nor JSON; `None` if its format is unknown.
 pub(super) fn refusal(bytes: &[u8]) -> Option<Flaw> {
     let text = without_blanks(bytes);
     let known = MAGICS.iter().find(|(magic, _)| text.starts_with(magic));
@@ -106,7 +106,7 @@ fn of_zip(bytes: &[u8]) -> Kind {
     }
 }
 
-/// Whether the first lines are of the kinds that OBJ has.
+/// Whether the first lines are statements of OBJ.
 fn is_obj(text: &[u8]) -> bool {
     const MANY: usize = 64;
     let lines = text

@@ -1,4 +1,4 @@
-//! One primitive as read: its vertices at rest, before any node, skin or morph target moves them.
+//! One primitive as read: its vertices at rest, without the effect of nodes, skin or morph targets.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use gltf::json::accessor::{Accessor, Type};
@@ -19,7 +19,7 @@ use super::warning::ToyWarning;
 #[derive(Clone)]
 pub(super) struct Geometry {
     pub(super) positions: Vec<Vec3>,
-    /// Absent where the file has none: every triangle is then flat, with three vertices of its own.
+    /// `None` if the file has none: triangles are then flat, with three vertices each of their own.
     pub(super) normals: Option<Vec<Vec3>>,
     pub(super) targets: Vec<MorphTarget>,
     pub(super) influences: Option<Influences>,
@@ -27,7 +27,7 @@ pub(super) struct Geometry {
     pub(super) uvs: Option<Vec<Vec2>>,
     /// Linear RGBA.
     pub(super) colors: Option<Vec<Vec4>>,
-    /// Corners of triangles, counter-clockwise seen from outside.
+    /// Corners of triangles, counter-clockwise from outside.
     pub(super) indices: Vec<u32>,
 }
 
@@ -38,7 +38,8 @@ pub(super) struct MorphTarget {
     normals: Option<Vec<Vec3>>,
 }
 
-/// What points of one place share: their coordinates bit by bit, where adding zero gives both zeros the same bits.
+/// The bits of a point's coordinates, as a key for equal places; adding zero makes both zeros
+/// equal.
 pub(super) fn place_bits(point: Vec3) -> [u32; 3] {
     (point + 0.0).to_array().map(f32::to_bits)
 }
@@ -49,7 +50,7 @@ impl MorphTarget {
         self.positions.is_some()
     }
 
-    /// The same with other lists in place of its own.
+    /// The same with its lists mapped.
     pub(super) fn mapped(&self, map: impl Fn(&[Vec3]) -> Vec<Vec3>) -> Self {
         Self {
             positions: self.positions.as_deref().map(&map),
@@ -77,18 +78,18 @@ impl Geometry {
         self.indices.as_chunks().0
     }
 
-    /// Turns a triangle around.
+    /// Reverses a triangle.
     pub(super) fn turn_triangle(&mut self, triangle: usize) {
         let (b, c) = (3 * triangle + 1, 3 * triangle + 2);
         if self.normals.is_some() {
             self.indices.swap(b, c);
         } else {
-            // Its vertices follow one another, which its normal is taken from.
+            // Its vertices are consecutive, since its normal is computed from them.
             self.swap_vertices(b, c);
         }
     }
 
-    /// Turns the normal of a vertex around, in every morph target.
+    /// Reverses the normal of a vertex, in every morph target.
     pub(super) fn turn_normal(&mut self, vertex: usize) {
         let of_targets = self
             .targets
@@ -148,7 +149,8 @@ fn morphed<'a>(
     base[vertex].as_dvec3() + deltas.filter_map(added).sum::<DVec3>()
 }
 
-/// Reads a primitive; `None` where it holds points or lines. `tex_coord` is the set its material reads.
+/// Reads a primitive; `None` for points or lines. `tex_coord` is the coordinate set of its
+/// material.
 pub(super) fn read(
     source: &Source,
     field: &str,
@@ -250,7 +252,7 @@ fn read_triangles(
     Ok(triangles)
 }
 
-/// Reads attributes and keeps the vertices asked for.
+/// Reads attributes and keeps the requested vertices.
 struct Gather<'a> {
     source: &'a Source<'a>,
     field: &'a str,
@@ -274,7 +276,7 @@ impl<'a> Gather<'a> {
 
     fn target(&self, i: usize, target: &JsonTarget, has_normals: bool) -> Result<MorphTarget, Flaw> {
         let name = |attribute| format!("{attribute} of targets[{i}]");
-        // Without normals at rest there is nothing to add to: the morphed triangles are flat as well.
+        // Without normals at rest, the morphed triangles are flat as well.
         let normals = target.normals.filter(|_| has_normals);
         Ok(MorphTarget {
             positions: self.attribute(&name("POSITION"), target.positions, Source::vec3s)?,
@@ -304,7 +306,7 @@ fn read_colors(source: &Source, field: &str, index: Index<Accessor>) -> Result<V
     }
 }
 
-/// Clamps colours of vertices, as glTF asks for.
+/// Clamps colours of vertices, as glTF requires.
 ///
 /// Source: glTF 2.0 specification, 3.7.2.1 (meshes, overview).
 fn clamp_colors(colors: &mut [Vec4], field: &str, warnings: &mut Vec<ToyWarning>) {

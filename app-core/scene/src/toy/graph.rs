@@ -11,14 +11,14 @@ use super::error::{Flaw, ToyProblem};
 use super::limits::{MAX_MORPH_WEIGHTS, MAX_NODES, NUMBER};
 use super::warning::ToyWarning;
 
-/// Every node of the file, in the scene or not: a joint may be outside of it.
+/// All nodes of the file, whether in the scene or not: a joint may be outside of it.
 pub(super) struct Graph {
     pub(super) nodes: Vec<Node>,
     /// Their names as authored.
     pub(super) names: Vec<Option<String>>,
-    /// All nodes, each after its parent.
+    /// All nodes, parents before children.
     pub(super) parents_first: Vec<usize>,
-    /// Morph weights as authored; [`Node::morph_weights`] are ranges of this.
+    /// Morph weights as authored; [`Node::morph_weights`] are ranges in this list.
     pub(super) rest_weights: Vec<f64>,
 }
 
@@ -44,7 +44,7 @@ impl Local {
         }
     }
 
-    /// The same in parts; `None` if it shears.
+    /// The transform decomposed; `None` if it shears.
     pub(super) fn taken_apart(self) -> Option<Trs> {
         const TOLERANCE: f64 = 1e-4;
         let matrix = match self {
@@ -72,14 +72,15 @@ impl Local {
     }
 }
 
-/// From a node to its parent: scale first, then rotation (of unit length), then translation.
+/// Transform from a node to its parent: scale first, then rotation (of unit length), then
+/// translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trs {
     /// In units of the file.
     pub translation: DVec3,
-    /// Of unit length.
+    /// Unit quaternion.
     pub rotation: DQuat,
-    /// Along each axis.
+    /// Scale along each axis.
     pub scale: DVec3,
 }
 
@@ -108,7 +109,7 @@ pub(super) fn read(root: &Root, warnings: &mut Vec<ToyWarning>) -> Result<Graph,
     })
 }
 
-/// The nodes reached from the default scene (or the first, or all where there is no scene), each once.
+/// The nodes of the default scene (or the first, or all nodes if there is no scene), each once.
 pub(super) fn scene_nodes(root: &Root) -> Result<Vec<usize>, Flaw> {
     let scene = match root.scene {
         Some(index) => Some(get(root, "scene", index, "scene")?),
@@ -159,7 +160,7 @@ fn parents(root: &Root) -> Result<Vec<Option<usize>>, Flaw> {
     Ok(parents)
 }
 
-/// Orders the nodes so that each follows its parent; fails where one is its own ancestor.
+/// Orders the nodes so that each follows its parent; fails if one is its own ancestor.
 fn parents_first(parents: &[Option<usize>]) -> Result<Vec<usize>, Flaw> {
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); parents.len()];
     let mut order = Vec::with_capacity(parents.len());
@@ -174,7 +175,8 @@ fn parents_first(parents: &[Option<usize>]) -> Result<Vec<usize>, Flaw> {
         order.append(&mut children[node]);
         done += 1;
     }
-    // Each node has one parent at most, so those left over are in cycles, and their lists are still full.
+    // Each node has at most one parent, so the remaining ones are in cycles, and their lists are
+    // not empty.
     match children.iter().position(|left| !left.is_empty()) {
         Some(node) => Err(ToyProblem::Cycle { node }.at(format!("nodes[{node}].children"))),
         None => Ok(order),
@@ -201,7 +203,7 @@ fn append_weights(root: &Root, node: &json::Node, field: &str, all: &mut Vec<f64
     Ok(())
 }
 
-/// Morph targets of a mesh, by its first primitive; the others must have as many.
+/// Number of a mesh's morph targets, by its first primitive; the others must have the same number.
 pub(super) fn n_morph_targets(mesh: &Mesh) -> usize {
     mesh.primitives
         .first()
@@ -242,7 +244,7 @@ pub(super) fn unit_rotation(xyzw: [f64; 4]) -> Option<DQuat> {
 
 /// Reads a column-major 4 x 4 matrix. `element` names it in the error.
 pub(super) fn affine(columns: &[f32; 16], field: &str, element: usize) -> Result<DAffine3, Flaw> {
-    // Exporters that invert numerically leave a last row that is off by rounding.
+    // Exporters that invert numerically leave rounding errors in the last row.
     const TOLERANCE: f32 = 1e-4;
     check_range(field, columns, 16, &NUMBER)?;
     let [a, b, c, d] = [0, 4, 8, 12].map(|i| [columns[i], columns[i + 1], columns[i + 2], columns[i + 3]]);

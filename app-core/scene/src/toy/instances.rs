@@ -1,4 +1,4 @@
-//! Copies of a mesh that one node asks for: each becomes a node below it.
+//! Instances of a mesh at one node: each becomes a node below it.
 //!
 //! Source: the glTF extension `EXT_mesh_gpu_instancing`.
 
@@ -13,7 +13,7 @@ use super::error::Flaw;
 use super::limits::{MAX_NODES, NUMBER};
 use super::mend::Instances;
 
-/// Transforms of copies to their node; those of one kind are all there or none.
+/// Transforms of instances to their node; each list is complete or absent.
 struct Copies {
     n: usize,
     translations: Option<Vec<f32>>,
@@ -67,7 +67,7 @@ fn add(root: &mut Root, node: usize, copies: &Copies) -> Result<(), Flaw> {
         return Ok(());
     };
     let (mesh, weights) = (parent.mesh.take(), parent.weights.take());
-    // Copies follow their node; glTF knows no skinned ones.
+    // Instances follow their node; glTF has no skinned ones.
     parent.skin = None;
     let indices = (0..copies.n).filter_map(|i| u32::try_from(first + i).ok());
     parent

@@ -18,27 +18,27 @@ use super::warning::ToyWarning;
 pub struct Material {
     /// Linear RGBA, from 0 to 1; multiplies the texture and the vertex colour.
     pub base_color_linear: [f32; 4],
-    /// The texture, where there is one.
+    /// The texture, if there is one.
     pub base_color_texture: Option<MaterialTexture>,
-    /// Whether the back faces are seen too.
+    /// Whether the back faces are visible.
     pub double_sided: bool,
-    /// What of it is there, by its alpha.
+    /// Its use of alpha.
     pub(super) alpha: Alpha,
 }
 
-/// How alpha tells what is there.
+/// The effect of alpha.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Alpha {
-    /// It does not.
+    /// All is opaque.
     Opaque,
-    /// What has as much.
+    /// Parts with at least this alpha are opaque, others invisible.
     Mask(f32),
-    /// All of it, more or less clear.
+    /// All parts are visible, and transparent by alpha.
     Blend,
 }
 
 impl Material {
-    /// The default of glTF where a primitive names no material.
+    /// glTF's default for a primitive without a material.
     pub(super) const DEFAULT: Self = Self {
         base_color_linear: [1.0; 4],
         base_color_texture: None,
@@ -61,11 +61,11 @@ pub struct MaterialTexture {
 /// Addressing of a texture beyond its border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
-    /// The same again.
+    /// The texture repeats.
     Repeat,
-    /// The same, every other time in reverse.
+    /// The texture repeats, every other time mirrored.
     MirroredRepeat,
-    /// The texels of the border.
+    /// The border texels repeat.
     ClampToEdge,
 }
 
@@ -79,10 +79,10 @@ impl From<WrappingMode> for Wrap {
     }
 }
 
-/// How the crate writes that a texture has no source.
+/// The crate's value for a texture without a source.
 const NO_SOURCE: usize = u32::MAX as usize;
 
-/// The texture coordinate set that a material's base colour reads.
+/// The coordinate set of a material's base colour.
 pub(super) fn tex_coord(material: &JsonMaterial) -> u32 {
     material
         .pbr_metallic_roughness

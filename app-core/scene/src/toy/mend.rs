@@ -1,5 +1,5 @@
-//! The JSON tree, made such as the reader expects it: extensions that have a form in plain glTF are written in it, what a
-//! toy does not need is left out, and what only extensions tell is gathered.
+//! Normalises the JSON tree: extensions with an equivalent in plain glTF are rewritten, parts that
+//! a toy does not need are removed, and data that only extensions have is collected.
 
 use std::collections::HashMap;
 
@@ -13,20 +13,20 @@ use super::meshopt::{Compressed, Filter, Mode};
 use super::uv_transform::UvTransform;
 use super::warning::ToyWarning;
 
-/// What plain glTF has no place for.
+/// Data without a place in plain glTF.
 #[derive(Default)]
 pub(super) struct Extras {
-    /// How materials move the coordinates of their base colour's texture.
+    /// Materials' transforms of the coordinates of their base colour's texture.
     pub(super) uv_transforms: HashMap<usize, UvTransform>,
-    /// Textures that are in a format that is not read alone, and its extension.
+    /// Textures that exist only in an unsupported format, with its extension.
     pub(super) unread_textures: HashMap<usize, &'static str>,
     pub(super) instances: Vec<Instances>,
     pub(super) compressed: Vec<CompressedView>,
-    /// Clips that cannot be read, and why.
+    /// Unreadable clips, with the reason.
     pub(super) broken_clips: HashMap<usize, String>,
 }
 
-/// Copies of a node's mesh: accessors of their transforms to the node.
+/// Instances of a node's mesh: accessors of their transforms to the node.
 pub(super) struct Instances {
     pub(super) node: usize,
     pub(super) translation: Option<u32>,
@@ -115,7 +115,7 @@ fn index(value: Option<&Value>) -> Option<usize> {
     usize::try_from(value?.as_u64()?).ok()
 }
 
-/// Refuses primitives whose corners are compressed by Draco and not there in plain form, too.
+/// Refuses primitives that have Draco-compressed corners and no plain ones.
 fn refuse_draco(tree: &Value) -> Result<(), Flaw> {
     let accessors = tree.get("accessors").and_then(Value::as_array);
     for (i, mesh) in list(tree, "meshes").enumerate() {
@@ -132,7 +132,7 @@ fn refuse_draco(tree: &Value) -> Result<(), Flaw> {
     Ok(())
 }
 
-/// Takes the meshes of hidden nodes away, and those of all nodes below.
+/// Removes the meshes of hidden nodes, and of all nodes below.
 fn hide_nodes(tree: &mut Value) {
     let Some(nodes) = tree.get_mut("nodes").and_then(Value::as_array_mut) else {
         return;
@@ -190,7 +190,7 @@ fn mend_texture(i: usize, texture: &mut Map<String, Value>, unread: &mut HashMap
     }
 }
 
-/// The diffuse colour stands for the base colour.
+/// Uses the diffuse colour as base colour.
 fn mend_material(material: &mut Map<String, Value>) {
     let Some(glossy) = extension(material, "KHR_materials_pbrSpecularGlossiness") else {
         return;
@@ -256,7 +256,7 @@ fn compressed(i: usize, view: &Map<String, Value>) -> Result<Option<CompressedVi
     }))
 }
 
-/// Leaves out channels that move no node, and turns pointers to nodes into plain targets.
+/// Drops channels that animate no node, and converts pointers to nodes to plain targets.
 fn mend_clip(i: usize, animation: &mut Map<String, Value>, warnings: &mut Vec<ToyWarning>) {
     let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) else {
         return;
@@ -284,7 +284,7 @@ fn mend_clip(i: usize, animation: &mut Map<String, Value>, warnings: &mut Vec<To
     });
 }
 
-/// A node and what of it moves.
+/// The node and the property of a pointer.
 fn pointed(pointer: &str) -> Option<(u32, &str)> {
     let (node, path) = pointer.strip_prefix("/nodes/")?.split_once('/')?;
     let is_plain = ["translation", "rotation", "scale", "weights"].contains(&path);

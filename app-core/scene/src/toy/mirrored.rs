@@ -1,4 +1,4 @@
-//! Parts that a clip turns inside out: a scale that goes through zero, as in puppets that turn round.
+//! Parts that a clip mirrors: a scale that passes through zero, as in puppets that turn around.
 
 use std::collections::BTreeSet;
 
@@ -11,13 +11,14 @@ use super::rig::{Rig, Set};
 use super::surface::{Surface, is_mirrored, n_transforms};
 use super::warning::ToyWarning;
 
-/// Moments of a clip that are looked at.
+/// Largest number of checked moments of a clip.
 const MAX_MOMENTS: usize = 64;
 
-/// Transforms that are looked at in all clips together: some seconds' work.
+/// Largest number of checked transforms in all clips together: some seconds' work.
 const MAX_TRANSFORMS: usize = 16 << 20;
 
-/// For each surface, whether any clip mirrors it against how it is at rest, or may do so where there is too much to look at.
+/// For each surface, whether any clip mirrors it relative to its rest pose, or may do so if there
+/// is too much to check.
 pub(super) fn by_clips(
     rig: &Rig,
     geometries: &[Geometry],
@@ -67,7 +68,7 @@ pub(super) fn by_clips(
     both.map(|(found, unknown)| found || unknown).collect()
 }
 
-/// For each node, whether a clip gives it, or one above it, a scale of another sign than it has at rest.
+/// For each node, whether a clip gives it or an ancestor a scale of another sign than at rest.
 fn below_flips(rig: &Rig, clip: &Clip) -> Vec<bool> {
     let mut below = vec![false; rig.graph.nodes.len()];
     for channel in clip
@@ -92,7 +93,7 @@ fn has_flip(rig: &Rig, channel: &Channel) -> bool {
         .any(|(value, rest)| f64::from(*value) * rest < 0.0)
 }
 
-/// Surfaces that stand below such a node, or have a joint there.
+/// Surfaces below such a node, or with a joint there.
 fn moved_by_flips(rig: &Rig, clip: &Clip, surfaces: &[Surface]) -> Vec<usize> {
     let nodes = below_flips(rig, clip);
     let skins = rig.skins.iter();
@@ -105,7 +106,7 @@ fn moved_by_flips(rig: &Rig, clip: &Clip, surfaces: &[Surface]) -> Vec<usize> {
         .collect()
 }
 
-/// Times of its keys of scale, and between them; not all of many.
+/// Times of its keys of scale, and between them; a selection if there are many.
 fn moments(clip: &Clip) -> Vec<f64> {
     let scales = clip
         .channels

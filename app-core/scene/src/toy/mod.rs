@@ -1,17 +1,18 @@
 //! The toy: a glTF file as one posable mesh.
 //!
-//! [`Toy::from_glb`] reads a file once, checks everything in it, and lays out what stays the same in every pose:
-//! triangles, materials, texture coordinates, and the same triangles as a shape alone (`shadow_indices`), also with fewer of
-//! them (`casters`, `simplify`).
-//! [`Toy::pose`] then moves the vertices: a clip's tracks (`clip`, `track`) or the caller set nodes and morph weights
-//! (`rig`), the weights shape a surface (`geometry`), and its node or its skin's joints carry it (`surface`, `skin`).
+//! [`Toy::from_glb`] reads a file once, checks everything in it, and lays out all data that does
+//! not depend on the pose: triangles, materials, texture coordinates, and the same triangles as a
+//! shape alone (`shadow_indices`), also with fewer of them (`casters`, `simplify`). [`Toy::pose`]
+//! then moves the vertices: a clip's tracks (`clip`, `track`) or the caller set nodes and morph
+//! weights (`rig`), the weights shape a surface (`geometry`), and its node or its skin's joints
+//! carry it (`surface`, `skin`).
 //!
-//! Object space is the space of the glTF scene: right-handed, +Y up, in whatever unit the file was made.
-//! [`Toy::displaced`] is the same toy with another shape, which every pose carries.
-//! What extensions say is written in plain glTF first (`mend`), or decoded (`meshopt`); what materials cut out by alpha is
-//! cut out of the triangles (`cut`), so that every pass sees the same shape.
-//! A toy opens no file itself: [`packed`] makes one file of several, and pictures that are still outside are left out with a
-//! warning.
+//! Object space is the space of the glTF scene: right-handed, +Y up, in whatever unit the file was
+//! made. [`Toy::displaced`] is the same toy with another shape in every pose. Extensions are
+//! converted to plain glTF first (`mend`), or decoded (`meshopt`); triangles are cut along
+//! materials' alpha cut-outs (`cut`), so that every pass sees the same shape. A toy opens no file
+//! itself: [`packed`] makes one file of several, and pictures that are still outside are skipped
+//! with a warning.
 
 mod accessor;
 mod assemble;
@@ -99,11 +100,12 @@ impl fmt::Debug for Toy {
 impl Toy {
     /// Reads a glTF 2.0 file, binary or as JSON with its data in it. `file` names it in messages.
     ///
-    /// Only the default scene is drawn (the first where there is none). Vertices that no triangle uses are dropped.
+    /// Only the default scene is drawn, or the first if there is no default. Unused vertices are
+    /// dropped.
     ///
     /// # Errors
-    /// [`ToyError::Malformed`] for anything that glTF forbids, that is not finite or too large, for a required
-    /// extension that is not supported, and where no triangle is left.
+    /// [`ToyError::Malformed`] if the file violates glTF, if a number is not finite or too large,
+    /// if a required extension is not supported, or if no triangle is left.
     pub fn from_glb(file: &str, bytes: &[u8]) -> Result<Self, ToyError> {
         assemble::assemble(file, bytes).map_err(|flaw| flaw.in_file(file))
     }
@@ -118,10 +120,11 @@ impl Toy {
         (0..self.clips().len()).map(ClipId)
     }
 
-    /// Finds a clip by its name, or by `#N`, its number from 0. A name wins over a number.
+    /// Finds a clip by its name, or by `#N`, its number from 0. A name has priority over a number.
     ///
     /// # Errors
-    /// [`ToyError::UnknownClip`], which lists the names that there are; [`ToyError::BrokenClip`] for one that cannot be read.
+    /// [`ToyError::UnknownClip`], which lists the existing names; [`ToyError::BrokenClip`] for an
+    /// unreadable one.
     pub fn find_clip(&self, name: &str) -> Result<ClipId, ToyError> {
         let by_name = || {
             self.clips()
@@ -151,7 +154,7 @@ impl Toy {
         }
     }
 
-    /// A name for each clip that [`Toy::find_clip`] takes: `#N` for those without one.
+    /// A name for each clip that [`Toy::find_clip`] accepts: `#N` for those without one.
     pub fn clip_names(&self) -> Vec<String> {
         let clips = self.clips().iter().enumerate();
         clips
@@ -159,7 +162,7 @@ impl Toy {
             .collect()
     }
 
-    /// Clamps a time to a clip, and returns whether it lay beyond its end.
+    /// Clamps a time to a clip, and returns whether it was beyond its end.
     ///
     /// # Errors
     /// An id of another toy, or a time that is negative or not finite.
@@ -189,22 +192,23 @@ impl Toy {
         &self.draws.parts
     }
 
-    /// Corners of all triangles, counter-clockwise seen from outside; each below [`Toy::n_vertices`].
+    /// Corners of all triangles, counter-clockwise from outside; each below [`Toy::n_vertices`].
     pub fn indices(&self) -> &[u32] {
         &self.draws.indices
     }
 
-    /// The same triangles for passes that need positions alone.
+    /// The same triangles for passes that need only positions.
     pub fn shadow_indices(&self) -> &ShadowIndices {
         &self.shadow_indices
     }
 
-    /// Base colour texture coordinates, one for each vertex, v downwards; zero where a part has none.
+    /// Base colour texture coordinates, one for each vertex, v downwards; zero for a part without
+    /// any.
     pub fn uvs(&self) -> &[[f32; 2]] {
         &self.draws.uvs
     }
 
-    /// Linear RGBA, one for each vertex, white where a part has none; `None` where no part has any.
+    /// Linear RGBA, one for each vertex, white for a part without any; `None` if no part has any.
     pub fn colors_linear(&self) -> Option<&[[f32; 4]]> {
         (!self.draws.colors_linear.is_empty()).then_some(&self.draws.colors_linear)
     }

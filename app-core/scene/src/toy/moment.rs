@@ -17,10 +17,10 @@ pub enum Pose {
     Clip {
         /// The clip.
         clip: ClipId,
-        /// Time within it; beyond its end it shows its end.
+        /// Time within it; a time beyond its end means its end.
         time_secs: f64,
     },
-    /// The nodes as the caller sets them: by physics, by a rig of the app's own.
+    /// The nodes as set by the caller, for example from physics or an app's own rig.
     Nodes(Arc<NodePose>),
 }
 
@@ -28,17 +28,18 @@ pub enum Pose {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NodeId(pub(super) usize);
 
-/// Transforms of nodes, joints among them, and weights of morph targets; what is not named stays as authored.
+/// Transforms of nodes, joints among them, and weights of morph targets; other nodes stay as
+/// authored.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NodePose {
-    /// From a node to its parent.
+    /// Transforms from nodes to their parents.
     pub parent_from_node: Vec<(NodeId, Trs)>,
-    /// One for each morph target of the node's mesh.
+    /// Weights, one for each morph target of the node's mesh.
     pub morph_weights: Vec<(NodeId, Vec<f64>)>,
 }
 
 impl Pose {
-    /// The clip that it is a moment of.
+    /// The clip, if it is a moment of one.
     #[must_use]
     pub fn clip(&self) -> Option<ClipId> {
         match self {
@@ -49,10 +50,10 @@ impl Pose {
 }
 
 impl Toy {
-    /// Finds a node by the name that it was authored with, the first of several.
+    /// Finds a node by its authored name, the first of several.
     ///
     /// # Errors
-    /// [`ToyError::UnknownNode`], which lists the names that there are.
+    /// [`ToyError::UnknownNode`], which lists the existing names.
     pub fn find_node(&self, name: &str) -> Result<NodeId, ToyError> {
         let names = &self.rig.graph.names;
         let found = names.iter().position(|one| one.as_deref() == Some(name));
@@ -63,7 +64,7 @@ impl Toy {
         })
     }
 
-    /// The transform that a node was authored with; none where that is a matrix.
+    /// The authored transform of a node; `None` if that is a matrix.
     ///
     /// # Errors
     /// A node of another toy.

@@ -1,8 +1,10 @@
-//! Which side of a mesh is out: repairs normals without length, normals that point inwards, and pieces inside out.
+//! The outer side of a mesh: repairs zero normals, normals that point inwards, and pieces that are
+//! inside out.
 //!
-//! Triangles run counter-clockwise seen from outside, as glTF has it, and a closed piece encloses a volume. A closed
-//! piece whose volume is negative is inside out, whatever its normals say: its triangles are turned around. Where a
-//! piece is open its triangles are right. Normals that then point away from most of the area are turned around.
+//! Triangles are counter-clockwise from outside, as glTF defines it, and a closed piece encloses a
+//! volume. A closed piece of negative volume is inside out, whatever its normals: its triangles are
+//! reversed. The triangles of an open piece are assumed right. Normals that then point away from
+//! most of the area are reversed.
 
 use std::collections::HashMap;
 
@@ -37,13 +39,13 @@ pub(super) fn turn_outward(geometries: &mut [Geometry], fields: &[String], warni
     }
 }
 
-/// The vector along a triangle's normal, of twice its area.
+/// The vector along a triangle's normal whose length is twice the area.
 fn face(geometry: &Geometry, corners: [u32; 3]) -> DVec3 {
     let [a, b, c] = corners.map(|corner| geometry.positions[corner as usize].as_dvec3());
     (b - a).cross(c - a)
 }
 
-/// Replaces normals without length by the mean of the faces around, weighted by area; returns how many there were.
+/// Replaces zero normals by the mean of the adjacent faces, weighted by area; returns their number.
 fn fill_normals(geometry: &mut Geometry) -> usize {
     let is_zero = |normal: &Vec3| normal.as_dvec3().length_squared() == 0.0;
     let Some(normals) = geometry.normals.as_ref().filter(|all| all.iter().any(is_zero)) else {
@@ -67,25 +69,26 @@ fn fill_normals(geometry: &mut Geometry) -> usize {
 /// A mesh welded by position, in pieces.
 struct Shape {
     pieces: Pieces,
-    /// For each primitive and each of its vertices, the vertex that it is welded to.
+    /// For each primitive and each of its vertices, the welded vertex.
     welded: Vec<Vec<u32>>,
 }
 
-/// Triangles that are judged together: a closed piece by its root, or all of a primitive that is open.
+/// Triangles with a common decision: a closed piece by its root, or all open triangles of a
+/// primitive.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Group {
     Closed { root: usize, is_inside_out: bool },
     Open,
 }
 
-/// Area whose normals point to the outer side of their triangles as written, and to the inner side.
+/// Area whose normals point to the outer side of the triangles as written, and to the inner side.
 #[derive(Clone, Copy, Default)]
 struct Sides {
     outer: f64,
     inner: f64,
 }
 
-/// The triangles and normals of one primitive that are to be turned around.
+/// The triangles and normals of one primitive to reverse.
 struct Turns {
     triangles: Vec<bool>,
     normals: Vec<bool>,
@@ -98,7 +101,7 @@ impl Shape {
         let mut weld = |position: &Vec3| {
             *known.entry(place_bits(*position)).or_insert_with(|| {
                 places.push(*position);
-                // Vertices are counted when they are read.
+                // Vertices are limited when they are read.
                 u32::try_from(places.len() - 1).unwrap_or(u32::MAX)
             })
         };
@@ -168,7 +171,8 @@ impl Shape {
 }
 
 impl Sides {
-    /// Adds a corner of a triangle; `along` is positive where its normal points to the triangle's outer side.
+    /// Adds a corner of a triangle; `along` is positive if its normal points to the triangle's
+    /// outer side.
     fn add(&mut self, area: f64, along: f64) {
         if along > 0.0 {
             self.outer += area;
@@ -179,14 +183,14 @@ impl Sides {
 }
 
 impl Turns {
-    /// Returns how many triangles were turned around.
+    /// Returns the number of reversed triangles.
     fn turn_faces(&self, geometry: &mut Geometry) -> usize {
         let turned = || (0..).zip(&self.triangles).filter(|(_, turn)| **turn);
         turned().for_each(|(triangle, _)| geometry.turn_triangle(triangle));
         turned().count()
     }
 
-    /// Returns how many normals were turned around.
+    /// Returns the number of reversed normals.
     fn turn_normals(&self, geometry: &mut Geometry) -> usize {
         let turned = || (0..).zip(&self.normals).filter(|(_, turn)| **turn);
         turned().for_each(|(vertex, _)| geometry.turn_normal(vertex));

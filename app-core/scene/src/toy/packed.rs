@@ -1,4 +1,4 @@
-//! One file of several: a glTF whose buffers and pictures lie beside it becomes binary glTF that has them in it.
+//! Packs a glTF with external buffers and pictures into one binary glTF.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -12,10 +12,11 @@ use super::error::{Flaw, ToyError, ToyProblem};
 use super::limits::MAX_FILE_BYTES;
 use super::mend::MESHOPT;
 
-/// Binary glTF of a file and its neighbours; the bytes as they are if it has none.
+/// Binary glTF of a file and its external files; the unchanged bytes if it has none.
 ///
-/// `read` is asked for the bytes of a neighbour by its name as seen from the file, with `/` between its parts; an error is
-/// words for a person. Buffers must be there. Pictures that are not are left out, with a warning once the toy is read.
+/// `read` is called for the bytes of an external file by its name relative to the file, with `/`
+/// between its parts; its error is a text for people. Buffers must exist. Missing pictures are
+/// skipped, with a warning once the toy is read.
 ///
 /// # Errors
 /// [`ToyError::Malformed`] if the bytes are no glTF, or a buffer cannot be read.
@@ -57,7 +58,8 @@ struct Packing<'r> {
     read: &'r mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 }
 
-/// The bytes of a buffer in the one of the packed file; `Err` is the number of one that stays for itself.
+/// The range of a buffer in the packed file's buffer; `Err` is the number of a buffer that stays
+/// separate.
 type Place = Result<Range<usize>, usize>;
 
 impl Packing<'_> {
@@ -80,12 +82,13 @@ impl Packing<'_> {
             let name = name.to_owned();
             ToyProblem::Neighbour { name, reason }.at(field)
         };
-        let name = base64::percent_decoded(uri).ok_or_else(|| flaw(uri, "the name is no text".to_owned()))?;
+        let name =
+            base64::percent_decoded(uri).ok_or_else(|| flaw(uri, "the name is not valid text".to_owned()))?;
         let name = name.strip_prefix("./").unwrap_or(&name);
         (self.read)(name).map_err(|reason| flaw(name, reason))
     }
 
-    /// Makes one buffer of all that have bytes.
+    /// Joins all buffers with bytes into one.
     fn buffers(&mut self, json: &mut Value, own: &[u8]) -> Result<Vec<Place>, Flaw> {
         let buffers = json
             .get_mut("buffers")
@@ -123,7 +126,7 @@ impl Packing<'_> {
             let Some(Uri::Elsewhere(uri)) = uri(image) else {
                 continue;
             };
-            // It is warned about when the toy is read.
+            // The toy's reader warns about it.
             let Ok(bytes) = self.neighbour(&format!("images[{i}].uri"), uri) else {
                 continue;
             };
@@ -169,7 +172,7 @@ fn check_end(end: u64, available: usize, field: &str) -> Result<(), Flaw> {
     }
 }
 
-/// Lets views, and what is compressed in them, refer to the one buffer.
+/// Makes views, and their compressed data, refer to the joined buffer.
 fn move_views(json: &mut Value, places: &[Place]) -> Result<(), Flaw> {
     let views = json.get_mut("bufferViews").and_then(Value::as_array_mut);
     for (i, view) in views.into_iter().flatten().enumerate() {
@@ -192,7 +195,7 @@ fn move_views(json: &mut Value, places: &[Place]) -> Result<(), Flaw> {
     Ok(())
 }
 
-/// A view beyond its own buffer is refused, since bytes of the next one follow.
+/// A view beyond its own buffer is refused, since bytes of the next buffer follow.
 fn move_view(view: &mut Map<String, Value>, places: &[Place], field: &str) -> Result<(), Flaw> {
     let number = |key: &str| view.get(key).and_then(Value::as_u64);
     let buffer = number("buffer").and_then(|buffer| usize::try_from(buffer).ok());
@@ -208,7 +211,7 @@ fn move_view(view: &mut Map<String, Value>, places: &[Place], field: &str) -> Re
             );
         }
         Some(Err(kept)) => drop(view.insert("buffer".to_owned(), (*kept).into())),
-        // A reference to no buffer stays one.
+        // A reference to no buffer stays invalid.
         None => drop(view.insert("buffer".to_owned(), u32::MAX.into())),
     }
     Ok(())

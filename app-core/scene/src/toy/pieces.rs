@@ -1,4 +1,4 @@
-//! Pieces of a shape: which triangles hang together, which pieces are closed, and which of those are inside out.
+//! Pieces of a shape: connected components, and whether they are closed or inside out.
 
 use std::collections::HashMap;
 
@@ -11,22 +11,23 @@ use crate::geometry::edges::edges;
 pub(super) struct Pieces {
     /// Vertices that edges connect.
     connected: DisjointSets,
-    /// For each root, whether its piece has an edge that is not met from both sides alike.
+    /// For each root, whether its piece has an edge with unequal numbers of triangles on both
+    /// sides.
     is_open: Vec<bool>,
-    /// Of each piece, by its root.
+    /// Volume of each piece, by its root.
     volumes: HashMap<usize, Volume>,
 }
 
-/// Six times a volume: negative where faces look inwards.
+/// Six times a volume: negative if faces look inwards.
 #[derive(Clone, Copy, Default)]
 struct Volume {
     signed: f64,
-    /// The most that rounding can have changed it by.
+    /// Bound on its rounding error.
     rounding: f64,
 }
 
 impl Pieces {
-    /// `places` are the positions of all vertices, each in its node.
+    /// Pieces of triangles. `places` are the positions of all vertices, each in its node.
     pub(super) fn of(triangles: &[[u32; 3]], places: &[Vec3]) -> Self {
         let mut pieces = Self {
             connected: DisjointSets::new(places.len()),
@@ -55,13 +56,14 @@ impl Pieces {
             .is_some_and(|volume| volume.signed > 0.0)
     }
 
-    /// Whether it is closed and beyond doubt its faces look inwards: a sheet with two sides has no volume but rounding.
+    /// Whether it is closed and certainly inside out: the volume of a two-sided sheet is nothing
+    /// but rounding.
     pub(super) fn is_inside_out(&mut self, corner: u32) -> bool {
         self.closed_volume(corner)
             .is_some_and(|volume| volume.signed < -volume.rounding)
     }
 
-    /// The vertex that stands for the whole piece of another one: its first.
+    /// The vertex that represents the piece of another one: its first.
     pub(super) fn root(&mut self, corner: u32) -> usize {
         self.connected.first(corner as usize)
     }
@@ -76,7 +78,8 @@ impl Pieces {
 impl Volume {
     /// Adds the tetrahedron from the origin to a triangle.
     fn add(&mut self, [a, b, c]: [DVec3; 3]) {
-        // Products of three numbers of 32 bits, in sums of nine: a rounding each, and those of adding up.
+        // Products of three numbers of 32 bits, in sums of nine: one rounding each, and those of
+        // the sum.
         const N_ROUNDINGS: f64 = 16.0;
         self.signed += a.dot(b.cross(c));
         self.rounding += N_ROUNDINGS * f64::EPSILON * a.length() * b.length() * c.length();

@@ -12,7 +12,7 @@ use super::normal::{carried_normal, face_normal};
 use super::rig::{RigPose, Set};
 use super::surface::Surface;
 
-/// The vertices of a posed toy. Reuse it from frame to frame, which saves allocations.
+/// The vertices of a posed toy. Reuse it from frame to frame to save allocations.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PosedMesh {
     /// One for each vertex, in anchor space.
@@ -33,12 +33,12 @@ impl Toy {
     ///
     /// `anchor_from_object` is affine and does not mirror; object space is that of the glTF scene.
     /// A time beyond the clip shows its end. Everything is composed in 64 bits and stored in 32.
-    /// Where an animated scale changes sign, normals stay outward, but the triangles' winding is that at rest; those that a clip
-    /// mirrors count as open, and are drawn from both sides.
+    /// Where an animated scale changes sign, normals stay outward, but the triangles' winding is
+    /// that at rest; those that a clip mirrors count as open, and are drawn from both sides.
     ///
     /// # Errors
-    /// An id of another toy, a time or a transform that is not one or too large, or a position that is not from -1e6 m
-    /// to 1e6 m along each axis.
+    /// An id of another toy, an invalid time or transform, or a position that is not from
+    /// -1e6 m to 1e6 m along each axis.
     pub fn pose(&self, pose: &Pose, anchor_from_object: &DMat4, out: &mut PosedMesh) -> Result<(), ToyError> {
         let rig_pose = self.rig_pose(pose, DAffine3::from_mat4(*anchor_from_object))?;
         out.positions.resize(self.n_vertices(), Vec3::ZERO);
@@ -93,9 +93,9 @@ impl Toy {
             if largest > MAX_NUMBER {
                 return flaw(*id, "its transform is not from -1000000000000 to 1000000000000");
             }
-            // Neither zero nor beyond 64 bits when squared.
+            // Neither zero nor out of range when squared.
             if !trs.rotation.length_recip().is_normal() {
-                return flaw(*id, "its rotation has no length that can be taken out");
+                return flaw(*id, "its rotation is no quaternion that can be normalised");
             }
         }
         for (id, weights) in &pose.morph_weights {
@@ -129,7 +129,7 @@ impl Toy {
     }
 }
 
-/// Whether each coordinate is a number of no more than `max` either way.
+/// Whether the absolute value of each coordinate is at most `max`.
 pub(super) fn is_within(position: Vec3, max: f64) -> bool {
     position
         .to_array()
@@ -144,7 +144,7 @@ fn pose_surface(
     active: &[ActiveTarget],
     (positions, normals): (&mut [Vec3], &mut [Vec3]),
 ) {
-    // Without normals each triangle has three vertices of its own, which follow one another.
+    // Without normals, each triangle has three consecutive vertices of its own.
     let mut corners = [DVec3::ZERO; 3];
     surface.deform(geometry, pose, active, |vertex, position, anchor_from_mesh| {
         let linear = &anchor_from_mesh.matrix3;

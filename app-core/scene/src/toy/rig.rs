@@ -22,10 +22,10 @@ pub(super) enum Set<'a> {
     Nodes(&'a NodePose),
 }
 
-/// The rig at one moment. `anchor` is the space that everything is posed in.
+/// The rig at one moment. `anchor` is the posing space.
 pub(super) struct RigPose {
     pub(super) anchor_from_node: Vec<DAffine3>,
-    /// For each skin: for each joint, its transform of a mesh's vertices.
+    /// For each skin and each joint, the transform of a mesh's vertices.
     pub(super) anchor_from_mesh_by_joint: Vec<Vec<DAffine3>>,
     morph_weights: Vec<f64>,
 }
@@ -75,7 +75,7 @@ impl Rig {
         &pose.morph_weights[self.graph.nodes[node].morph_weights.clone()]
     }
 
-    /// `pose` has been checked.
+    /// The caller has checked `pose`.
     fn apply_nodes(&self, pose: &NodePose, locals: &mut [Local], morph_weights: &mut [f64]) {
         for (node, trs) in &pose.parent_from_node {
             locals[node.0] = Local::Decomposed(Trs {

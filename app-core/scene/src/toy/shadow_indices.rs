@@ -1,9 +1,9 @@
-//! The toy as a shape alone, for passes that need no material: vertices are welded by position, and closed pieces
-//! separated from open ones.
+//! The toy's shape alone, for passes without materials: vertices are welded by position, and closed
+//! pieces are separated from open ones.
 //!
-//! Vertices are split where normals, coordinates or materials change, which shadows do not depend on: welded again, a
-//! mesh has a fraction of them to transform.
-//! Source: the "shadow index buffer" of meshoptimizer; here vertices are welded only if no pose can separate them.
+//! Vertices are split at changes of normals, coordinates or materials, which shadows do not depend
+//! on: after welding, a fraction of them is left to transform. Source: the "shadow index buffer" of
+//! meshoptimizer; here vertices are welded only if no pose can separate them.
 
 use std::collections::HashMap;
 
@@ -16,18 +16,18 @@ use super::surface::Surface;
 /// Triangles of welded corners.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ShadowIndices {
-    /// Corners of triangles, each the first of the vertices that coincide with it in every pose: those of closed pieces,
-    /// then those of open ones.
+    /// Corners of triangles, each the first of the vertices that coincide with it in every pose:
+    /// closed pieces first, then open ones.
     pub indices: Vec<u32>,
-    /// How many of the corners are of closed pieces, whose faces look outwards.
+    /// Number of corners of closed pieces, whose faces look outwards.
     pub n_closed: usize,
-    /// For each of the toy's own triangles, whether it is of such a piece.
+    /// For each of the toy's own triangles, whether it belongs to a closed piece.
     pub is_of_closed: Vec<bool>,
 }
 
 impl ShadowIndices {
-    /// Of the triangles `indices`, three corners each, of surfaces that are laid out one after the other. Those that clips mirror
-    /// count as open: their faces look inwards at times.
+    /// Builds it from the triangles `indices`, three corners each, of consecutive surfaces. Pieces
+    /// that clips mirror count as open: their faces look inwards at times.
     pub(super) fn new(
         surfaces: &[Surface],
         geometries: &[Geometry],
@@ -39,7 +39,7 @@ impl ShadowIndices {
         let welded: Vec<_> = corners
             .map(|corners: &[u32; 3]| corners.map(|corner| first_alike[corner as usize]))
             .collect();
-        // Without area they hide nothing.
+        // Triangles without area hide nothing.
         let has_area = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
         let triangles: Vec<_> = welded.iter().copied().filter(has_area).collect();
         let places = surfaces
@@ -64,14 +64,16 @@ impl ShadowIndices {
         }
     }
 
-    /// Whether every triangle is of a closed piece, so that those which face a point outside hide from it all that the toy
-    /// does: a ray to it leaves a piece as often as it enters it, or once more where it starts inside.
+    /// Whether every triangle belongs to a closed piece, so that the triangles facing an outside
+    /// point occlude all that the toy does: a ray to it leaves a piece as often as it enters it, or
+    /// once more if it starts inside.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.n_closed == self.indices.len()
     }
 
-    /// Triangles of which those that face an eye cover all that the toy covers: open pieces are among them from both sides.
+    /// Triangles of which those facing an eye cover the whole toy: those of open pieces are
+    /// included twice, once per side.
     pub fn facing_anywhere(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         let triangles = |indices| <[u32]>::as_chunks::<3>(indices).0.iter().copied();
         let open = triangles(&self.indices[self.n_closed..]);
@@ -93,8 +95,8 @@ pub(super) fn first_alike(surfaces: &[Surface], geometries: &[Geometry]) -> Vec<
         .collect()
 }
 
-/// For each vertex of each geometry an index that it shares with those that always move alike, drawn by the same
-/// node.
+/// For each vertex of each geometry an index that it shares with all vertices that always move
+/// alike, drawn by the same node.
 fn movements(geometries: &[Geometry]) -> Vec<Vec<usize>> {
     let mut known = HashMap::new();
     let mut number = |key: Vec<u32>| {

@@ -22,13 +22,13 @@ pub(super) struct Skin {
 /// The joints that the vertices of a primitive follow.
 #[derive(Clone)]
 pub(super) struct Influences {
-    /// Joints of each vertex, a multiple of four.
+    /// Number of joints per vertex, a multiple of four.
     pub(super) n_per_vertex: usize,
-    /// Joints within the skin; 0 where the weight is 0.
+    /// Indices of joints within the skin; 0 if the weight is 0.
     pub(super) joints: Vec<u16>,
-    /// Not negative; those of a vertex sum to one.
+    /// Weights, not negative; those of a vertex sum to one.
     pub(super) weights: Vec<f32>,
-    /// Vertices whose weights had to be repaired to sum to one.
+    /// Number of vertices whose weights were repaired to sum to one.
     pub(super) n_repaired: usize,
 }
 
@@ -56,7 +56,7 @@ impl Influences {
         blend
     }
 
-    /// One more than the highest joint that is followed.
+    /// One more than the highest joint in use.
     pub(super) fn n_joints_needed(&self) -> usize {
         self.joints
             .iter()
@@ -134,7 +134,7 @@ fn read_matrices(
         .collect()
 }
 
-/// Reads every set of joints and weights; `None` where there is none.
+/// Reads every set of joints and weights; `None` if there is none.
 pub(super) fn read_influences(
     source: &Source,
     field: &str,
@@ -179,7 +179,7 @@ pub(super) fn read_influences(
         for (joints, weights) in &sets {
             let row = 4 * vertex..4 * vertex + 4;
             influences.weights.extend_from_slice(&weights[row.clone()]);
-            // A joint index that does not fit is out of any skin's range and is refused as such later.
+            // An index that does not fit is out of every skin's range, and is refused later.
             influences
                 .joints
                 .extend(joints[row].iter().map(|&j| u16::try_from(j).unwrap_or(u16::MAX)));
@@ -189,9 +189,9 @@ pub(super) fn read_influences(
     Ok(Some(influences))
 }
 
-/// Makes the weights of one vertex sum to one, and lets joints without weight be joint 0.
+/// Makes the weights of one vertex sum to one, and replaces joints without weight by joint 0.
 fn repair(influences: &mut Influences, vertex: usize) {
-    // Eight bits cannot represent thirds: any smaller difference is the rounding of a good exporter.
+    // Eight bits cannot represent thirds: a smaller difference is the rounding of a good exporter.
     const TOLERANCE: f32 = 1.0 / 255.0;
     let row = vertex * influences.n_per_vertex..(vertex + 1) * influences.n_per_vertex;
     let (weights, joints) = (&mut influences.weights[row.clone()], &mut influences.joints[row]);

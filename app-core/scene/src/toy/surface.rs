@@ -7,7 +7,7 @@ use glam::{DAffine3, DVec3, Vec2, Vec4};
 use super::geometry::{ActiveTarget, Geometry};
 use super::rig::RigPose;
 
-/// One draw: a run of triangles with one material.
+/// One draw: a range of triangles with one material.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
     /// Index into [`Toy::materials`](super::Toy::materials).
@@ -21,11 +21,11 @@ pub(super) struct Surface {
     /// Index into the toy's geometries.
     pub(super) geometry: usize,
     pub(super) node: usize,
-    /// The skin that moves it; without one the node does.
+    /// The skin that moves it; if `None`, the node does.
     pub(super) skin: Option<usize>,
     pub(super) material: usize,
     pub(super) first_vertex: usize,
-    /// Whether it is mirrored at rest, so that its triangles are turned around.
+    /// Whether it is mirrored at rest, so that its triangles are reversed.
     pub(super) is_mirrored: bool,
 }
 
@@ -54,14 +54,15 @@ impl Surface {
     }
 }
 
-/// Whether most vertices have a transform that mirrors.
+/// Whether most vertices have a mirroring transform.
 pub(super) fn is_mirrored(surface: &Surface, geometry: &Geometry, rest: &RigPose) -> bool {
     let n = n_transforms(surface, geometry);
     let mirrors = |&v: &usize| surface.anchor_from_mesh(geometry, v, rest).matrix3.determinant() < 0.0;
     2 * (0..n).filter(mirrors).count() > n
 }
 
-/// First vertices that have all the transforms that any has: one if the node moves the surface, else all.
+/// Number of vertices, from the first on, that have all of the surface's transforms: one if the
+/// node moves the surface, else all.
 pub(super) fn n_transforms(surface: &Surface, geometry: &Geometry) -> usize {
     match (&geometry.influences, surface.skin) {
         (Some(_), Some(_)) => geometry.positions.len(),
@@ -69,17 +70,17 @@ pub(super) fn n_transforms(surface: &Surface, geometry: &Geometry) -> usize {
     }
 }
 
-/// Draws that are the same in every pose: triangles, coordinates and colours.
+/// Pose-independent data of draws: triangles, coordinates and colours.
 #[derive(Default)]
 pub(super) struct Draws {
     pub(super) parts: Vec<Part>,
     pub(super) indices: Vec<u32>,
     pub(super) uvs: Vec<[f32; 2]>,
-    /// Empty where no surface has colours.
+    /// Empty if no surface has colours.
     pub(super) colors_linear: Vec<[f32; 4]>,
 }
 
-/// Lays the surfaces out. Their vertices and indices together are bounded far below 2^32.
+/// Lays the surfaces out in common buffers. The limits keep vertices and indices far below 2^32.
 pub(super) fn lay_out(surfaces: &[Surface], geometries: &[Geometry]) -> Draws {
     let mut draws = Draws::default();
     let has_colors = surfaces

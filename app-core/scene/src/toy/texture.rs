@@ -1,4 +1,4 @@
-//! Pictures embedded in the file, decoded to bytes.
+//! Pictures embedded in the file, decoded.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -32,7 +32,7 @@ impl fmt::Debug for Texture {
     }
 }
 
-/// What is said of a picture that is not read.
+/// The warning about an unreadable picture.
 fn left_out(field: String, bytes: Option<&[u8]>, image: &Image) -> ToyWarning {
     let outside = match image.uri.as_deref().map(base64::read) {
         Some(Uri::Elsewhere(uri)) if bytes.is_none() => Some(uri),
@@ -70,7 +70,7 @@ impl<'a> TextureStore<'a> {
         }
     }
 
-    /// The texture of an image; `None`, with a warning, where the image is not one that is read.
+    /// The texture of an image; `None`, with a warning, if the image cannot be read.
     pub(super) fn texture(
         &mut self,
         index: usize,
@@ -107,7 +107,7 @@ impl<'a> TextureStore<'a> {
 
     fn decode(&mut self, bytes: &[u8], format: ImageFormat) -> Result<Texture, ToyProblem> {
         let reader = || ImageReader::with_format(Cursor::new(bytes), format);
-        // From the header alone, so that a lying one cannot make the decoder allocate.
+        // From the header alone, so that a wrong one cannot make the decoder allocate.
         let (width_px, height_px) = reader().into_dimensions()?;
         let side = width_px.max(height_px);
         if side > MAX_TEXTURE_SIDE_PX {

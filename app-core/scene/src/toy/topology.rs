@@ -1,11 +1,11 @@
-//! Lists, strips and fans as plain triangles, and the vertices they use.
+//! Converts lists, strips and fans to plain triangles, and selects their vertices.
 
 use gltf::json::mesh::Mode;
 
 /// Triangles as a flat list of corners; `None` for points and lines.
 ///
-/// Triangles with a repeated corner, which strips are stitched with, are dropped.
-/// Source: glTF 2.0 specification, 3.7.2.1 (topology types).
+/// Triangles with a repeated corner, which connect strips, are dropped. Source: glTF 2.0
+/// specification, 3.7.2.1 (topology types).
 pub(super) fn triangles(mode: Mode, corners: &[u32]) -> Option<Vec<u32>> {
     let windows = || corners.windows(3).enumerate();
     let triangles: Vec<[u32; 3]> = match mode {
@@ -28,7 +28,7 @@ pub(super) fn triangles(mode: Mode, corners: &[u32]) -> Option<Vec<u32>> {
 
 /// Vertices to keep, and triangles that refer to them.
 pub(super) struct Corners {
-    /// For each kept vertex, the one it is a copy of.
+    /// For each kept vertex, its source.
     pub(super) sources: Vec<u32>,
     /// Corners of the triangles, as indices of kept vertices.
     pub(super) indices: Vec<u32>,

@@ -25,9 +25,10 @@ impl Interpolation {
     }
 }
 
-/// Keys of one value of `width` numbers. Before the first and after the last key the value stands still.
+/// Keys of one value of `width` numbers. Before the first and after the last key the value is
+/// constant.
 pub(super) struct Track {
-    /// Rising strictly; at least one.
+    /// Strictly increasing; at least one.
     pub(super) times_secs: Vec<f64>,
     /// `times_secs.len() * interpolation.values_per_key() * width` finite numbers.
     pub(super) values: Vec<f32>,
@@ -36,7 +37,7 @@ pub(super) struct Track {
     pub(super) interpolation: Interpolation,
 }
 
-/// Two neighbouring keys and the position between them; the same key twice outside the track.
+/// Two neighbouring keys and the position between them; twice the same key outside the track.
 struct Span {
     from: usize,
     to: usize,
@@ -65,7 +66,8 @@ impl Track {
         }
     }
 
-    /// The rotation at a time; keys are (x, y, z, w). Linear tracks turn along the shorter great circle.
+    /// The rotation at a time; keys are (x, y, z, w). Linear tracks rotate along the shorter great
+    /// circle.
     pub(super) fn sample_rotation(&self, time_secs: f64) -> DQuat {
         let span = self.span(time_secs);
         let from = self.key_rotation(span.from);
@@ -80,7 +82,8 @@ impl Track {
         }
     }
 
-    /// Gives keys whose rotation has no length that of the key before, or of the first that has one; returns how many there were.
+    /// Replaces keys with zero rotations by the key before, or by the first valid one; returns
+    /// their number.
     pub(super) fn repair_rotations(&mut self) -> usize {
         let n_keys = self.times_secs.len();
         let is_zero: Vec<bool> = (0..n_keys)
@@ -97,7 +100,7 @@ impl Track {
         is_zero.iter().filter(|is_zero| **is_zero).count()
     }
 
-    /// Where the value of a key stands among all numbers.
+    /// Index of a key's value among all numbers.
     fn value_at(&self, key: usize) -> usize {
         let per_key = self.interpolation.values_per_key();
         (key * per_key + per_key / 2) * self.width

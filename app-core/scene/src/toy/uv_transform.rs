@@ -1,16 +1,16 @@
-//! Texture coordinates that a material moves, turns or scales.
+//! A material's transform of texture coordinates.
 //!
 //! Source: the glTF extension `KHR_texture_transform`.
 
 use glam::Vec2;
 use serde::Deserialize;
 
-/// Scale first, then a turn, then an offset.
+/// Scale first, then rotation, then offset.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(default)]
 pub(super) struct UvTransform {
     offset: [f32; 2],
-    /// Counter-clockwise in the picture with its origin at the top left; radians.
+    /// Radians, counter-clockwise in the picture with its origin at the top left.
     rotation: f32,
     scale: [f32; 2],
 }

@@ -90,7 +90,7 @@ pub(super) fn capture_from_record(
     })
 }
 
-/// That of the index, if it has any.
+/// The index's lens, if it has one.
 pub(super) fn distortion(record: &CaptureRecord) -> Result<Option<Distortion>, SessionError> {
     record.lens.as_ref().map(place::distortion).transpose()
 }
@@ -130,7 +130,7 @@ fn toy_warnings(toy: &Toy, file: &str) -> Vec<SessionWarning> {
         .collect()
 }
 
-/// Finds the clip and clamps the time to it, with a warning where it had to be changed.
+/// Finds the clip and clamps the time to it, with a warning if it changed.
 fn pose(
     toy: &Toy,
     field: &str,
@@ -163,7 +163,7 @@ fn pose(
     })
 }
 
-/// Values of a frame that does not bring its own.
+/// Values for a frame without its own.
 struct Defaults {
     intrinsics: Intrinsics,
     world_from_object: DMat4,

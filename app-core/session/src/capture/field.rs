@@ -4,12 +4,12 @@ use crate::error::{SessionError, SessionErrorKind};
 use crate::files::{FileError, Files, INDEX_FILE, check_path};
 use app_scene::scene::FieldError;
 
-/// The distortion, of which each camera makes a lens.
+/// The distortion, from which each camera's lens is made.
 pub(super) const LENS: &str = "lens";
-/// Path that is given when no single field is at fault.
+/// Path for errors of no single field.
 pub(super) const WHOLE_FILE: &str = "the whole file";
 
-/// Refuses a bad path at once, before the file is asked for.
+/// Refuses an invalid path at once, before the file is read.
 pub(super) fn check_named(path: &str, field: &str) -> Result<(), SessionError> {
     check_path(path).map_err(|error| in_index(field, FileError::from(error)))
 }

@@ -1,4 +1,4 @@
-//! What a platform estimates of the light, from `capture.json`.
+//! A platform's light estimate, from `capture.json`.
 
 use super::field::at;
 use super::record::LightEstimateRecord;

@@ -16,7 +16,7 @@ use app_scene::scene::{
     ProbePicture, ProbeShape,
 };
 
-/// Pixels of all pictures of a probe together, which stay in memory: 256 MiB.
+/// Limit for the pixels of all pictures of a probe together, which stay in memory: 256 MiB.
 const MAX_PROBE_PIXELS: u64 = 1 << 26;
 
 /// Reads the probe with its pictures; `first` is the first frame's camera.

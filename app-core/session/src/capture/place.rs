@@ -17,7 +17,7 @@ use app_scene::scene::{
     Camera, FieldError, Image, Intrinsics, Light, MAX_SCENE_PLATES, Plate, Receiver, Surface,
 };
 
-/// Pixels of all plates together, which stay in memory: 1 GiB.
+/// Limit for the pixels of all plates together, which stay in memory: 1 GiB.
 const MAX_PLATE_PIXELS: u64 = 1 << 28;
 
 pub(super) fn intrinsics(field: &str, record: &IntrinsicsRecord) -> Result<Intrinsics, SessionError> {
@@ -38,7 +38,7 @@ pub(super) fn distortion(record: &LensRecord) -> Result<Distortion, SessionError
     })
 }
 
-/// A camera with intrinsics of its own or those of the session.
+/// A camera with its own intrinsics, or the session's.
 pub(super) fn camera(
     field: &str,
     world_from_camera: [f64; 16],
@@ -112,7 +112,7 @@ pub(super) fn light(field: &str, record: &LightRecord) -> Result<Light, SessionE
     })
 }
 
-/// Reads the plates. Those with the same file share its picture, and are warned of once.
+/// Reads the plates. Those with the same file share its picture and one warning.
 pub(super) fn plates(
     store: &PictureStore,
     intrinsics: &Intrinsics,

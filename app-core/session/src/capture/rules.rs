@@ -1,4 +1,4 @@
-//! What the schema says of a record or of its fields beyond their types.
+//! Rules of the schema for a record or its fields beyond their types.
 
 use std::ops::RangeInclusive;
 
@@ -22,7 +22,7 @@ impl Transform for Within {
     }
 }
 
-/// Which keys a light needs, of which its record has those of all kinds.
+/// The keys that each kind of light requires, since its record has those of all kinds.
 pub(super) fn needs_of_its_kind(schema: &mut Schema) {
     let shapes = [
         ("sphere", [("position", "array"), ("radius", "number")]),

@@ -19,7 +19,7 @@ pub fn schema() -> Value {
     generator.into_root_schema_for::<Index>().to_value()
 }
 
-/// Puts a description on one line: a comment's lines end where its room does.
+/// Puts a description on one line: line breaks of a comment have no meaning.
 fn unwrap_lines(schema: &mut Schema) {
     if let Some(Value::String(description)) = schema.get_mut("description") {
         *description = description.replace('\n', " ");

@@ -1,4 +1,4 @@
-//! How far what is given may be off, from `capture.json`.
+//! Uncertainty of given values, from `capture.json`.
 
 use std::f64::consts::PI;
 
@@ -7,7 +7,7 @@ use super::record::{PoseUncertaintyRecord, UncertaintyRecord};
 use crate::error::SessionError;
 use app_scene::scene::{LightUncertainty, PoseUncertainty, Uncertainty, check};
 
-/// Half a turn stays no more than that.
+/// Radians that do not exceed half a turn by rounding.
 fn radians(degrees: f64) -> f64 {
     degrees.to_radians().min(PI)
 }

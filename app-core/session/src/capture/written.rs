@@ -1,4 +1,4 @@
-//! From a scene to the records of `capture.json`: the way back of the checks.
+//! From a scene to the records of `capture.json`: the inverse of reading.
 
 use super::record::{
     BackgroundRecord, CaptureRecord, Encoding, FacetRecord, IntrinsicsRecord, LensRecord,
@@ -12,7 +12,7 @@ use app_scene::scene::{
 };
 use app_scene::toy::Toy;
 
-/// Paths of the files that a scene's record names, relative to the session.
+/// Paths of the files of a scene's record, relative to the session.
 #[derive(Clone, Copy, Debug)]
 pub struct ScenePaths<'a> {
     /// The toy's file.
@@ -24,8 +24,8 @@ pub struct ScenePaths<'a> {
 }
 
 impl CaptureRecord {
-    /// A scene without frames, whose cameras have these `intrinsics` unless they bring their own. Plates and pictures of
-    /// the probe that no path is given for are left out.
+    /// A scene without frames, whose cameras have these `intrinsics` unless they have their own.
+    /// Plates and pictures of the probe without a path are left out.
     #[must_use]
     pub fn new(scene: &Scene, intrinsics: &Intrinsics, paths: ScenePaths) -> Self {
         let plates = scene.plates.iter().zip(paths.plates);
@@ -64,8 +64,8 @@ impl CaptureRecord {
 }
 
 impl PoseRecord {
-    /// A clip by its name, or by its number where another clip of that name comes before it. Poses of single nodes cannot
-    /// be told: they become the authored one.
+    /// A clip by its name, or by its number if an earlier clip has the same name. Poses of single
+    /// nodes cannot be expressed: they become the authored pose.
     #[must_use]
     pub fn new(pose: &Pose, toy: &Toy) -> Self {
         let Pose::Clip { clip, time_secs } = pose else {
@@ -81,7 +81,7 @@ impl PoseRecord {
 }
 
 impl ProbeRecord {
-    /// A probe whose pictures are at `paths`, in their order; none without any.
+    /// A probe whose pictures are at `paths`, in their order; `None` without any.
     #[must_use]
     pub fn new(probe: &Probe, paths: &[String]) -> Option<Self> {
         let pictures = probe.pictures.iter().zip(paths);

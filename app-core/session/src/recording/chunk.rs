@@ -1,45 +1,47 @@
-//! The chunk that is being filled: all that a reader needs to understand it stands in it, so that none depends on another.
+//! The chunk in progress. It holds all that a reader needs to understand it, so that no chunk
+//! depends on another.
 
 use super::topics::Topic;
 use super::wire::{Body, CHUNK, MESSAGE, MESSAGE_INDEX, head};
 
-/// The largest chunk that is read; bytes. Pictures, which have at most half of it, are larger than what else is in one.
+/// Size of the largest readable chunk, in bytes. Pictures, at most half of it, are the largest part
+/// of one.
 pub(super) const MAX_CHUNK_BYTES: u64 = 256 << 20;
 /// Bytes of a chunk's body before its records: times, size, checksum, no compression, size again.
 pub(super) const CHUNK_HEAD_BYTES: u64 = 40;
 /// Bytes of a message's body before its data: channel, sequence number, two times.
 const MESSAGE_HEAD_BYTES: usize = 22;
 
-/// A chunk that is open.
+/// An open chunk.
 pub(super) struct OpenChunk {
     records: Vec<u8>,
-    /// Time and place of each message, by channel.
+    /// Time and offset of each message, by channel.
     index: [Vec<(u64, u64)>; Topic::ALL.len()],
-    /// When it was begun.
+    /// Time of its start.
     pub(super) begun_ns: u64,
     times_ns: (u64, u64),
 }
 
-/// A chunk as it is in the file, and what the summary says of it.
+/// A chunk as in the file, with its entry in the summary.
 pub(super) struct ClosedChunk {
     pub(super) bytes: Vec<u8>,
     pub(super) entry: ChunkEntry,
 }
 
-/// Where a chunk is.
+/// Position of a chunk.
 pub(super) struct ChunkEntry {
     pub(super) at: u64,
     pub(super) n_bytes: u64,
     pub(super) n_record_bytes: u64,
     pub(super) times_ns: (u64, u64),
-    /// Channel and place of each of the message indices behind it.
+    /// Channel and offset of each of the message indices after it.
     pub(super) indices: Vec<(u16, u64)>,
     pub(super) n_index_bytes: u64,
     pub(super) n_messages: [u64; Topic::ALL.len()],
 }
 
 impl OpenChunk {
-    /// Begins with the channels.
+    /// A chunk that begins with the channels.
     pub(super) fn new(time_ns: u64) -> Self {
         Self {
             records: Topic::ALL.into_iter().flat_map(Topic::records).collect(),
@@ -49,7 +51,7 @@ impl OpenChunk {
         }
     }
 
-    /// Size in the file, without the indices behind it.
+    /// Size in the file, without the indices after it.
     pub(super) fn n_bytes(&self) -> u64 {
         CHUNK_HEAD_BYTES + self.records.len() as u64
     }
@@ -67,7 +69,7 @@ impl OpenChunk {
         self.records.extend_from_slice(data);
     }
 
-    /// The chunk and the indices behind it, as they are in a file whose end is at `at`.
+    /// The chunk and the indices after it, for a file whose end is at `at`.
     pub(super) fn close(self, at: u64) -> ClosedChunk {
         let n_record_bytes = self.records.len() as u64;
         let body = Body::new().u64(self.times_ns.0).u64(self.times_ns.1);

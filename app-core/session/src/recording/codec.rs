@@ -1,4 +1,4 @@
-//! How camera pictures become files.
+//! Encoding of camera pictures as files.
 
 use std::fmt;
 
@@ -11,34 +11,36 @@ use crate::tags::{JPEG_MAGIC, PNG_MAGIC};
 use app_scene::camera_frame::CameraImage;
 use app_scene::scene::Image;
 
-/// A platform's own encoder: a camera picture in, the bytes of a PNG or JPEG file out, or none where it cannot.
+/// A platform's own encoder: from a camera picture to the bytes of a PNG or JPEG file, or `None` if
+/// it fails.
 pub type PlatformEncoder = Box<dyn FnMut(&CameraImage) -> Option<Vec<u8>> + Send>;
 
-/// Of JPEG files that are written on a phone.
+/// Quality of JPEG files that are written on a phone.
 const PHONE_QUALITY: u8 = 95;
 
-/// How camera pictures become files.
+/// Encoding of camera pictures as files.
 #[derive(Default)]
 pub enum PictureCodec {
-    /// PNG: the codes come back as they were.
+    /// PNG: lossless.
     #[default]
     Lossless,
     /// JPEG.
     Jpeg {
-        /// From 1 to 100; the page on recordings tells what each costs.
+        /// From 1 to 100; the page on recordings lists the error of each.
         quality: u8,
     },
-    /// As the platform does it, such as by its hardware; what it cannot encode is written as [`PictureCodec::PHONE`] does.
+    /// The platform's encoder, for example in hardware; pictures that it cannot encode are written
+    /// as by [`PictureCodec::PHONE`].
     Platform(PlatformEncoder),
 }
 
 impl PictureCodec {
-    /// On a phone, where files that are not lossy would be too slow to write.
+    /// For phones, on which lossless files would be too slow to write.
     pub const PHONE: Self = Self::Jpeg {
         quality: PHONE_QUALITY,
     };
 
-    /// The file.
+    /// Encodes a picture as a file.
     pub(super) fn encode(&mut self, image: &CameraImage) -> Result<Vec<u8>, WriteError> {
         match self {
             Self::Lossless => png(image.rgba()),
@@ -61,12 +63,12 @@ impl fmt::Debug for PictureCodec {
     }
 }
 
-/// Whether it begins as a picture that can be read back.
+/// Whether the file begins like a picture of a supported format.
 fn is_picture(file: &[u8]) -> bool {
     file.starts_with(JPEG_MAGIC) || file.starts_with(PNG_MAGIC)
 }
 
-/// A photograph as PNG, without its alpha, which photographs have not.
+/// A photograph as PNG without alpha.
 pub(super) fn png(image: &Image) -> Result<Vec<u8>, WriteError> {
     let mut file = Vec::new();
     let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Fast, FilterType::Adaptive);
@@ -87,7 +89,7 @@ fn write(encoder: impl ImageEncoder, image: &Image) -> Result<(), WriteError> {
     let texels = image.rgba8.chunks_exact(4);
     let rgb8: Vec<u8> = texels.flat_map(|texel| [texel[0], texel[1], texel[2]]).collect();
     let n_bytes = 3 * u64::from(image.width_px) * u64::from(image.height_px);
-    // The encoders panic at a buffer of another size.
+    // The encoders panic for a buffer of another size.
     if rgb8.len() as u64 != n_bytes {
         let reason = format!("{} bytes, not {n_bytes}", rgb8.len());
         return Err(WriteError::Picture(reason));

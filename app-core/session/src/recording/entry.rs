@@ -1,4 +1,4 @@
-//! A frame of a live camera, as the index of a session has it.
+//! A frame of a live camera as a record of the session's index.
 
 use glam::DMat4;
 
@@ -7,27 +7,28 @@ use app_scene::camera_frame::CameraImage;
 use app_scene::scene::{Camera, LightEstimate, Pose};
 use app_scene::toy::Toy;
 
-/// A camera frame that is recorded as it comes; its picture is encoded by whoever writes it.
+/// A live camera frame to record; the writing thread encodes its picture.
 #[derive(Clone, Debug)]
 pub struct LiveFrame {
     /// The camera's picture.
     pub image: CameraImage,
-    /// The camera that took it.
+    /// The camera of the picture.
     pub camera: Camera,
-    /// Where the real toy stands, from object space to world.
+    /// Pose of the real toy, from object space to world.
     pub world_from_object: DMat4,
     /// Exposure of the picture over that of the plates.
     pub exposure: f64,
-    /// What the platform estimates of the light.
+    /// The platform's light estimate.
     pub light_estimate: Option<LightEstimate>,
-    /// The pose that was shown.
+    /// The shown pose.
     pub shown_pose: Pose,
-    /// Where it was shown, if that is not where the real toy stands.
+    /// Its place, if it differs from the real toy's.
     pub world_from_shown: Option<DMat4>,
 }
 
 impl LiveFrame {
-    /// Its entry of the index's `frames`: taken `time_secs` after the first, its picture at `path`.
+    /// Its entry in the index's `frames`: taken `time_secs` after the first, with its picture at
+    /// `path`.
     pub(super) fn entry(&self, time_secs: f64, path: &str, toy: &Toy) -> FrameRecord {
         FrameRecord {
             time: time_secs,

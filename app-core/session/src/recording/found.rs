@@ -1,4 +1,4 @@
-//! What a scan finds: places of pictures and files, texts of frames and notes.
+//! The result of a scan: positions of pictures and files, texts of frames and notes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -11,21 +11,21 @@ use super::viewer::image_file;
 use super::wire::{CHANNEL, MESSAGE, Rest};
 use crate::MAX_INDEX_BYTES;
 
-/// Texts of notes that are kept, bytes.
+/// Limit for the texts of notes, in bytes.
 const MAX_NOTE_BYTES: u64 = 64 << 20;
 
-/// A chunk whose records are compressed.
+/// A compressed chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Packed {
     pub(super) compression: Compression,
-    /// Bytes of the file.
+    /// Range of bytes in the file.
     pub(super) at: u64,
     pub(super) n_stored_bytes: u64,
-    /// What comes out.
+    /// Decompressed size.
     pub(super) n_record_bytes: u64,
 }
 
-/// Bytes of the file, or of the records of a chunk that is compressed.
+/// Range of bytes in the file, or in the records of a compressed chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Span {
     pub(super) packed: Option<Packed>,
@@ -33,7 +33,7 @@ pub(super) struct Span {
     pub(super) n_bytes: u64,
 }
 
-/// Where records begin: in the file, or in a chunk that is compressed.
+/// Origin of records: the file, or a compressed chunk.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Home {
     At(u64),
@@ -55,9 +55,9 @@ impl Home {
     }
 }
 
-/// A frame as it was recorded.
+/// A recorded frame.
 pub(super) struct FoundFrame {
-    /// Its entry of the index, JSON.
+    /// Its entry in the index, JSON.
     pub(super) entry: String,
     /// Path of its picture.
     pub(super) path: String,
@@ -65,7 +65,7 @@ pub(super) struct FoundFrame {
     pub(super) picture: u32,
 }
 
-/// A message of one of the channels that take any JSON object.
+/// A message of a channel for arbitrary JSON objects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     /// Nanoseconds, from an origin of the recording's own.
@@ -76,46 +76,46 @@ pub struct Note {
     pub message: String,
 }
 
-/// All that was found.
+/// The result of a scan.
 #[derive(Default)]
 pub(super) struct Found {
-    /// The last chunk's session; none before the first.
+    /// The last chunk's session; `None` before the first.
     pub(super) session: Option<SessionMessage>,
     pub(super) frames: Vec<FoundFrame>,
-    /// By their numbers, once all are found.
+    /// Pictures by their numbers, once all are found.
     pub(super) pictures: BTreeMap<u32, Span>,
-    /// Sequence number and place, in the order they are found.
+    /// Sequence number and position of pictures, in the order of the file.
     numbered: Vec<(u32, Span)>,
-    /// How many were found before the first gap, if there is one.
+    /// Number of pictures before the first gap, if there is one.
     n_before_gap: Option<usize>,
-    /// Whether a chunk of a session is there more than once.
+    /// Whether a chunk of a session occurs twice.
     pub(super) has_two_sessions: bool,
     pub(super) files: BTreeMap<String, Span>,
     pub(super) notes: Vec<Note>,
     pub(super) losses: Vec<Loss>,
-    /// Which chunks were found.
+    /// Numbers of the chunks that were found.
     chunks: BTreeSet<u32>,
     channels: BTreeMap<u16, Option<Topic>>,
-    /// Bytes of the texts of frames, and of notes.
+    /// Number of bytes of the texts of frames, and of notes.
     n_frame_bytes: u64,
     n_note_bytes: u64,
     n_frames_left_out: u32,
     n_notes_left_out: u32,
 }
 
-/// A message whose channel is known.
+/// A message of a known channel.
 struct Message<'a> {
     topic: Topic,
     sequence: u32,
     time_ns: u64,
     data: &'a [u8],
-    /// Where its data begins, within the chunk's records.
+    /// Offset of its data within the chunk's records.
     at: usize,
 }
 
 impl Found {
-    /// Takes a whole chunk's records, which begin at `home`. None where they are no records; then nothing of
-    /// the chunk is taken.
+    /// Adds a whole chunk's records, which begin at `home`. `None` if they are no records; then
+    /// nothing of the chunk is added.
     pub(super) fn chunk(&mut self, home: Home, records: &[u8]) -> Option<()> {
         let mut messages = Vec::new();
         let mut rest = Rest(records);
@@ -128,7 +128,7 @@ impl Found {
                 _ => {}
             }
         }
-        // Of texts that are not what they should be nothing is taken, either: their chunk is not ours.
+        // A chunk with an invalid text is not ours, and nothing of it is added.
         let read = messages.iter().map(Read::new).collect::<Option<Vec<_>>>()?;
         for (message, read) in messages.iter().zip(read) {
             self.take(home, message, read);
@@ -136,7 +136,7 @@ impl Found {
         Some(())
     }
 
-    /// Takes an attached file; the last one of a path holds.
+    /// Adds an attached file, which replaces earlier ones of its path.
     pub(super) fn file(&mut self, path: String, span: Span) {
         self.files.insert(path, span);
     }
@@ -149,7 +149,7 @@ impl Found {
         Some(())
     }
 
-    /// The message of a record that ends at `end`. The inner none is a channel that is not ours.
+    /// The message of a record that ends at `end`. The inner `None` is an unknown channel.
     fn message<'a>(&self, body: &'a [u8], end: usize) -> Option<Option<Message<'a>>> {
         let mut rest = Rest(body);
         let channel = rest.u16()?;
@@ -209,13 +209,14 @@ impl Found {
         self.channels.contains_key(&id)
     }
 
-    /// Something may be missing here.
+    /// Records that something may be missing here.
     pub(super) fn gap(&mut self) {
         self.n_before_gap.get_or_insert(self.numbered.len());
     }
 
-    /// Numbers the pictures: by their sequence numbers, or by their order where a program that wrote the recording anew did
-    /// not keep those. The order says nothing of pictures behind a gap, which are left out.
+    /// Numbers the pictures by their sequence numbers, or by their order if another program has
+    /// rewritten the recording without those. By order, pictures after a gap cannot be numbered and
+    /// are skipped.
     pub(super) fn number_pictures(&mut self) {
         let numbered = std::mem::take(&mut self.numbered);
         self.pictures = numbered.iter().copied().collect();
@@ -224,7 +225,7 @@ impl Found {
             let spans = numbered.into_iter().map(|(_, span)| span);
             self.pictures = (0..).zip(spans.take(n)).collect();
         } else if self.n_before_gap.is_none() && !self.has_all_pictures() {
-            // A program that counts from another number than 0.
+            // The first number of a program that does not count from 0.
             let first = self.pictures.keys().next().copied().unwrap_or(0);
             let pictures = std::mem::take(&mut self.pictures).into_iter();
             self.pictures = pictures.map(|(number, span)| (number - first, span)).collect();
@@ -236,8 +237,8 @@ impl Found {
         frames.all(|frame| self.pictures.contains_key(&frame.picture))
     }
 
-    /// What the whole shows to be lost: chunks and files that were counted, pictures that frames name, texts beyond the
-    /// limits.
+    /// Adds the losses that only the whole shows: missing chunks and files, missing pictures of
+    /// frames, texts beyond the limits.
     pub(super) fn tell_losses(&mut self) {
         let mut expected = 0;
         for chunk in &self.chunks {
@@ -275,13 +276,13 @@ impl Found {
     }
 }
 
-/// What a message says.
+/// The content of a message.
 enum Read<'a> {
     Session(Box<SessionMessage>),
     Image(Range<usize>),
     Frame(FoundFrame),
     Note(&'a str),
-    /// For viewers.
+    /// For viewers only.
     Other,
 }
 

@@ -1,8 +1,9 @@
-//! Chunks that other programs compressed. Ours have no compression: pictures are what they hold, and those are compressed.
+//! Chunks that other programs compressed. Ours are not compressed, since they hold compressed
+//! pictures.
 
 use super::error::Damage;
 
-/// How a chunk's records are compressed.
+/// The compression of a chunk's records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Compression {
     /// LZ4 frames.
@@ -12,7 +13,7 @@ pub(super) enum Compression {
 }
 
 impl Compression {
-    /// That of a name in a chunk, if the format has it.
+    /// The compression by its name in a chunk, if the format has it.
     pub(super) fn named(name: &[u8]) -> Option<Self> {
         match name {
             b"lz4" => Some(Self::Lz4),
@@ -22,12 +23,13 @@ impl Compression {
     }
 }
 
-/// Records of a chunk that has `n_bytes` of them. Room is taken as they come, never by a length that is stated.
+/// Decompresses a chunk with `n_bytes` bytes of records. Memory grows with the data, and is never
+/// allocated by a stated length.
 #[cfg(feature = "compressed")]
 pub(super) fn inflate(compression: Compression, stored: &[u8], n_bytes: u64) -> Result<Vec<u8>, Damage> {
     use std::io::Read;
 
-    /// Encoders look no farther back, but for levels that no tool of recordings uses.
+    /// Encoders use no larger window, except at levels that recording tools do not use.
     const WINDOW_BYTES: u64 = 8 << 20;
     let mut records = Vec::new();
     let is_read = match compression {

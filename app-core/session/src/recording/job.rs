@@ -1,4 +1,4 @@
-//! A live session that is recorded: what is known of it when it begins, and a queue of what comes.
+//! Records a live session: its initial data, and a queue of further items.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -14,14 +14,14 @@ use crate::ScenePaths;
 use crate::record::{CaptureRecord, Index};
 use app_scene::scene::{Intrinsics, Scene};
 
-/// Items that may wait: a second of frames with what is said of them.
+/// Limit for waiting items: a second of frames with their notes.
 const N_ITEMS: usize = 256;
-/// Bytes that may wait: ten of a phone's pictures.
+/// Limit for waiting bytes: ten of a phone's pictures.
 const MAX_BYTES: u64 = 48 << 20;
 /// Path of the toy.
 const TOY: &str = "toy.glb";
 
-/// A recording that is to be written: by a thread of the caller's, which has the file.
+/// A recording to write, on a thread of the caller, which has the file.
 #[derive(Debug)]
 pub struct RecordingJob {
     number: u64,
@@ -30,49 +30,50 @@ pub struct RecordingJob {
     receiver: RecordingReceiver,
 }
 
-/// What the caller knows of a recording.
+/// The caller's data for a recording.
 #[derive(Debug)]
 pub struct RecordingOptions<'a> {
     /// The toy's file.
     pub toy: &'a [u8],
-    /// How pictures are encoded; plates never lose a code.
+    /// Encoding of pictures; plates are always lossless.
     pub codec: PictureCodec,
-    /// What is to be known of the device: model, system, version of the app.
+    /// Facts about the device: model, system, version of the app.
     pub device: BTreeMap<String, String>,
-    /// How much it may take.
+    /// Limits of the recording.
     pub limits: Limits,
 }
 
-/// Why a recording ended.
+/// The reason why a recording ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// It was asked to.
+    /// The caller ended it.
     Asked,
-    /// The device has no more room for it.
+    /// The device has no more space.
     NoRoom,
-    /// It is as large as it may be.
+    /// It has reached its size limit.
     TooLarge,
-    /// It may not be put there.
+    /// Writing there is not permitted.
     NotAllowed,
-    /// It cannot be written, and why.
+    /// Writing failed, for this reason.
     Failed(String),
 }
 
-/// What became of a recording.
+/// The outcome of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordingOutcome {
-    /// Which it was.
+    /// Number of the recording.
     pub number: u64,
-    /// Frames in it.
+    /// Number of recorded frames.
     pub n_frames: u32,
-    /// Frames that came and are not in it, since writing was too slow or their pictures could not be encoded.
+    /// Number of frames that are missing, since writing was too slow or their pictures could not be
+    /// encoded.
     pub n_dropped: u64,
-    /// Why it ended.
+    /// The reason why it ended.
     pub ending: Ending,
 }
 
 impl RecordingOutcome {
-    /// Of one whose thread did not come to its end.
+    /// The outcome if the recording thread panicked.
     #[must_use]
     pub fn died(number: u64) -> Self {
         Self {
@@ -85,8 +86,8 @@ impl RecordingOutcome {
 }
 
 impl RecordingJob {
-    /// The recording of that number of a scene whose cameras mostly have these `intrinsics`, and where its frames go: it ends when all
-    /// senders are gone.
+    /// The recording with that number, of a scene whose cameras mostly have these `intrinsics`, and
+    /// the sender of its frames: it ends when all senders are dropped.
     #[must_use]
     pub fn new(number: u64, scene: Scene, intrinsics: Intrinsics) -> (RecordingSender, Self) {
         let (sender, receiver) = queue(N_ITEMS, MAX_BYTES);
@@ -99,7 +100,8 @@ impl RecordingJob {
         (sender, job)
     }
 
-    /// Writes it into an empty sink until it ends: the toy, the plates, then what comes; seconds or minutes.
+    /// Writes it into an empty sink until it ends: the toy, the plates, then further items; this
+    /// takes seconds or minutes.
     pub fn run<W: Write>(mut self, sink: W, options: RecordingOptions<'_>) -> RecordingOutcome {
         self.receiver
             .take_live_frames(options.codec, Arc::clone(&self.scene.toy));
@@ -112,7 +114,8 @@ impl RecordingJob {
             ScenePaths {
                 toy: TOY,
                 plates: &paths,
-                // Its pictures are not kept: a replay finds the lights by the toy's shadow alone.
+                // The probe's pictures are not kept: a replay estimates the lights from the toy's
+                // shadow alone.
                 probe: &[],
             },
         ));
@@ -130,7 +133,7 @@ impl RecordingJob {
         };
         let mut stop = None;
         while let Some(written) = self.receiver.write_next(&mut writer) {
-            // What cannot be encoded is left out; a writer that has stopped stays so.
+            // Items that cannot be encoded are skipped; a stopped writer stays stopped.
             if let Err(WriteError::Stopped(reason)) = written {
                 stop = Some(reason);
                 break;
@@ -147,7 +150,7 @@ impl RecordingJob {
         }
     }
 
-    /// What is told of one that has no file.
+    /// The outcome if the file could not be created.
     #[must_use]
     pub fn without_file(self, error: &std::io::Error) -> RecordingOutcome {
         use std::io::ErrorKind;
@@ -159,7 +162,7 @@ impl RecordingJob {
         self.ended(0, ending)
     }
 
-    /// Which it is.
+    /// Number of the recording.
     #[must_use]
     pub fn number(&self) -> u64 {
         self.number

@@ -1,4 +1,4 @@
-//! The messages that are JSON and that the reader looks into. Texts are kept as they were written, number for number.
+//! The JSON messages that the reader parses. Texts are kept as written, digit for digit.
 
 use std::collections::BTreeMap;
 
@@ -8,9 +8,9 @@ use serde_json::value::RawValue;
 /// First message of each chunk.
 #[derive(Serialize, Deserialize)]
 pub(super) struct SessionMessage {
-    /// Which chunk it is, from 0.
+    /// Number of the chunk, from 0.
     pub(super) chunk: u32,
-    /// Files that were attached before it.
+    /// Number of files attached before it.
     pub(super) n_files: u32,
     pub(super) device: BTreeMap<String, String>,
     pub(super) session: Box<RawValue>,
@@ -25,7 +25,7 @@ pub(super) struct FrameMessage<'a> {
     pub(super) entry: &'a RawValue,
 }
 
-/// What the reader needs of a frame's entry.
+/// The part of a frame's entry that the reader needs.
 #[derive(Deserialize)]
 pub(super) struct NamedPicture {
     pub(super) image: String,

@@ -1,7 +1,9 @@
-//! Recordings: a session in one MCAP file, written while it is taken and read as a folder is.
+//! Recordings: a session in one MCAP file, written live and read like a folder.
 //!
-//! A [`Writer`] appends to whatever the caller opened, and a [`Recording`] reads through a [`Source`]: this module opens no
-//! file itself, and times come from the caller.
+//! A [`Writer`] appends to the caller's output, and a [`Recording`] reads through a [`Source`]:
+//! this module opens no file itself, and times come from the caller.
+//!
+//! [session format]: crate
 //!
 #![doc = include_str!("../../../doc/recording.md")]
 

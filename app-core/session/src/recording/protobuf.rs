@@ -1,5 +1,5 @@
-//! As much of protocol buffers as Foxglove's messages need: fields that are written, the descriptors that viewers read
-//! them by, and one field that is found again.
+//! The part of protocol buffers that Foxglove's messages need: writing of fields and of the
+//! descriptors for viewers, and reading of one field.
 //!
 //! Source: protobuf.dev/programming-guides/encoding, and `google/protobuf/descriptor.proto`.
 
@@ -7,12 +7,12 @@ const VARINT: u64 = 0;
 const FIXED64: u64 = 1;
 const COUNTED: u64 = 2;
 const FIXED32: u64 = 5;
-/// Bits of a varint's byte that are its number's.
+/// Payload bits of a varint's byte.
 const LOW_BITS: u64 = 0x7f;
-/// A varint of 64 bits has no more bytes.
+/// Largest number of bytes of a 64-bit varint.
 const MAX_VARINT_BYTES: u64 = 10;
 
-/// A message that is written.
+/// A message to write.
 #[derive(Default)]
 pub(super) struct Fields(Vec<u8>);
 
@@ -91,16 +91,16 @@ pub(super) enum Kind {
     Text,
     Bytes,
     Doubles,
-    /// With its full name.
+    /// A message, by its full name.
     Message(&'static str),
 }
 
-/// A file that describes one message.
+/// Descriptor of one message's file.
 pub(super) struct Descriptor {
     pub(super) file: &'static str,
     pub(super) package: &'static str,
     pub(super) message: &'static str,
-    /// Files of the messages within.
+    /// Files of nested messages.
     pub(super) uses: &'static [&'static Descriptor],
     pub(super) fields: &'static [(&'static str, u64, Kind)],
 }
@@ -135,7 +135,8 @@ impl Descriptor {
         file.message(4, &message).text(12, "proto3")
     }
 
-    /// `google.protobuf.FileDescriptorSet` of the file and of all that it uses, which is what a schema of MCAP holds.
+    /// `google.protobuf.FileDescriptorSet` of the file and all its dependencies, as MCAP's schemas
+    /// need it.
     pub(super) fn with_used(&self) -> Vec<u8> {
         let used = self.uses.iter().map(|used| used.encoded());
         used.chain([self.encoded()])
@@ -144,8 +145,8 @@ impl Descriptor {
     }
 }
 
-/// Where the bytes of a counted field lie in a message: the first such field. None where it is not there, or where the
-/// message is no message.
+/// Range of the bytes of the first length-delimited field with that number in a message. `None` if
+/// there is none, or the message is invalid.
 pub(super) fn counted_field(message: &[u8], field: u64) -> Option<std::ops::Range<usize>> {
     let mut at = 0_usize;
     while at < message.len() {

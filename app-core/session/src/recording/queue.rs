@@ -1,4 +1,4 @@
-//! Between the thread of the camera, which must not wait, and the one that writes.
+//! The queue between the camera's thread, which must not wait, and the writing thread.
 
 use std::io::Write;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::tags::JPEG_MAGIC;
 use app_scene::camera_frame::CameraImage;
 use app_scene::toy::Toy;
 
-/// Something to be recorded.
+/// An item to record.
 #[derive(Clone, Debug)]
 pub enum Item {
     /// [`Writer::set_session`].
@@ -35,7 +35,7 @@ pub enum Item {
         /// Its entry of the session's frames, JSON.
         entry: String,
     },
-    /// [`Writer::frame`], whose picture is encoded only when it is written.
+    /// [`Writer::frame`] with a picture that is encoded just before writing.
     Live(Box<LiveFrame>),
     /// [`Writer::note`].
     Note {
@@ -46,7 +46,7 @@ pub enum Item {
     },
     /// [`Writer::tick`].
     Tick {
-        /// What is free on the device, bytes.
+        /// Free space on the device, bytes.
         free_bytes: Option<u64>,
     },
 }
@@ -69,12 +69,12 @@ impl Item {
     }
 }
 
-/// What the two ends share.
+/// Counters that both ends share.
 #[derive(Debug, Default)]
 struct Counts {
     waiting_bytes: AtomicU64,
     n_dropped: AtomicU64,
-    /// Of those, frames.
+    /// Number of frames among them.
     n_dropped_frames: AtomicU64,
 }
 
@@ -105,7 +105,7 @@ pub fn queue(n_items: usize, max_bytes: u64) -> (RecordingSender, RecordingRecei
     (sender, receiver)
 }
 
-/// Where items are put in.
+/// The input end of the queue.
 #[derive(Clone, Debug)]
 pub struct RecordingSender {
     sender: SyncSender<(u64, Item)>,
@@ -114,7 +114,7 @@ pub struct RecordingSender {
 }
 
 impl RecordingSender {
-    /// Puts an item in, or hands it back at once where there is no room or nobody writes any more: it counts as dropped.
+    /// Adds an item, or returns it at once if there is no room or no writer: it counts as dropped.
     /// Never waits.
     ///
     /// # Errors
@@ -138,42 +138,42 @@ impl RecordingSender {
         })
     }
 
-    /// How many items were refused so far.
+    /// Number of refused items so far.
     #[must_use]
     pub fn n_dropped(&self) -> u64 {
         self.counts.n_dropped.load(Ordering::Acquire)
     }
 
-    /// How many of them were frames.
+    /// Number of frames among them.
     #[must_use]
     pub fn n_dropped_frames(&self) -> u64 {
         self.counts.n_dropped_frames.load(Ordering::Acquire)
     }
 }
 
-/// How live frames become those of a recording.
+/// Encodes live frames for a recording.
 #[derive(Debug)]
 struct LiveEncoder {
     codec: PictureCodec,
-    /// Whose clips they name.
+    /// The toy of their clips.
     toy: Arc<Toy>,
     /// The latest picture with its number and its path.
     latest: Option<(CameraImage, u32, String)>,
 }
 
-/// Where items are taken out.
+/// The output end of the queue.
 #[derive(Debug)]
 pub struct RecordingReceiver {
     receiver: Receiver<(u64, Item)>,
     counts: Arc<Counts>,
-    /// Of the items dropped, those that the recording knows of.
+    /// Number of dropped items that are recorded as such.
     n_told: u64,
-    /// None where no live frames are taken.
+    /// `None` if live frames are not accepted.
     encoder: Option<LiveEncoder>,
 }
 
 impl RecordingReceiver {
-    /// Takes live frames, too, which show clips of `toy`.
+    /// Accepts live frames, too, which show clips of `toy`.
     pub(super) fn take_live_frames(&mut self, codec: PictureCodec, toy: Arc<Toy>) {
         self.encoder = Some(LiveEncoder {
             codec,
@@ -182,20 +182,20 @@ impl RecordingReceiver {
         });
     }
 
-    /// What waits when writing has ended counts as dropped.
+    /// Counts the items that wait when writing ends as dropped.
     pub(super) fn drop_rest(&mut self) {
         while let Ok((_, item)) = self.receiver.try_recv() {
             self.counts.drop_one(item.is_frame());
         }
     }
 
-    /// How many frames were refused so far, or could not be written.
+    /// Number of frames that were refused, or could not be written.
     pub(super) fn n_dropped_frames(&self) -> u64 {
         self.counts.n_dropped_frames.load(Ordering::Acquire)
     }
 
-    /// Waits for the next item and writes it; items that were dropped meanwhile are told on [`Topic::Events`]. None once
-    /// all senders are gone and nothing waits.
+    /// Waits for the next item and writes it; items dropped meanwhile are reported on
+    /// [`Topic::Events`]. `None` once all senders are dropped and the queue is empty.
     pub fn write_next<W: Write>(&mut self, writer: &mut Writer<W>) -> Option<Result<Flushed, WriteError>> {
         let (time_ns, item) = self.receiver.recv().ok()?;
         self.counts
@@ -227,7 +227,7 @@ impl RecordingReceiver {
         }
     }
 
-    /// A picture that is that of the frame before is written once.
+    /// Writes a live frame; a picture equal to that of the frame before is written once.
     fn write_live<W: Write>(
         &mut self,
         time_ns: u64,
@@ -235,7 +235,8 @@ impl RecordingReceiver {
         writer: &mut Writer<W>,
     ) -> Result<(), WriteError> {
         let encoder = self.encoder.as_mut();
-        let encoder = encoder.ok_or_else(|| WriteError::Picture("nobody encodes it".to_owned()))?;
+        let encoder =
+            encoder.ok_or_else(|| WriteError::Picture("live frames are not accepted".to_owned()))?;
         let time_secs = 1e-9 * time_ns as f64;
         let before = encoder.latest.as_ref();
         if let Some((_, number, path)) = before.filter(|(image, ..)| image.is(&live.image)) {

@@ -12,9 +12,11 @@ use super::scan::scan;
 use super::source::Source;
 use crate::{FileError, Files, INDEX_FILE, MAX_INDEX_BYTES, check_path};
 
-/// A recording that is read: its files are those of a session's folder, `capture.json` made of its messages.
+/// A readable recording: its files are those of a session's folder, with `capture.json` assembled
+/// from its messages.
 ///
-/// Opening goes through all of it once. Memory for its texts is taken, and for one chunk, whatever its size.
+/// Opening reads all of it once. It needs memory for the texts and for one chunk, whatever the
+/// recording's size.
 pub struct Recording {
     source: Box<dyn Source>,
     index: Vec<u8>,
@@ -24,15 +26,16 @@ pub struct Recording {
     device: BTreeMap<String, String>,
     notes: Vec<Note>,
     losses: Vec<Loss>,
-    /// Where the last chunk lies that was read and is compressed, and its records: its pictures are read one after another.
+    /// Position and records of the compressed chunk that was read last: its pictures are read one
+    /// after another.
     unpacked: Mutex<Option<(u64, Vec<u8>)>>,
 }
 
 impl Recording {
-    /// Opens the recording that `source` reads from, as far as it is whole.
+    /// Opens the recording of `source`, as far as it is intact.
     ///
     /// # Errors
-    /// When it cannot be read, is no MCAP file, or no chunk of it is whole and has a session in it.
+    /// When it cannot be read, is no MCAP file, or no intact chunk of it has a session.
     pub fn open(source: impl Source + 'static) -> Result<Self, RecordingError> {
         let mut found = scan(&source)?;
         if found.has_two_sessions {
@@ -65,7 +68,7 @@ impl Recording {
         })
     }
 
-    /// Bytes of a chunk that is compressed.
+    /// Bytes of a compressed chunk.
     fn unpacked(&self, packed: &Packed, span: &Span) -> Result<Vec<u8>, FileError> {
         let failed = |reason: String| FileError::Io(reason);
         let mut last = self.unpacked.lock().unwrap_or_else(PoisonError::into_inner);
@@ -88,20 +91,20 @@ impl Recording {
         bytes.ok_or_else(|| failed("the recording was changed while it was read".to_owned()))
     }
 
-    /// Paths of all files, relative to the session; those that a session may not use are left out.
+    /// Paths of all files, relative to the session; without those that a session does not permit.
     #[must_use]
     pub fn paths(&self) -> BTreeSet<&str> {
         let named = self.spans.keys().map(String::as_str).chain([INDEX_FILE]);
         named.filter(|path| check_path(path).is_ok()).collect()
     }
 
-    /// Frames whose entry and picture are whole.
+    /// Number of frames with intact entry and picture.
     #[must_use]
     pub fn n_frames(&self) -> usize {
         self.n_frames
     }
 
-    /// What is known of the device that recorded it.
+    /// Facts about the recording device.
     #[must_use]
     pub fn device(&self) -> &BTreeMap<String, String> {
         &self.device
@@ -113,7 +116,7 @@ impl Recording {
         &self.notes
     }
 
-    /// What of it is lost; nothing of one that was finished and is whole.
+    /// Lost parts; empty for a finished and intact recording.
     #[must_use]
     pub fn losses(&self) -> &[Loss] {
         &self.losses
@@ -147,7 +150,7 @@ impl Files for Recording {
     }
 }
 
-/// The session's index with the frames that were found, as they were written.
+/// The session's index with the found frames, as they were written.
 fn index_of(session: &RawValue, found: &Found) -> Option<Vec<u8>> {
     let mut keys: BTreeMap<String, &RawValue> = serde_json::from_str(session.get()).ok()?;
     let entries: Vec<&str> = found.frames.iter().map(|frame| frame.entry.as_str()).collect();

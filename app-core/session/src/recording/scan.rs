@@ -1,8 +1,8 @@
-//! Goes through a recording once, from its first byte to its last, and trusts what checksums vouch for.
+//! Scans a recording once, from its first byte to its last, and trusts data with a valid checksum.
 //!
-//! A chunk or file is whole or is not there. Where lengths or checksums are wrong, the next chunk or file is looked for
-//! byte by byte: it is one only if its own checksum holds. The summary at the end is not looked at, since a recording that
-//! was cut has none.
+//! A chunk or file is either intact or missing. After wrong lengths or checksums, the next chunk or
+//! file is searched byte by byte: it counts only if its own checksum is valid. The summary at the
+//! end is ignored, since a cut recording has none.
 
 use super::chunk::{CHUNK_HEAD_BYTES, MAX_CHUNK_BYTES};
 use super::error::{Damage, Loss, RecordingError};
@@ -14,24 +14,24 @@ use super::wire::{
     MESSAGE_INDEX, METADATA, Rest, SCHEMA, parse_head,
 };
 
-/// Bytes that are read at once where nothing larger is wanted.
+/// Size of a read, unless a larger one is needed.
 const WINDOW_BYTES: u64 = 64 << 10;
-/// No attached file has a longer path and media type.
+/// Limit for the path and the media type of an attached file.
 const MAX_NAME_BYTES: u64 = 4096;
-/// No compression that the format has is called by more.
+/// Longest name of a compression in the format.
 const MAX_COMPRESSION_BYTES: u64 = 4;
 /// Bytes of an attached file's body before its path: two times.
 const TIMES_BYTES: u64 = 16;
 const CHECKSUM_BYTES: u64 = 4;
-/// How often the file's size may be read for chunks and files that only seem to be some, where it is damaged.
+/// Number of times that the file's size may be read for apparent chunks and files in damaged parts.
 const MAX_TRIALS: u64 = 4;
-/// Bytes that may come out of compressed chunks in all, for each byte of the file, and once besides. Pictures do not get
-/// smaller, and texts to a tenth.
+/// Limit for all decompressed bytes, over the file's size plus one file. Pictures do not compress
+/// further, and texts to a tenth.
 const MAX_INFLATION: u64 = 100;
-/// Losses that are told one by one.
+/// Number of losses that are listed one by one.
 const MAX_LOSSES: usize = 1000;
 
-/// Reads all of it.
+/// Scans all of it.
 pub(super) fn scan(source: &dyn Source) -> Result<Found, RecordingError> {
     let mut scan = Scan {
         source,
@@ -51,7 +51,7 @@ pub(super) fn scan(source: &dyn Source) -> Result<Found, RecordingError> {
     Ok(scan.found)
 }
 
-/// Bytes that may come out of the compressed chunks of a file.
+/// Limit for the decompressed bytes of a file.
 fn max_inflated(n_bytes: u64) -> u64 {
     n_bytes
         .saturating_mul(MAX_INFLATION)
@@ -62,30 +62,31 @@ struct Scan<'a> {
     source: &'a dyn Source,
     n_bytes: u64,
     at: u64,
-    /// What is before was vouched for, or looked at for what can be. What follows up to `at` is indices, as it seems.
+    /// Data before this position is verified, or checked as far as possible. From there up to `at`
+    /// are presumably indices.
     trusted: u64,
-    /// Bytes.
+    /// Number of bytes.
     trials_left: u64,
-    /// Bytes.
+    /// Number of bytes.
     inflation_left: u64,
     has_chunk: bool,
-    /// Whether messages stand outside of chunks, as some programs write them: all of them do then.
+    /// Whether messages are outside of chunks, as some programs write them: all of them are then.
     is_loose: bool,
     has_data_end: bool,
     has_footer: bool,
-    /// Of a chunk, used again.
+    /// Buffer of a chunk, reused.
     buffer: Vec<u8>,
     found: Found,
 }
 
-/// What a chunk's first bytes say.
+/// The header of a chunk.
 struct ChunkHead {
     home: Home,
     n_record_bytes: u64,
     checksum: u32,
 }
 
-/// Why a record is not taken.
+/// The reason why a record is refused.
 enum Bad {
     Damage(Damage),
     Io(RecordingError),
@@ -150,7 +151,7 @@ impl Scan<'_> {
         }
     }
 
-    /// Up to `n_bytes` bytes, fewer where the file ends.
+    /// Up to `n_bytes` bytes, fewer at the end of the file.
     fn head_bytes(&self, at: u64, n_bytes: u64) -> Result<Vec<u8>, RecordingError> {
         let n_bytes = n_bytes.min(self.n_bytes.saturating_sub(at)).min(MAX_CHUNK_BYTES);
         let mut bytes = vec![0; n_bytes as usize];
@@ -160,7 +161,7 @@ impl Scan<'_> {
         Ok(bytes)
     }
 
-    /// Reads the record at the place of the scan, and returns where it ends.
+    /// Reads the record at the scan's position, and returns its end.
     fn record(&mut self) -> Result<u64, Bad> {
         let mut head = [0; HEAD_LEN];
         self.source.read_at(self.at, &mut head)?;
@@ -193,14 +194,15 @@ impl Scan<'_> {
             HEADER if self.at == MAGIC.len() as u64 => {}
             DATA_END => self.data_end(body_at, n_bytes)?,
             FOOTER if self.has_data_end => self.has_footer = true,
-            // The summary tells nothing that chunks do not.
+            // The summary has no data that chunks do not have.
             _ if self.has_data_end => {}
             _ => return Err(Damage::Kind.into()),
         }
         Ok(end)
     }
 
-    /// An index is one by its lengths: where it is none, it may be a chunk whose kind has one wrong bit.
+    /// Checks the lengths of an index: an invalid one may be a chunk whose opcode has one wrong
+    /// bit.
     fn index(&self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
         const HEAD: u64 = 6;
         const ENTRY: u64 = 16;
@@ -211,7 +213,7 @@ impl Scan<'_> {
         Ok(if is_index { Ok(()) } else { Err(Damage::Kind) }?)
     }
 
-    /// What a chunk's first bytes say of it, if they can be those of one.
+    /// The header of a chunk, if it is plausible.
     fn chunk_head(&self, body_at: u64, n_bytes: u64) -> Result<ChunkHead, Bad> {
         let head = self
             .head_bytes(body_at, CHUNK_HEAD_BYTES + MAX_COMPRESSION_BYTES)
@@ -258,14 +260,14 @@ impl Scan<'_> {
         Ok(is_taken.ok_or(Damage::Length)?)
     }
 
-    /// Fills the buffer with a chunk's records, and compares their checksum.
+    /// Fills the buffer with a chunk's records, and verifies their checksum.
     fn check_chunk(&mut self, body_at: u64, n_bytes: u64) -> Result<Home, Bad> {
         let head = self.chunk_head(body_at, n_bytes)?;
         match head.home {
             Home::At(at) => self.fill_buffer(at, head.n_record_bytes)?,
             Home::Packed(packed) => self.unpack(packed)?,
         }
-        // Nought stands for no checksum.
+        // Zero means no checksum.
         if head.checksum == 0 || crc32fast::hash(&self.buffer) == head.checksum {
             Ok(head.home)
         } else {
@@ -273,7 +275,7 @@ impl Scan<'_> {
         }
     }
 
-    /// At most a chunk.
+    /// Fills the buffer with at most a chunk.
     fn fill_buffer(&mut self, at: u64, n_bytes: u64) -> Result<(), Bad> {
         #[expect(clippy::cast_possible_truncation, reason = "at most a chunk")]
         self.buffer.resize(n_bytes as usize, 0);
@@ -291,7 +293,8 @@ impl Scan<'_> {
         Ok(())
     }
 
-    /// A schema outside of chunks, before the first of them: messages stand there, too, if it is whole.
+    /// An intact schema outside of chunks, before the first of them: messages are outside, too,
+    /// then.
     fn schema(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
         if self.has_chunk || n_bytes > WINDOW_BYTES {
             return Err(Damage::Kind.into());
@@ -307,7 +310,7 @@ impl Scan<'_> {
         Ok(if is_whole { Ok(()) } else { Err(Damage::Kind) }?)
     }
 
-    /// Takes the channel or the message at the place of the scan, outside of chunks.
+    /// Adds the channel or the message at the scan's position, outside of chunks.
     fn loose(&mut self, n_body_bytes: u64) -> Result<(), Bad> {
         let max_bytes = MAX_CHUNK_BYTES;
         if n_body_bytes > max_bytes {
@@ -324,7 +327,7 @@ impl Scan<'_> {
         Ok(is_taken.ok_or(Damage::Length)?)
     }
 
-    /// Compares the checksum of all data, which is the only one of messages outside of chunks.
+    /// Verifies the checksum of all data, the only one of messages outside of chunks.
     fn data_end(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
         let body = self
             .head_bytes(body_at, n_bytes.min(CHECKSUM_BYTES))
@@ -337,7 +340,7 @@ impl Scan<'_> {
         Ok(())
     }
 
-    /// Checksum of bytes of the file, a window at a time.
+    /// Checksum of bytes of the file, read in windows.
     fn checksum_of(&self, from: u64, to: u64) -> Result<u32, Bad> {
         let mut hasher = crc32fast::Hasher::new();
         let mut at = from;
@@ -349,7 +352,7 @@ impl Scan<'_> {
         Ok(hasher.finalize())
     }
 
-    /// Path of an attached file and place of its bytes, after a look at its first ones.
+    /// Path of an attached file and position of its bytes, from its header.
     fn file_head(&self, body_at: u64, n_bytes: u64) -> Result<(String, Span), Bad> {
         let head = self
             .head_bytes(body_at, n_bytes.min(MAX_NAME_BYTES))
@@ -378,7 +381,7 @@ impl Scan<'_> {
         Ok(())
     }
 
-    /// Compares the checksum of an attached file, a window at a time.
+    /// Verifies the checksum of an attached file, read in windows.
     fn check_file(&self, body_at: u64, n_bytes: u64) -> Result<(String, Span), Bad> {
         let (path, span) = self.file_head(body_at, n_bytes)?;
         let end = span.at + span.n_bytes;
@@ -391,8 +394,8 @@ impl Scan<'_> {
         Ok((path, span))
     }
 
-    /// Goes on with the next chunk or file whose checksum holds. What seemed to be indices before the damage may have been
-    /// something else, so that they are looked through again.
+    /// Continues with the next chunk or file of valid checksum. Apparent indices before the damage
+    /// may have been something else, so they are searched again.
     fn skip_damage(&mut self, damage: Damage) -> Result<(), RecordingError> {
         let (from, damaged_at) = (self.trusted, self.at);
         let mut at = from;
@@ -402,7 +405,7 @@ impl Scan<'_> {
                 let Some(head) = head.first_chunk() else { continue };
                 if self.is_good(at + offset as u64, *head)? {
                     self.at = at + offset as u64;
-                    // Where its records are none of ours it is not found again.
+                    // If its records are not ours, it is not found again.
                     self.trusted = self.at + 1;
                     self.has_data_end = false;
                     self.lose(Loss::Skipped {
@@ -415,7 +418,7 @@ impl Scan<'_> {
             }
             at += (window.len() as u64 + 1 - HEAD_BYTES).max(1);
         }
-        // Nothing follows: a record that reaches beyond the end is one that was cut.
+        // Nothing follows: a record that reaches beyond the end was cut.
         let loss = match damage {
             Damage::Length => Loss::Cut { at: damaged_at },
             reason => Loss::Skipped {
@@ -429,7 +432,7 @@ impl Scan<'_> {
         Ok(())
     }
 
-    /// Whether a chunk or file begins here, whose checksum holds.
+    /// Whether a chunk or file of valid checksum begins here.
     fn is_good(&mut self, at: u64, head: [u8; HEAD_LEN]) -> Result<bool, RecordingError> {
         let (opcode, n_bytes) = parse_head(head);
         let body_at = at + HEAD_BYTES;

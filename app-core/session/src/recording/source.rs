@@ -1,8 +1,8 @@
-//! Where a recording's bytes come from: the caller opens the file.
+//! The source of a recording's bytes: the caller opens the file.
 
 use std::io;
 
-/// Read access to the bytes of one file, at any place.
+/// Read access to the bytes of one file, at any offset.
 pub trait Source: Send + Sync {
     /// Size of the file, bytes.
     fn n_bytes(&self) -> u64;
@@ -10,7 +10,7 @@ pub trait Source: Send + Sync {
     /// Fills `into` with the bytes from `at` on.
     ///
     /// # Errors
-    /// When the system refuses, or the file ends before.
+    /// When the system refuses, or the file is shorter.
     fn read_at(&self, at: u64, into: &mut [u8]) -> io::Result<()>;
 }
 

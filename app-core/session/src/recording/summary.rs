@@ -1,4 +1,5 @@
-//! The end of a finished recording, by which viewers find their way without reading all of it. Our reader needs none.
+//! The end of a finished recording, which viewers use to navigate without reading all of it. Our
+//! reader does not need it.
 
 use super::chunk::ChunkEntry;
 use super::topics::Topic;
@@ -10,7 +11,7 @@ use super::wire::{
 /// Bytes of the footer's body.
 const FOOTER_BYTES: u64 = 20;
 
-/// Where a file is that was attached.
+/// Position of an attached file.
 pub(super) struct FileEntry {
     pub(super) at: u64,
     pub(super) n_bytes: u64,
@@ -20,17 +21,17 @@ pub(super) struct FileEntry {
     pub(super) media_type: &'static str,
 }
 
-/// What was written so far.
+/// Positions of all written records.
 #[derive(Default)]
 pub(super) struct Written {
     pub(super) chunks: Vec<ChunkEntry>,
     pub(super) files: Vec<FileEntry>,
-    /// Place, size and name of the metadata.
+    /// Offset, size and name of the metadata.
     pub(super) metadata: Vec<(u64, u64, &'static str)>,
 }
 
 impl Written {
-    /// A bound of the size of [`Written::end`], one more chunk and file included.
+    /// An upper bound of the size of [`Written::end`], one more chunk and file included.
     pub(super) fn max_end_bytes(&self) -> u64 {
         const FIXED: u64 = 64 << 10;
         const A_CHUNK: u64 = 256;
@@ -38,9 +39,9 @@ impl Written {
         FIXED + A_CHUNK * self.chunks.len() as u64 + of_files.sum::<u64>()
     }
 
-    /// All from the end of the data to the end of a file that has `at` bytes so far.
+    /// All records from the end of the data to the end of a file that has `at` bytes so far.
     pub(super) fn end(&self, at: u64) -> Vec<u8> {
-        // Nothing vouches for the data as a whole: each chunk and file has a checksum of its own.
+        // There is no checksum of all data: each chunk and file has its own.
         let mut bytes = Body::new().u32(0).record(DATA_END);
         let summary_at = at + bytes.len() as u64;
         let of_summary = bytes.len();
@@ -63,7 +64,8 @@ impl Written {
         bytes
     }
 
-    /// Records of the summary by their opcodes; schemas and channels stand apart there.
+    /// Records of the summary grouped by their opcodes; schemas and channels are handled
+    /// separately.
     fn groups(&self) -> Vec<(u8, Vec<u8>)> {
         let announced = |of_kind: u8| -> Vec<u8> {
             let records = Topic::ALL.into_iter().map(Topic::records);

@@ -1,4 +1,4 @@
-//! What a recording's channels are, and the schemas that viewers read them by.
+//! The channels of a recording, and their schemas for viewers.
 
 use std::collections::BTreeMap;
 
@@ -11,15 +11,15 @@ use super::wire::{Body, CHANNEL, SCHEMA};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Topic {
-    /// The index of the session but its frames; anew in each chunk.
+    /// The index of the session without its frames; repeated in each chunk.
     Session,
     /// Camera pictures, `foxglove.CompressedImage`.
     Image,
     /// Projection of a frame's camera, `foxglove.CameraCalibration`.
     Calibration,
-    /// Where camera and toy are, `foxglove.FrameTransform`.
+    /// Poses of camera and toy, `foxglove.FrameTransform`.
     Transform,
-    /// A frame, as the index of a session has it.
+    /// A frame's entry in the index of the session.
     Frame,
     /// Planes that the platform tracks.
     Planes,
@@ -29,14 +29,14 @@ pub enum Topic {
     Light,
     /// Exposure and white balance of a frame.
     Exposure,
-    /// What happened: tracking states, touches, frames that were dropped.
+    /// Events: tracking states, touches, dropped frames.
     Events,
     /// Times of a frame's passes.
     Profile,
 }
 
 impl Topic {
-    /// All of them; a channel's id and its schema's are its place here, counted from 1.
+    /// All topics; a channel's id and its schema's are its position here, counted from 1.
     pub const ALL: [Self; 11] = [
         Self::Session,
         Self::Image,
@@ -50,7 +50,7 @@ impl Topic {
         Self::Events,
         Self::Profile,
     ];
-    /// Those that take any JSON object.
+    /// Channels for arbitrary JSON objects.
     pub const NOTES: [Self; 6] = [
         Self::Planes,
         Self::Anchors,
@@ -98,7 +98,7 @@ impl Topic {
         }
     }
 
-    /// Name, description and needed keys of a message that is JSON.
+    /// Name, description and required keys of a JSON message.
     const fn object(self) -> (&'static str, &'static str, &'static [&'static str]) {
         match self {
             Self::Session => (

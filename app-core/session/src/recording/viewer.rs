@@ -1,6 +1,7 @@
-//! What a frame is in Foxglove's messages, for viewers: its picture, its camera, where camera and toy are.
+//! Foxglove's messages of a frame, for viewers: its picture, its camera, the poses of camera and
+//! toy.
 //!
-//! No reader of sessions looks at poses and calibrations here: they are those of the frame's entry, in a viewer's form.
+//! The session reader ignores them: they repeat the frame's entry in a viewer's form.
 
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use serde::Deserialize;
@@ -8,14 +9,14 @@ use serde::Deserialize;
 use super::protobuf::{Fields, counted_field, timestamp};
 use crate::record::IntrinsicsRecord;
 
-/// Names of coordinate frames. The camera's is the one of its lens: x right, y down, z forward.
+/// Names of coordinate frames. The camera's is that of its optics: x right, y down, z forward.
 const WORLD: &str = "world";
 const CAMERA: &str = "camera";
 const TOY: &str = "toy";
-/// Field of `foxglove.CompressedImage` that holds the file.
+/// Field of `foxglove.CompressedImage` with the file.
 const DATA: u64 = 2;
 
-/// As much of a session's index as viewers are told. What is missing or of another form is left out.
+/// The part of a session's index that viewers receive. Missing or invalid values are left out.
 #[derive(Clone, Copy, Default, Deserialize)]
 pub(super) struct SessionShape {
     width: Option<u32>,
@@ -29,7 +30,7 @@ struct ToyShape {
     world_from_object: Option<[f64; 16]>,
 }
 
-/// As much of a frame's entry as viewers are told.
+/// The part of a frame's entry that viewers receive.
 #[derive(Clone, Copy, Default, Deserialize)]
 pub(super) struct EntryShape {
     intrinsics: Option<IntrinsicsRecord>,
@@ -49,13 +50,13 @@ pub(super) fn compressed_image(time_ns: u64, file: &[u8]) -> Vec<u8> {
     message.bytes(DATA, file).into_bytes()
 }
 
-/// Where the file lies in a `foxglove.CompressedImage`.
+/// Range of the file in a `foxglove.CompressedImage`.
 pub(super) fn image_file(message: &[u8]) -> Option<std::ops::Range<usize>> {
     counted_field(message, DATA)
 }
 
-/// `foxglove.CameraCalibration`: a pinhole without distortion. Pixels are counted as in sessions, the first one's centre at
-/// 0.5.
+/// `foxglove.CameraCalibration`: a pinhole without distortion. Pixel coordinates are as in
+/// sessions, the first centre at 0.5.
 pub(super) fn calibration(time_ns: u64, session: &SessionShape, entry: &EntryShape) -> Option<Vec<u8>> {
     let (width, height) = (session.width?, session.height?);
     let IntrinsicsRecord { fx, fy, cx, cy } = entry.intrinsics.or(session.intrinsics)?;
@@ -67,7 +68,7 @@ pub(super) fn calibration(time_ns: u64, session: &SessionShape, entry: &EntrySha
     Some(message.into_bytes())
 }
 
-/// `foxglove.FrameTransform` of camera and toy, as far as they are known.
+/// `foxglove.FrameTransform` of camera and toy, if they are known.
 pub(super) fn transforms(time_ns: u64, session: &SessionShape, entry: &EntryShape) -> Vec<Vec<u8>> {
     let camera = entry.world_from_camera.and_then(|world_from_camera| {
         // From the lens's axes to ours, half a turn around x.
@@ -83,7 +84,7 @@ pub(super) fn transforms(time_ns: u64, session: &SessionShape, entry: &EntryShap
     camera.into_iter().chain(toy).collect()
 }
 
-/// Of a rotation, a translation and whatever scale, which is left out. None where an axis has no length.
+/// The transform without its scale. `None` if an axis has length zero.
 fn transform(time_ns: u64, child: &str, world_from_child: &DMat4) -> Option<Vec<u8>> {
     let axes = [
         world_from_child.x_axis,

@@ -1,6 +1,7 @@
 //! Records of MCAP: an opcode, the number of bytes that follow, a body. Little endian.
 //!
-//! Source: the specification of MCAP (mcap.dev/spec). What is read borrows, and nothing is allocated by a stated length.
+//! Source: the specification of MCAP (mcap.dev/spec). Reading borrows, and nothing is allocated by
+//! a stated length.
 
 use std::collections::BTreeMap;
 
@@ -26,7 +27,7 @@ pub(super) const METADATA: u8 = 0x0c;
 pub(super) const METADATA_INDEX: u8 = 0x0d;
 pub(super) const SUMMARY_OFFSET: u8 = 0x0e;
 pub(super) const DATA_END: u8 = 0x0f;
-/// The body of a record that is written.
+/// The body of a record to write.
 #[derive(Default)]
 pub(super) struct Body(Vec<u8>);
 
@@ -54,7 +55,7 @@ impl Body {
         self.counted(text.as_bytes())
     }
 
-    /// Bytes after their number in 32 bits. More than that are of no use to any reader, and are cut.
+    /// Bytes after their number in 32 bits. Excess bytes, which no reader could use, are cut.
     pub(super) fn counted(self, bytes: &[u8]) -> Self {
         let n_bytes = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         let kept = bytes.get(..n_bytes as usize).unwrap_or(bytes);
@@ -92,13 +93,13 @@ pub(super) fn head(opcode: u8, n_bytes: u64) -> [u8; HEAD_LEN] {
     head
 }
 
-/// Opcode and length of a head.
+/// Parses opcode and length.
 pub(super) fn parse_head(head: [u8; HEAD_LEN]) -> (u8, u64) {
     let [opcode, length @ ..] = head;
     (opcode, u64::from_le_bytes(length))
 }
 
-/// What is left of a body that is read. Every method is none where too little is left.
+/// The unread part of a body. Every method returns `None` if too little is left.
 #[derive(Clone, Copy)]
 pub(super) struct Rest<'a>(pub(super) &'a [u8]);
 

@@ -1,4 +1,4 @@
-//! Writes a recording as it is taken: append-only, a chunk a second.
+//! Writes a recording live: append-only, one chunk per second.
 
 use std::collections::BTreeMap;
 use std::io::{ErrorKind, Write};
@@ -14,23 +14,24 @@ use super::viewer::{self, EntryShape, SessionShape};
 use super::wire::{ATTACHMENT, Body, HEADER, MAGIC, METADATA, head};
 use crate::{INDEX_FILE, MAX_INDEX_BYTES};
 
-/// A chunk is closed after that.
+/// A chunk is closed after this time.
 const CHUNK_NS: u64 = 1_000_000_000;
-/// A chunk is closed once it has as much, so that not more than that and a picture waits in memory.
+/// A chunk is closed at this size, so that at most this much and a picture waits in memory.
 const CHUNK_BYTES: u64 = 4 << 20;
 const DEVICE: &str = "device";
 
-/// How much a recording may take.
+/// Limits of a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// Most bytes of the file, its summary included.
+    /// Largest size of the file, its summary included, in bytes.
     pub max_bytes: u64,
-    /// What is to be left free on the device, which the caller tells with [`Writer::tick`]; bytes.
+    /// Free space to keep on the device, which the caller reports by [`Writer::tick`]; bytes.
     pub min_free_bytes: u64,
 }
 
 impl Limits {
-    /// For an app: it leaves the person room for a photo, and a file that other devices can take.
+    /// Limits for an app: they leave room for photos, and keep the file small enough for other
+    /// devices.
     pub const APP: Self = Self {
         max_bytes: 4_000_000_000,
         min_free_bytes: 512 << 20,
@@ -47,16 +48,16 @@ impl Default for Limits {
     }
 }
 
-/// What outlives the process: it was handed to the sink, and the sink was flushed.
+/// The data that survives the end of the process: it was written to the sink and flushed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flushed {
     /// Size of the file so far.
     pub n_bytes: u64,
-    /// Frames in it.
+    /// Number of frames in it.
     pub n_frames: u32,
-    /// Attached files in it.
+    /// Number of attached files in it.
     pub n_files: u32,
-    /// Chunks in it.
+    /// Number of chunks in it.
     pub n_chunks: u32,
 }
 
@@ -65,21 +66,21 @@ pub struct Flushed {
 pub enum Picture<'a> {
     /// A file, PNG or JPEG.
     New(&'a [u8]),
-    /// That of an earlier frame, by its number among all pictures, from 0.
+    /// The picture of an earlier frame, by its number among all pictures, from 0.
     Again(u32),
 }
 
 /// Writes one recording.
 ///
-/// What is flushed can be read whatever becomes of the process. Dropping a writer ends the file without a summary, which
-/// readers do without; what was not flushed is lost.
+/// Flushed data can be read whatever happens to the process. Dropping a writer ends the file
+/// without a summary, which readers do not need; unflushed data is lost.
 pub struct Writer<W> {
     sink: W,
     session: Box<RawValue>,
     shape: SessionShape,
     device: BTreeMap<String, String>,
     limits: Limits,
-    /// What was free when the caller said so, and the size of the file then; bytes.
+    /// Reported free space, and the size of the file at that time; bytes.
     free: Option<(u64, u64)>,
     stop: Option<Stop>,
     chunk: Option<OpenChunk>,
@@ -93,8 +94,8 @@ pub struct Writer<W> {
 impl<W: Write> Writer<W> {
     /// Begins a recording in an empty sink.
     ///
-    /// `session` is the index of the session, JSON, whose `frames` are left out here. `device` is what is to be known of
-    /// the device: model, system, version of the app.
+    /// `session` is the index of the session, JSON, whose `frames` are ignored here. `device` holds
+    /// facts about the device: model, system, version of the app.
     ///
     /// # Errors
     /// When `session` is no JSON object, or the sink refuses.
@@ -135,7 +136,7 @@ impl<W: Write> Writer<W> {
         Ok(writer)
     }
 
-    /// The session's index as it is from now on, JSON; the last one holds for the whole recording.
+    /// Sets the session's index, JSON; the last one applies to the whole recording.
     ///
     /// # Errors
     /// When it is no JSON object, or writing has ended.
@@ -147,10 +148,11 @@ impl<W: Write> Writer<W> {
         Ok(())
     }
 
-    /// Attaches a file that the session's index names, or any other; `path` is relative to the session. It is flushed.
+    /// Attaches a file that the session's index names, or any other; `path` is relative to the
+    /// session. It is flushed.
     ///
     /// # Errors
-    /// When writing has ended, or ends with this.
+    /// When writing has ended, or ends with this call.
     pub fn file(&mut self, time_ns: u64, path: &str, bytes: &[u8]) -> Result<(), WriteError> {
         self.check()?;
         self.close_chunk()?;
@@ -178,11 +180,12 @@ impl<W: Write> Writer<W> {
         self.flush_sink()
     }
 
-    /// Adds a frame: its picture, and its entry of the session's `frames`, JSON. Returns the picture's number.
+    /// Adds a frame: its picture, and its entry of the session's `frames`, JSON. Returns the
+    /// picture's number.
     ///
     /// # Errors
-    /// When the entry is no JSON object, the picture is too large or was never recorded, or writing has ended or ends with
-    /// this.
+    /// When the entry is no JSON object, the picture is too large or was never recorded, or writing
+    /// has ended or ends with this call.
     pub fn frame(&mut self, time_ns: u64, picture: Picture, entry: &str) -> Result<u32, WriteError> {
         self.check()?;
         let raw = object("a frame's entry", entry)?;
@@ -199,7 +202,7 @@ impl<W: Write> Writer<W> {
         let message = serde_json::to_vec(&message).map_err(|error| json_error("a frame's entry", &error))?;
         let calibration = viewer::calibration(time_ns, &self.shape, &shape);
         let transforms = viewer::transforms(time_ns, &self.shape, &shape);
-        // Heads and a viewer's messages are far smaller.
+        // Headers and a viewer's messages are far smaller.
         const ROOM: u64 = 4096;
         self.make_room(time_ns, (bytes.len() + message.len()) as u64 + ROOM)?;
         let n_frames = self.n_frames;
@@ -221,10 +224,10 @@ impl<W: Write> Writer<W> {
         Ok(sequence)
     }
 
-    /// Adds a message to one of the channels that take any JSON object ([`Topic::NOTES`]).
+    /// Adds a message to one of the channels for arbitrary JSON objects ([`Topic::NOTES`]).
     ///
     /// # Errors
-    /// When it is none, the channel is another, or writing has ended or ends with this.
+    /// When it is no object, the channel is another, or writing has ended or ends with this call.
     pub fn note(&mut self, time_ns: u64, topic: Topic, message: &str) -> Result<(), WriteError> {
         const WHAT: &str = "a message";
         self.check()?;
@@ -239,10 +242,10 @@ impl<W: Write> Writer<W> {
         self.close_if_due(time_ns)
     }
 
-    /// Tells the time where nothing else comes, and what is free on the device, as far as that is known; bytes.
+    /// Reports the time if no item arrives, and the free space on the device, if known; bytes.
     ///
     /// # Errors
-    /// When writing has ended, or ends with this.
+    /// When writing has ended, or ends with this call.
     pub fn tick(&mut self, time_ns: u64, free_bytes: Option<u64>) -> Result<(), WriteError> {
         self.check()?;
         self.free = free_bytes.map(|free| (free, self.n_bytes)).or(self.free);
@@ -250,10 +253,10 @@ impl<W: Write> Writer<W> {
         self.close_if_due(time_ns)
     }
 
-    /// Closes the chunk, so that all that was added outlives the process.
+    /// Closes the chunk, so that all added items survive the end of the process.
     ///
     /// # Errors
-    /// When writing has ended, or ends with this.
+    /// When writing has ended, or ends with this call.
     pub fn flush(&mut self) -> Result<Flushed, WriteError> {
         self.check()?;
         self.close_chunk()?;
@@ -261,22 +264,23 @@ impl<W: Write> Writer<W> {
         Ok(self.flushed)
     }
 
-    /// What outlives the process so far.
+    /// The data that survives the end of the process so far.
     #[must_use]
     pub fn flushed(&self) -> Flushed {
         self.flushed
     }
 
-    /// Why writing has ended, where it has.
+    /// The reason why writing has ended, if it has.
     #[must_use]
     pub fn stopped(&self) -> Option<&Stop> {
         self.stop.as_ref()
     }
 
-    /// Ends the recording with its summary, for which there is always room, and returns the sink.
+    /// Ends the recording with its summary, for which room is always reserved, and returns the
+    /// sink.
     ///
     /// # Errors
-    /// When the sink refuses, or has before.
+    /// When the sink refuses, or has refused before.
     pub fn finish(mut self) -> Result<(W, Flushed), WriteError> {
         if let Some(Stop::Sink(_) | Stop::Full) = &self.stop {
             self.check()?;
@@ -293,7 +297,7 @@ impl<W: Write> Writer<W> {
         self.stop.clone().map_or(Ok(()), |stop| Err(stop.into()))
     }
 
-    /// Ends writing where `n_bytes` more, all that waits and the summary are too much.
+    /// Ends writing if `n_bytes` more, all waiting data and the summary exceed the limits.
     fn need(&mut self, n_bytes: u64) -> Result<(), WriteError> {
         let waiting = self.chunk.as_ref().map_or(0, OpenChunk::n_bytes);
         let to_come = [n_bytes, waiting, self.session.get().len() as u64];
@@ -321,7 +325,7 @@ impl<W: Write> Writer<W> {
         self.check()
     }
 
-    /// Room in the file and in the chunk.
+    /// Makes room in the file and in the chunk.
     fn make_room(&mut self, time_ns: u64, n_bytes: u64) -> Result<(), WriteError> {
         let max_bytes = MAX_CHUNK_BYTES / 2;
         if n_bytes > max_bytes {
@@ -358,7 +362,7 @@ impl<W: Write> Writer<W> {
     }
 
     fn close_if_due(&mut self, time_ns: u64) -> Result<(), WriteError> {
-        // A clock that goes back is no reason to wait for it.
+        // A clock that goes back is no reason to wait.
         let is_due = self.chunk.as_ref().is_some_and(|chunk| {
             chunk.n_bytes() >= CHUNK_BYTES || chunk.begun_ns.abs_diff(time_ns) >= CHUNK_NS
         });

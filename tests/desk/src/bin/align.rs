@@ -1,4 +1,4 @@
-//! Writes a session anew, with the cameras, the toy's pose and the lights as its pictures show them.
+//! Writes a session anew, with cameras, toy pose and lights as estimated from its pictures.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -13,16 +13,18 @@ use desk::opened::Opened;
 use desk::program::exit_code;
 use desk::stored::Stored;
 
-/// Write a session anew with cameras, pose and lights aligned by its pictures; all else stays as it is.
+/// Write a session anew with cameras, pose and lights aligned by its pictures; all else stays as it
+/// is.
 #[derive(Parser)]
 #[command(name = "align", bin_name = "cargo xtask align")]
 struct Args {
     /// Folder of the session, or a recording
     session: PathBuf,
-    /// Folder for the corrected session, or a recording where it ends in .mcap, which must not be there yet
+    /// Folder for the corrected session, or a recording if it ends in .mcap; it must not exist yet
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Put the session's list of lights aside, and write those that their shadows show; the list stays where none does
+    /// Ignore the session's list of lights, and write those that were estimated from shadows; if
+    /// there are none, the list stays
     #[arg(long, value_enum, default_value_t)]
     lights: Lights,
     #[command(flatten)]

@@ -1,4 +1,5 @@
-//! The card to print: pages for a printer, and the picture that a platform knows it by.
+//! The card to print: pages for a printer, and the reference picture by which a platform recognises
+//! it.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,10 +11,11 @@ use desk::card::{CROSSES_M, Paper, page, png};
 use desk::output::{make_folder, write_whole};
 use desk::program::{exit_code, repository};
 
-/// Where the pages go that were given no place, below the top of the repository.
+/// Default folder of the pages, below the top of the repository.
 const RESULTS: &str = "target/card";
 
-/// Write a card to print and to lay beside the toy: for a tracker to hold on to, with a place for the lens of a light probe.
+/// Write a card to print and to lay beside the toy: it gives a tracker something to hold on to, and
+/// has a place for the lens of a light probe.
 #[derive(Parser)]
 #[command(name = "card", bin_name = "cargo xtask card")]
 struct Args {

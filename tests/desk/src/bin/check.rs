@@ -1,4 +1,4 @@
-//! Says what is wrong with a session, and draws over its first frame what it predicts.
+//! Reports the mistakes of a session, and draws its predictions over its first frame.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,11 +10,12 @@ use desk::check::check;
 use desk::output::make_folder;
 use desk::program::{exit_code, repository};
 
-/// Where drawings go that were given no place, below the top of the repository.
+/// Default folder of drawings, below the top of the repository.
 const RESULTS: &str = "target/check";
 
-/// Say what is wrong with a session, all at once, and draw what it predicts over its first frame: outlines of the toy and of
-/// its shadows, as given and as aligned. The exit code is 1 when anything is wrong.
+/// Report all mistakes of a session at once, and draw its predictions over its first frame:
+/// outlines of the toy and of its shadows, as given and as aligned. The exit code is 1 if there is
+/// any mistake.
 #[derive(Parser)]
 #[command(name = "check", bin_name = "cargo xtask check")]
 struct Args {
@@ -23,7 +24,8 @@ struct Args {
     /// Folder for the drawing [default: target/check]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Put the session's list of lights aside, and compare it with those that their shadows show
+    /// Ignore the session's list of lights, and compare it with the lights that are estimated from
+    /// shadows
     #[arg(long, value_enum, default_value_t)]
     lights: Lights,
     #[command(flatten)]

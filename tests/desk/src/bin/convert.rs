@@ -1,4 +1,4 @@
-//! Makes a recording of a session's folder, and a folder of a recording.
+//! Converts a session's folder to a recording, and a recording to a folder.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -8,16 +8,16 @@ use desk::convert::write;
 use desk::import::write_transforms;
 use desk::program::{exit_code, open_session};
 
-/// Write a session anew, as a recording where the new path ends in .mcap, else as a folder. Pictures stay the bytes that
-/// they are. A recording that is damaged is written without what is lost.
+/// Write a session anew, as a recording if the new path ends in .mcap, else as a folder. Pictures
+/// keep their bytes. Of a damaged recording, the readable part is written.
 #[derive(Parser)]
 #[command(name = "convert", bin_name = "cargo xtask convert")]
 struct Args {
     /// Folder of the session, or a recording
     session: PathBuf,
-    /// What to write, which must not be there yet
+    /// Path to write, which must not exist yet
     out: PathBuf,
-    /// Write the frames as nerfstudio has them, a folder with transforms.json
+    /// Write the frames in nerfstudio's format, a folder with transforms.json
     #[arg(long)]
     nerfstudio: bool,
 }

@@ -1,4 +1,4 @@
-//! Makes a session of another program's recording.
+//! Converts another program's recording to a session.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -9,16 +9,16 @@ use desk::files::Folder;
 use desk::import::{Format, Lacking, Written, read, write};
 use desk::program::exit_code;
 
-/// Make a session of another program's recording. What its format does not tell is asked for by name. Video is taken as
-/// frames that were extracted beforehand.
+/// Convert another program's recording to a session. The program asks by name for each value that
+/// the format lacks. Extract a video's frames beforehand.
 #[derive(Parser)]
 #[command(name = "import", bin_name = "cargo xtask import")]
 struct Args {
-    /// Who wrote it
+    /// Format of the recording
     format: Format,
     /// Folder of the recording
     recording: PathBuf,
-    /// Folder of the session to write, which must not be there yet
+    /// Folder of the session to write, which must not exist yet
     out: PathBuf,
     #[command(flatten)]
     lacking: Lacking,

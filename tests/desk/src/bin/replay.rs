@@ -21,14 +21,14 @@ use desk::replay::{Options, REPORT_FILE, replay};
 use desk::report::{FrameEntry, Report};
 use desk::shaders::ShaderArgs;
 
-/// Where results go that were given no place, below the top of the repository.
+/// Default folder of results, below the top of the repository.
 const RESULTS: &str = "target/replay";
 
-/// Why a frame is passed through whose toy is to be shown as it stands.
+/// The reason to pass a frame through that shows the toy in its own pose.
 const AS_RECORDED: &str = "the shown pose is the physical pose";
 
-/// Replay a recorded session: one picture per frame, report.json with times, passes and, where there is a truth, errors,
-/// and index.html to look at it all.
+/// Replay a recorded session: one picture per frame, report.json with times, passes and (if there
+/// is a truth) errors, and index.html to look at it all.
 #[derive(Parser)]
 #[command(name = "replay", bin_name = "cargo xtask replay")]
 struct Args {
@@ -40,7 +40,8 @@ struct Args {
     /// How much work a frame may cost; several are shown side by side
     #[arg(long = "preset", value_name = "NAME,...", value_delimiter = ',', default_values_t = [Preset::default()])]
     presets: Vec<Preset>,
-    /// Only these frames: 3 is one, A..B goes from A up to, but without, B, 3.. goes to the last, ..2 has the first two
+    /// Only these frames: 3 is one frame, A..B goes from A up to but not including B, 3.. goes to
+    /// the last, ..2 has the first two
     #[arg(long, value_name = "A..B")]
     frames: Option<Frames>,
     /// Part of a graphics adapter's name [default: the fastest]
@@ -51,12 +52,13 @@ struct Args {
     /// Take cameras, poses and lights as recorded, without aligning them by the pictures
     #[arg(long, conflicts_with_all = ["focal_length", "world_scale", "lens"])]
     as_given: bool,
-    /// Put the session's list of lights aside, and find them by their shadows
+    /// Ignore the session's list of lights, and estimate them from their shadows
     #[arg(long, value_enum, default_value_t, conflicts_with = "as_given")]
     lights: Lights,
     #[command(flatten)]
     ratio: RatioArgs,
-    /// End with exit code 1 if there was any warning, or a frame was passed through though the toy is to be shown elsewhere
+    /// End with exit code 1 if there was any warning, or if a frame was passed through although the
+    /// toy is to be shown elsewhere
     #[arg(long)]
     strict: bool,
     /// Print nothing but errors
@@ -171,7 +173,7 @@ fn summary_of(report: &Report) -> Vec<String> {
     lines
 }
 
-/// How many frames were retargeted, and why the others were not.
+/// The number of retargeted frames, and the reasons of the others.
 fn frames_of(report: &Report) -> String {
     let mut reasons: Vec<(&str, usize)> = Vec::new();
     for reason in report.frames.iter().filter_map(FrameEntry::reason_to_pass) {
@@ -191,7 +193,8 @@ fn frames_of(report: &Report) -> String {
     )
 }
 
-/// What a strict replay must not have: each warning, and each frame that was passed through though it asks for another pose.
+/// The reasons for which a strict replay fails: each warning, and each frame that was passed
+/// through although it requests another pose.
 fn complaints(reports: &[Report]) -> Vec<String> {
     let mut all = Vec::new();
     for report in reports {

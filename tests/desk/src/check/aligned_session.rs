@@ -16,20 +16,21 @@ use crate::convert;
 use crate::files::SESSION_FILE;
 use crate::stored::Stored;
 
-/// What becomes of lights that are assumed, since none was found.
+/// The handling of lights that are assumed, since none was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Assumed {
-    /// The session's list stays: they are no finding.
+    /// The session's list stays: assumed lights are no result.
     LeftOut,
-    /// They are written: pictures are to be made by them.
+    /// They are written, to make pictures with them.
     Written,
 }
 
-/// Writes a session anew, as a folder or as a recording, its index with what was found. Returns the number of corrected
-/// frames.
+/// Writes a session anew, as a folder or as a recording, with the estimates in its index. Returns
+/// the number of corrected frames.
 ///
 /// # Errors
-/// When the new one is there already or would lie in the session, or a file is a link or cannot be read or written.
+/// When the new one exists already or would lie in the session, or a file is a link or cannot be
+/// read or written.
 pub fn write(from: &Stored, to: &Path, alignments: &Alignments, assumed: Assumed) -> anyhow::Result<usize> {
     let bytes = from.read(SESSION_FILE, MAX_INDEX_BYTES).context(SESSION_FILE)?;
     let mut index: Value = serde_json::from_slice(&bytes)?;
@@ -86,7 +87,7 @@ fn correct(index: &mut Value, alignments: &Alignments, assumed: Assumed) -> usiz
             index["frames"][frame]["world_from_camera"] =
                 json!(alignment.camera.world_from_camera.to_cols_array());
         }
-        // Where none was found in place of the list, it stays.
+        // If none was found, the list stays.
         let is_taken = assumed == Assumed::Written || alignment.report.assumed.is_none();
         let is_found = |lights: &&Arc<[Light]>| !lights.is_empty() && is_taken;
         if let Some(lights) = alignment.lights.as_ref().filter(is_found) {
@@ -110,7 +111,7 @@ fn correct(index: &mut Value, alignments: &Alignments, assumed: Assumed) -> usiz
     n_corrected
 }
 
-/// Writes the lens that was found, or that there is none. Whether that is another than before.
+/// Writes the estimated lens, or its absence. Returns whether the lens changed.
 fn set_lens(index: &mut Value, found: Option<&LensAlignment>) -> bool {
     let lens = match found {
         Some(found) if found.is_applied() => json!(LensRecord::from(&found.distortion)),
@@ -125,7 +126,7 @@ fn set_lens(index: &mut Value, found: Option<&LensAlignment>) -> bool {
     false
 }
 
-/// Scales the focal length of the session, and those that plates and frames have of their own.
+/// Scales the focal length of the session, and those of single plates and frames.
 fn lengthen(index: &mut Value, ratio: f64) {
     if ratio == 1.0 {
         return;
@@ -149,7 +150,7 @@ fn lengthen_intrinsics(entry: &mut Value, ratio: f64) {
     }
 }
 
-/// Writes what a record has over an entry; keys that are not its own stay.
+/// Overwrites the keys of an entry that a record has; other keys stay.
 fn overwrite(entry: &mut Value, record: &impl Serialize) {
     if let Value::Object(keys) = json!(record) {
         for (key, value) in keys {

@@ -1,20 +1,21 @@
 //! Whether an ICC profile is that of sRGB.
 //!
-//! There are dozens of profiles of sRGB, so the colours that they stand for are compared, not their bytes or names.
+//! There are dozens of profiles of sRGB, so the profiles' colours are compared, not their bytes or
+//! names.
 
 use app_scene::geometry::color::linear_from_srgb;
 use moxcms::{ColorProfile, DataColorSpace, ProfileText, ToneReprCurve};
 
-/// Where profiles of sRGB differ among one another; Display P3's red is 0.08 off.
+/// Largest difference among profiles of sRGB; Display P3's red is 0.08 off.
 const SAME_COLUMN: f64 = 0.005;
-/// The same of their curves, in linear light. A power of 2.2 is within it, one of 1.8 is 0.06 off.
+/// The same for their curves, in linear light. A power of 2.2 is within it, one of 1.8 is 0.06 off.
 const SAME_LINEAR: f32 = 0.01;
-/// Where curves are compared, besides both ends.
+/// Number of points at which curves are compared, besides both ends.
 const N_STEPS: u8 = 16;
-/// A longer name is cut.
+/// Longer names are cut.
 const MOST_NAME_CHARS: usize = 60;
 
-/// The name of a profile whose colours are not sRGB's, or cannot be told; none of one whose are.
+/// The name of a profile whose colours are not sRGB's, or are unknown; `None` for sRGB.
 pub(super) fn foreign(profile: &[u8]) -> Option<String> {
     let profile = ColorProfile::new_from_slice(profile).ok();
     if profile.as_ref().is_some_and(is_srgb) {

@@ -1,14 +1,14 @@
-//! Keys of `capture.json` that no reader knows, which are mostly misspelt.
+//! Unknown keys of `capture.json`, which are mostly misspelt.
 
 use app_core::session::{Files, MAX_INDEX_BYTES};
 use serde_json::Value;
 
 use crate::files::SESSION_FILE;
 
-/// The format's schema, as a test holds it to the types that read it.
+/// The format's schema, which a test compares with the types that read it.
 const SCHEMA: &str = include_str!("../../../../app-core/doc/session.schema.json");
 
-/// Those of a session's index; none where it cannot be read, which the reader tells.
+/// The unknown keys of a session's index; none if it cannot be read, which the reader reports.
 pub(super) fn unknown(session: &dyn Files) -> Vec<String> {
     let bytes = session.read(SESSION_FILE, MAX_INDEX_BYTES).unwrap_or_default();
     let index: Value = serde_json::from_slice(&bytes).unwrap_or_default();
@@ -18,7 +18,8 @@ pub(super) fn unknown(session: &dyn Files) -> Vec<String> {
     unknown
 }
 
-/// Goes through a value and its schema side by side. Where the schema has no keys, any may stand.
+/// Goes through a value and its schema side by side. If the schema names no keys, any key may
+/// stand.
 fn look(value: &Value, schema: &Value, path: &str, unknown: &mut Vec<String>) {
     match (value, &schema["properties"]) {
         (Value::Object(entries), Value::Object(known)) => {

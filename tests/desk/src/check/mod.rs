@@ -1,4 +1,4 @@
-//! What is wrong with a session, as far as it can be told without any truth.
+//! The mistakes of a session that can be found without any truth.
 
 pub mod aligned_session;
 mod icc;
@@ -33,24 +33,25 @@ pub use pictures::{foreign as foreign_colours, wrong_of_picture};
 /// File name of the drawing.
 const DRAWING: &str = "check.png";
 
-/// What was looked at.
+/// The result of a check.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
     /// How toy, lights and camera stand to one another.
     pub facts: Vec<String>,
-    /// What is wrong; nothing in a good session.
+    /// Mistakes; empty for a good session.
     pub wrong: Vec<String>,
-    /// Of the first frame.
+    /// The drawing over the first frame.
     pub drawing: Option<PathBuf>,
 }
 
-/// Looks at a session's index, files, numbers and pictures, and draws what it predicts into `out`.
+/// Checks a session's index, files, numbers and pictures, and draws its predictions into `out`.
 ///
 /// # Errors
-/// When folder or recording cannot be opened, or the drawing cannot be written. What is wrong with the session is no error.
+/// When folder or recording cannot be opened, or the drawing cannot be written. Mistakes of the
+/// session are no errors.
 pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyhow::Result<Findings> {
     let stored = Stored::open(session)?;
-    // A drawing in the folder is of this session.
+    // An old drawing in the folder may be of another session.
     remove_file(&out.join(DRAWING))?;
     let mut findings = Findings {
         wrong: keys::unknown(&stored),
@@ -107,7 +108,7 @@ pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyh
     Ok(findings)
 }
 
-/// How far a light that was found is from the nearest one of the list that was put aside.
+/// The difference between an estimated light and the nearest light of the ignored list.
 fn against_listed(error: &LightError) -> String {
     let times = |ratio: Option<f64>, what: &str| {
         ratio.map_or(String::new(), |ratio| format!(", {ratio:.2} times its {what}"))
@@ -124,14 +125,17 @@ fn against_listed(error: &LightError) -> String {
 /// Ratios of sizes that differ from 1 by rounding.
 const SAME_SIZE: f64 = 1e-6;
 
-/// How well a pose is known that was found, and in which size and how soft a picture.
+/// The accuracy of an estimated pose, and the size and softness of the picture.
 fn how_well(pose: &PoseAlignment) -> String {
+    let texture = pose.texture_correlation.map_or_else(String::new, |correlation| {
+        format!("; the model's texture and the picture's correlate by {correlation:.2}")
+    });
     let size = match pose.size_ratio {
         ratio if (ratio - 1.0).abs() < SAME_SIZE => String::new(),
         ratio => format!(", {ratio:.4} times the size given"),
     };
     format!(
-        "toy.world_from_object: where the outline is found is known to {:.2} mm along the view, {:.2} mm beside it and {:.2} degrees, one deviation each{size}; the model's outline is off by {:.2} px, and edges are spread by {:.1} px",
+        "toy.world_from_object: the outline's position is known to {:.2} mm along the view, {:.2} mm beside it and {:.2} degrees, one deviation each{size}; the model's outline is off by {:.2} px, and edges are spread by {:.1} px{texture}",
         1e3 * pose.deviation.depth_m,
         1e3 * pose.deviation.lateral_m,
         pose.deviation.rotation_rad.to_degrees(),
@@ -140,7 +144,7 @@ fn how_well(pose: &PoseAlignment) -> String {
     )
 }
 
-/// The reader's warnings, but those of files that were looked at before.
+/// The reader's warnings, without those of files that were checked before.
 fn told(warnings: &[SessionWarning]) -> impl Iterator<Item = String> {
     let others = warnings
         .iter()
@@ -158,14 +162,14 @@ impl Findings {
         list.push(told);
     }
 
-    /// The session with the lens that its pictures tell.
+    /// The session with the lens as estimated from its pictures.
     fn freed_of_lens(&mut self, session: &Path, lights: Lights) -> anyhow::Result<Capture> {
         let Opened { capture, lens } = opened::open(session, Source::Found, lights)?;
         if let Some(found) = lens {
             let Distortion { k1, k2 } = found.distortion;
             let told = match found.errors {
                 Some(_) => format!(
-                    "lens: toy and shadow tell k1 {k1:.4} and k2 {k2:.4}: {}",
+                    "lens: the estimate from toy and shadow is k1 {k1:.4} and k2 {k2:.4}: {}",
                     found.outcome
                 ),
                 None => format!("lens: {}", found.outcome),
@@ -181,7 +185,7 @@ impl Findings {
         if let Some(found) = &report.focal_length {
             let told = match found.errors {
                 Some(_) => format!(
-                    "intrinsics: toy and shadow tell {:.4} times the focal length, +- {:.4}: {}",
+                    "intrinsics: the estimate from toy and shadow is {:.4} times the focal length, +- {:.4}: {}",
                     found.ratio, found.deviation, found.outcome
                 ),
                 None => format!("intrinsics: {}", found.outcome),
@@ -191,7 +195,7 @@ impl Findings {
         if let Some(found) = &report.world_scale {
             let told = match found.errors {
                 Some(_) => format!(
-                    "toy.world_from_object: toy and shadow tell a world {:.4} times as large as the toy's model says, +- {:.4}: {}",
+                    "toy.world_from_object: by toy and shadow the world is {:.4} times as large as by the toy's model, +- {:.4}: {}",
                     found.ratio, found.deviation, found.outcome
                 ),
                 None => format!("toy.world_from_object: its scale: {}", found.outcome),
@@ -200,7 +204,7 @@ impl Findings {
         }
         if let Some(camera) = &report.camera {
             let told = format!(
-                "world_from_camera: the table moves by {:.2} px in the picture where the camera is moved by {:.2} mm and turned by {:.2} degrees",
+                "world_from_camera: the table moves by {:.2} px in the picture if the camera is moved by {:.2} mm and turned by {:.2} degrees",
                 camera.moved_px,
                 1e3 * camera.moved_m,
                 camera.turned_rad.to_degrees(),
@@ -217,7 +221,7 @@ impl Findings {
                 format!(", {ratio:.2} times its angular size")
             });
             let told = format!(
-                "lights[{index}]: its shadow tells a direction {:.2} degrees from that given, {:.2} times its distance{size}",
+                "lights[{index}]: the estimate from its shadow is {:.2} degrees from the direction given, at {:.2} times its distance{size}",
                 light.turned_rad.to_degrees(),
                 light.distance_ratio
             );
@@ -257,7 +261,7 @@ impl Findings {
             ),
             Some(pose) => {
                 let told = format!(
-                    "toy.world_from_object: the outline is {:.2} px from the photograph's as given, {:.2} px where the toy is moved by {:.2} mm and turned by {:.2} degrees",
+                    "toy.world_from_object: the outline is {:.2} px from the photograph's as given, {:.2} px if the toy is moved by {:.2} mm and turned by {:.2} degrees",
                     pose.given_outline_px,
                     pose.outline_px,
                     1e3 * pose.moved_m,
@@ -276,7 +280,7 @@ impl Findings {
                 .distance_m
                 .map_or("not told".to_owned(), |distance_m| format!("{distance_m:.2} m"));
             let then = if stands {
-                ", and stands so: no shadow shows it"
+                ", which no shadow confirms or corrects"
             } else {
                 ""
             };
@@ -288,7 +292,7 @@ impl Findings {
         for rejected in &probe.rejected {
             let [u, v] = rejected.at_px.to_array();
             self.facts.push(format!(
-                "probe: what is bright at ({u:.1}, {v:.1}) px is no light: {}",
+                "probe: the bright spot at ({u:.1}, {v:.1}) px is no light: {}",
                 rejected.reason
             ));
         }
@@ -300,14 +304,14 @@ impl Findings {
         }
         if probe.n_unseen > 0 {
             self.facts.push(format!(
-                "probe: its last {} pictures do not show it, so that what was seen before stands",
+                "probe: its last {} pictures do not show the light, so that the earlier estimate is kept",
                 probe.n_unseen
             ));
         }
     }
 }
 
-/// Where a point of the world is in a camera's picture; none behind the camera.
+/// The place of a world point in a camera's picture; `None` behind the camera.
 fn pixel(camera: &Camera, world: DVec3) -> Option<DVec2> {
     let at = camera.world_from_camera.inverse().transform_point3(world);
     camera.intrinsics.pixel_of(at)

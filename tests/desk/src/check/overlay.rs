@@ -8,13 +8,13 @@ use glam::{DVec2, DVec3};
 use super::pixel;
 use crate::gizmo::dot;
 
-/// Of what was given: red.
+/// Colour of given values: red.
 pub const GIVEN: [u8; 3] = [255, 40, 40];
-/// Of what was aligned: green.
+/// Colour of aligned values: green.
 pub const ALIGNED: [u8; 3] = [40, 255, 60];
-/// Of receivers: blue.
+/// Colour of receivers: blue.
 const RECEIVERS: [u8; 3] = [70, 120, 255];
-/// Lines of a receiver's grid around the toy, how far apart, and dots along each.
+/// Number of lines of a receiver's grid around the toy, their spacing, and dots along each.
 const N_LINES: i32 = 6;
 const LINE_M: f64 = 0.05;
 const N_DOTS: i32 = 400;

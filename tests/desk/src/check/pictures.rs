@@ -1,4 +1,5 @@
-//! Picture files that are not read as they are meant: turned, of more than 8 bits, of other colours than sRGB.
+//! Picture files that the reader misreads: rotated by a tag, of more than 8 bits, in other colours
+//! than sRGB.
 
 use std::collections::HashSet;
 use std::io::Cursor;
@@ -12,7 +13,7 @@ use serde_json::Value;
 use super::icc;
 use crate::files::SESSION_FILE;
 
-/// No longer index is read, nor a longer picture: 16-bit RGBA of the most pixels that one may have, and room for tags.
+/// Longest index and picture to read: 16-bit RGBA of the largest allowed size, and room for tags.
 const MOST_INDEX_BYTES: u64 = 16 << 20;
 const MOST_PICTURE_BYTES: u64 = (8 * 4096 * 3072) + (16 << 20);
 
@@ -24,10 +25,10 @@ const BT_2020_PRIMARIES: u8 = 9;
 const SRGB_GAMA: u32 = 45_455;
 /// A PNG's `cHRM` in 100,000ths: x and y of white, red, green and blue.
 const SRGB_CHRM: [u32; 8] = [31_270, 32_900, 64_000, 33_000, 30_000, 60_000, 15_000, 6_000];
-/// What is rounding of them.
+/// Rounding of these values.
 const SAME: u32 = 200;
 
-/// Of all pictures that an index names; none where it cannot be read, which the reader tells.
+/// The misread pictures of an index; none if it cannot be read, which the reader reports.
 pub(super) fn wrong(session: &dyn Files) -> Vec<String> {
     let bytes = session.read(SESSION_FILE, MOST_INDEX_BYTES).unwrap_or_default();
     let index: Value = serde_json::from_slice(&bytes).unwrap_or_default();
@@ -47,7 +48,8 @@ pub(super) fn wrong(session: &dyn Files) -> Vec<String> {
             };
             wrong.push(turned.to_string());
         }
-        // A mask's channels are plain numbers, whatever a profile says, and the reader refuses those of 16 bits.
+        // A mask's channels are plain numbers, whatever a profile says, and the reader refuses
+        // masks of 16 bits.
         if !field.ends_with("mask") {
             let others = wrong_of_picture(&bytes);
             wrong.extend(others.into_iter().map(|what| format!("{file} ({field}): {what}")));
@@ -77,7 +79,7 @@ fn named(index: &Value) -> Vec<(String, &str)> {
     named
 }
 
-/// What a photograph's file says of its colours that the reader does not heed.
+/// Statements of a photograph's file about its colours that the reader ignores.
 #[must_use]
 pub fn wrong_of_picture(bytes: &[u8]) -> Vec<String> {
     let mut limits = Limits::default();
@@ -87,7 +89,7 @@ pub fn wrong_of_picture(bytes: &[u8]) -> Vec<String> {
     } else if let Ok(mut decoder) = JpegDecoder::new(Cursor::new(bytes)) {
         (bits(&decoder), decoder.icc_profile())
     } else {
-        // The reader tells.
+        // The reader reports it.
         return Vec::new();
     };
     let depth = (n_bits > 8).then(|| {
@@ -103,9 +105,10 @@ fn bits(decoder: &impl ImageDecoder) -> u16 {
     8 * u16::from(color.bytes_per_pixel()) / u16::from(color.channel_count())
 }
 
-/// Which colours a picture is in; none where that is sRGB, or nothing is said.
+/// The colour space of a picture; `None` for sRGB, or if the file does not say.
 ///
-/// Of a PNG's chunks the first of these counts. Source: PNG specification (W3C, third edition), section 4.3.
+/// Of a PNG's chunks the first of these counts. Source: PNG specification (W3C, third edition),
+/// section 4.3.
 #[must_use]
 pub fn foreign(bytes: &[u8], profile: Option<&[u8]>) -> Option<String> {
     let chunk = |name: &[u8; 4]| {

@@ -1,4 +1,4 @@
-//! Numbers that can be read, but are hardly meant.
+//! Numbers that can be read, but are probably wrong.
 
 use app_core::scene::Scene;
 use app_core::session::SessionFrame;
@@ -8,19 +8,19 @@ use glam::{DMat4, DVec2, DVec3, UVec2};
 use super::pixel;
 use crate::doubts;
 
-/// Sizes of a toy that are no mistake, in metres.
+/// Plausible sizes of a toy, in metres.
 const TOY_M: [f64; 2] = [0.005, 3.0];
 
-/// What a session does without, and what is made of it.
+/// Optional parts that a session lacks, and their substitutes.
 pub(super) fn without(scene: &Scene) -> Vec<String> {
     let mut facts = Vec::new();
     if let (true, Some(_)) = (scene.lights.is_empty(), &scene.probe) {
         facts.push(
-            "lights: none is listed, so that the probe tells them, and the toy's shadow corrects them"
+            "lights: none is listed, so that they are estimated from the probe and corrected by the toy's shadow"
                 .to_owned(),
         );
     } else if scene.lights.is_empty() {
-        facts.push("lights: none is listed, so that they are looked for by the toy's shadow".to_owned());
+        facts.push("lights: none is listed, so that they are estimated from the toy's shadow".to_owned());
     }
     if scene.plates.is_empty() {
         facts.push("backgrounds: there is none, so that the place behind the toy is estimated".to_owned());
@@ -28,7 +28,7 @@ pub(super) fn without(scene: &Scene) -> Vec<String> {
     facts
 }
 
-/// Of the session as a whole.
+/// Implausible numbers of the session as a whole.
 pub(super) fn wrong(scene: &Scene) -> Vec<String> {
     let mut wrong = doubts::of_scene(scene);
     if let Some(corners) = corners(scene, &scene.world_from_object) {
@@ -49,7 +49,7 @@ pub(super) fn wrong(scene: &Scene) -> Vec<String> {
     wrong
 }
 
-/// Of one frame.
+/// Implausible numbers of one frame.
 pub(super) fn wrong_of_frame(scene: &Scene, index: usize, frame: &SessionFrame) -> Vec<String> {
     let Some(corners) = corners(scene, &frame.world_from_object) else {
         return vec![format!("frames[{index}]: the toy cannot be posed")];
@@ -74,7 +74,7 @@ pub(super) fn wrong_of_frame(scene: &Scene, index: usize, frame: &SessionFrame) 
     wrong
 }
 
-/// Of the toy's box, in the world: the first and the last are opposite.
+/// Corners of the toy's box, in the world: the first and the last are opposite.
 fn corners(scene: &Scene, world_from_object: &DMat4) -> Option<Vec<DVec3>> {
     let bounds = scene.toy.bounds_of_pose(&scene.physical_pose).ok()?;
     let bounds = Bounds {

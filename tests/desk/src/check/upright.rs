@@ -1,5 +1,6 @@
-//! A toy whose file has another axis up than glTF: it lies on its back, and alignment, which looks near the pose given, finds none.
-//! Here it is turned about each axis by quarters.
+//! The check for a toy whose file has another up axis than glTF: it lies on its back, and
+//! alignment, which searches near the given pose, fails. This check turns it about each axis in
+//! quarter turns.
 
 use app_core::alignment::{Aligner, AlignmentWarning};
 use app_core::session::{Session, SessionFrame};
@@ -7,17 +8,18 @@ use glam::{DMat4, DQuat, DVec3};
 
 use crate::alignment::{Alignments, Asked};
 
-/// A turn is offered only if the toy needs no more than that beside it, in radians.
+/// A turn is suggested only if the toy needs no larger rotation in addition, in radians.
 const MOST_BESIDE: f64 = 0.35;
 
-/// A turn that fits.
+/// A turn with which the toy fits.
 struct Fitting {
     words: &'static str,
     world_from_object: DMat4,
     outline_px: f64,
 }
 
-/// What to say of a toy that does not fit as it was given in a frame: the turn with which it does, if one of the likely ones does.
+/// The suggestion for a toy that does not fit as given in a frame: the turn with which it does, if
+/// one of the likely ones does.
 pub(super) fn offered(session: &dyn Session, index: usize, asked: Asked) -> Option<String> {
     let frame = session.frame(index).ok()?;
     let turns = [
@@ -80,7 +82,7 @@ fn fitting(
     })
 }
 
-/// Whether the toy of a frame does not fit the picture where it was given.
+/// Whether the toy of a frame does not fit the picture in its given pose.
 pub(super) fn is_misaligned(alignments: &Alignments, index: usize) -> bool {
     let warnings = alignments.of(index).map(|aligned| &aligned.alignment.warnings);
     warnings

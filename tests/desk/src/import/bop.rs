@@ -1,8 +1,10 @@
-//! A scene of a BOP data set: `scene_camera.json`, `scene_gt.json`, and pictures counted as their keys.
+//! A scene of a BOP data set: `scene_camera.json`, `scene_gt.json`, and pictures numbered by their
+//! keys.
 //!
-//! Poses are from the model to a camera with OpenCV's axes (y down, z forward), row by row, in millimetres. Matrices of cameras are
-//! OpenCV's: their first pixel's centre is at (0, 0). The recording's world is that of the toy's model, in metres: a scene without
-//! poses of its cameras has no other.
+//! Poses are from the model to a camera with OpenCV's axes (y down, z forward), row by row, in
+//! millimetres. Matrices of cameras are OpenCV's: their first pixel's centre is at (0, 0). The
+//! recording's world is that of the toy's model, in metres: a scene without poses of its cameras
+//! has no other.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -64,11 +66,11 @@ pub(super) fn parse(texts: [&str; 2], known: &Known, object: Option<u32>) -> Res
     }
     let mut notes = Vec::from_iter(without_picture(&missing, truths.len()));
     if n_without > 0 {
-        notes.push(format!("{n_without} frames without object {object} are left out"));
+        notes.push(format!("{n_without} frames without object {object} are skipped"));
     }
     if n_several > 0 {
         notes.push(format!(
-            "object {object} is there several times in {n_several} frames: the toy is the first of them in each, so look whether that is the same one"
+            "object {object} occurs several times in {n_several} frames, and the toy is the first of them in each: check that this is always the same one"
         ));
     }
     Ok(Imported {
@@ -80,7 +82,7 @@ pub(super) fn parse(texts: [&str; 2], known: &Known, object: Option<u32>) -> Res
     })
 }
 
-/// The object that is asked for, or the only one.
+/// The requested object, or the only one.
 fn toy(truths: &BTreeMap<u32, Vec<Truth>>, asked: Option<u32>) -> Result<u32, ImportError> {
     let objects: BTreeSet<u32> = truths.values().flatten().map(|truth| truth.obj_id).collect();
     let mut all = objects.iter().copied();

@@ -1,7 +1,8 @@
-//! A model of COLMAP: `cameras` and `images`, each .bin or .txt. Points are not looked at.
+//! A model of COLMAP: `cameras` and `images`, each .bin or .txt. Points are ignored.
 //!
-//! Poses are from the world to a camera with OpenCV's axes (y down, z forward), as quaternion (w, x, y, z) and translation. The first
-//! pixel's centre is at (.5, .5). Which way is up, and how long a metre is, a model does not tell.
+//! Poses are from the world to a camera with OpenCV's axes (y down, z forward), as quaternion (w,
+//! x, y, z) and translation. The first pixel's centre is at (.5, .5). A model has neither an up
+//! direction nor a metric scale.
 
 use std::collections::HashMap;
 
@@ -11,7 +12,7 @@ use super::lens::Lens;
 use super::paths::{Known, Taken};
 use super::values::{OPENCV_FROM_CAMERA, number, ordered, pose, without_picture};
 
-/// Where a model lies below the folder that is given.
+/// Places of a model below the given folder.
 const FOLDERS: [&str; 9] = [
     "",
     "sparse/0/",
@@ -23,12 +24,12 @@ const FOLDERS: [&str; 9] = [
     "colmap_sparse/0/",
     "colmap_text/",
 ];
-/// Where the pictures lie.
+/// Places of the pictures.
 const PICTURES: [&str; 4] = ["images", "input", "dense/images", "dense/0/images"];
-/// Bytes of a point that an image shows: two numbers and the point's own.
+/// Bytes of a point in an image's record: two coordinates and the point's number.
 const POINT_BYTES: u64 = 24;
 
-/// Which files a model has.
+/// The encoding of a model's files.
 pub(super) struct Model {
     folder: &'static str,
     is_binary: bool,
@@ -41,7 +42,7 @@ impl Model {
         ["cameras", "images"].map(|name| format!("{}{name}.{ending}", self.folder))
     }
 
-    /// That of a file of cameras.
+    /// The encoding of a file of cameras.
     pub(super) fn by_bytes(cameras: &[u8]) -> Self {
         Self {
             folder: "",
@@ -67,7 +68,7 @@ struct Camera {
     lens: Lens,
 }
 
-/// An image, its pose that of the world in the camera.
+/// An image, with the pose camera from world.
 struct Pose {
     quaternion_wxyz: [f64; 4],
     translation: [f64; 3],
@@ -195,7 +196,7 @@ fn text<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, ImportError> {
     std::str::from_utf8(bytes).map_err(|_| ImportError::new(file, "the file", ImportReason::NotText))
 }
 
-/// Lines that are no remark, and their places, counted from 1.
+/// Lines that are no comment, and their line numbers, counted from 1.
 fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let lines = (1..).zip(text.lines());
     lines.filter(|(_, line)| !line.starts_with('#'))
@@ -207,7 +208,7 @@ fn parsed<T: std::str::FromStr>(file: &str, field: &str, word: Option<&str>) -> 
         .map_err(|_| ImportError::new(file, field, ImportReason::NotANumber(word.to_owned())))
 }
 
-/// A line each: number, model, width, height, numbers.
+/// Parses one camera per line: number, model, width, height, parameters.
 fn text_cameras(file: &str, bytes: &[u8]) -> Result<HashMap<u64, Camera>, ImportError> {
     let mut cameras = HashMap::new();
     for (line, text) in lines(text(file, bytes)?).filter(|(_, line)| !line.trim().is_empty()) {
@@ -226,7 +227,8 @@ fn text_cameras(file: &str, bytes: &[u8]) -> Result<HashMap<u64, Camera>, Import
     Ok(cameras)
 }
 
-/// Two lines each, of which the second, of points, may be empty: number, quaternion, translation, camera, name.
+/// Parses two lines per image: number, quaternion, translation, camera, name; the second line has
+/// its points and may be empty.
 fn text_images(file: &str, bytes: &[u8]) -> Result<Vec<Pose>, ImportError> {
     let mut images = Vec::new();
     let mut lines = lines(text(file, bytes)?);
@@ -262,7 +264,7 @@ fn text_images(file: &str, bytes: &[u8]) -> Result<Vec<Pose>, ImportError> {
     Ok(images)
 }
 
-/// What is left of a binary file.
+/// The unread part of a binary file.
 struct Bytes<'a> {
     file: &'a str,
     all: &'a [u8],
@@ -299,7 +301,7 @@ impl<'a> Bytes<'a> {
         self.array().map(f64::from_le_bytes)
     }
 
-    /// Up to a zero.
+    /// A text that ends at a zero byte.
     fn name(&mut self) -> Result<String, ImportError> {
         let rest = self.all.get(self.at..).unwrap_or_default();
         let end = rest
@@ -311,7 +313,7 @@ impl<'a> Bytes<'a> {
         Ok(name)
     }
 
-    /// A number of entries that have at least so many bytes each.
+    /// A number of entries that have at least `least_bytes` bytes each.
     fn count(&mut self, least_bytes: u64) -> Result<u64, ImportError> {
         let n = self.u64()?;
         let left = (self.all.len() - self.at) as u64;

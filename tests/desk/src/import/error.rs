@@ -1,10 +1,10 @@
-//! What is wrong with what is imported: always the file, the field and the reason.
+//! Import errors, each with file, field and reason.
 
 use app_core::scene::FieldError;
 use app_core::session::FileError;
 use thiserror::Error;
 
-/// A recording of another program that cannot be taken.
+/// A recording of another program that cannot be imported.
 #[derive(Debug, Error)]
 #[error("{file} ({field}): {reason}")]
 pub struct ImportError {
@@ -12,44 +12,44 @@ pub struct ImportError {
     pub file: String,
     /// Path of the field, or line and column.
     pub field: String,
-    /// Why.
+    /// The reason.
     pub reason: ImportReason,
 }
 
-/// Why something cannot be taken.
+/// The reason why a recording cannot be imported.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ImportReason {
     /// The file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Not JSON, or not that of the format.
+    /// The text is no JSON, or not that of the format.
     #[error("{0}")]
     Json(#[from] serde_json::Error),
-    /// Not text.
+    /// The file is not text.
     #[error("not UTF-8")]
     NotText,
-    /// It is not there.
+    /// The file or field does not exist.
     #[error("missing")]
     Missing,
-    /// It is not a number, or not a finite one.
+    /// The value is no number, or not a finite one.
     #[error("{0:?} is not a finite number of at most {max:e}", max = super::imported::MAX_NUMBER)]
     NotANumber(String),
-    /// A time that no clock shows.
+    /// A time outside of every clock's range.
     #[error("{0} is no time in seconds: it must be from -1e10 to 1e10")]
     NotATime(f64),
     /// A list of another length.
     #[error("{n} numbers, {expected} are needed")]
     Length {
-        /// As found.
+        /// Number of values in the file.
         n: usize,
-        /// As needed.
+        /// Number of values needed.
         expected: &'static str,
     },
-    /// Four numbers near nought.
+    /// A quaternion near zero.
     #[error("the quaternion has no direction")]
     NoRotation,
-    /// Nine numbers that are no rotation.
+    /// A matrix that is no rotation.
     #[error("the matrix is no rotation")]
     NotARotation,
     /// A matrix that shears, mirrors or projects.
@@ -57,57 +57,57 @@ pub enum ImportReason {
         "the matrix is no pose: its columns must be at right angles, of one length and not mirrored, and its last row 0 0 0 1"
     )]
     NotAPose,
-    /// A camera of another kind.
+    /// An unsupported camera model.
     #[error(
         "{0:?}: that camera model cannot be taken: undistort the pictures first, as `colmap image_undistorter` or `ns-process-data` do"
     )]
     Lens(String),
-    /// A lens with which no picture can be undistorted.
+    /// A lens that cannot be inverted over the picture.
     #[error("the lens {lens}: {reason}; undistort the pictures first")]
     Folds {
         /// Its coefficients.
         lens: String,
-        /// Why.
+        /// The reason.
         reason: FieldError,
     },
     /// No frame has both a pose and a picture.
     #[error("no frame with a pose has a picture{}", looked_for(first))]
     NoFrames {
-        /// The first picture that is named; none if the format does not name any.
+        /// The first picture named; `None` if the format does not name any.
         first: Option<String>,
     },
-    /// More than are taken.
-    #[error("more than {0} frames")]
+    /// More frames than the limit.
+    #[error("it has more than {0} frames: split it, or import every second frame")]
     TooMany(usize),
     /// Two frames whose paths lead to one picture.
     #[error(
         "this picture is found at {0:?}, as another frame's is: the folder must hold both, as deep as the paths say"
     )]
     Twice(String),
-    /// Pictures that may be counted from 0 or from 1.
+    /// Pictures of which it is unknown whether they are numbered from 0 or from 1.
     #[error(
         "the pictures are numbered from {} to {}, the frames from 0 to {last_frame}: which picture is the first frame's cannot be known; extract all frames, and number them from 0, as by `ffmpeg -start_number 0`",
         numbers[0],
         numbers[1]
     )]
     Numbering {
-        /// First and last.
+        /// First and last number of a picture.
         numbers: [u64; 2],
-        /// Of the index.
+        /// Last frame of the index.
         last_frame: u64,
     },
-    /// A picture in another format that is known.
+    /// A picture in a known format that cannot be read.
     #[error("the picture is {format}, and only PNG and JPEG are read: {way_out}")]
     OtherFormat {
-        /// What it is.
+        /// The picture's format.
         format: &'static str,
-        /// What makes a picture of it that is read.
+        /// The way to convert it.
         way_out: &'static str,
     },
     /// Neither PNG nor JPEG, or damaged.
     #[error("neither a PNG nor a JPEG whose size can be read")]
     NotAPicture,
-    /// A picture of another size than the others.
+    /// A picture whose size differs from the first.
     #[error(
         "it is {} x {} px, but {first} is {} x {} px: all pictures of a session have one size",
         size_px[0],
@@ -120,10 +120,10 @@ pub enum ImportReason {
         size_px: [u32; 2],
         /// The first picture.
         first: String,
-        /// And its size.
+        /// The first picture's size.
         first_px: [u32; 2],
     },
-    /// A picture that is no smaller version of what the intrinsics are of.
+    /// A picture that is no scaled version of the intrinsics' picture.
     #[error(
         "it is {} x {} px, but its intrinsics are of {} x {} px, which are no multiple of it: give the pictures that the cameras were found with, neither cropped nor turned",
         size_px[0],
@@ -134,10 +134,10 @@ pub enum ImportReason {
     Aspect {
         /// Its size.
         size_px: [u32; 2],
-        /// That of the index.
+        /// The size in the index.
         stated_px: [f64; 2],
     },
-    /// A picture whose middle is far from the principal point.
+    /// A picture whose centre is far from the principal point.
     #[error(
         "it is {} x {} px, but its principal point is at ({}, {}) px, far from the middle: give pictures of the size that the intrinsics are of",
         size_px[0],
@@ -151,19 +151,19 @@ pub enum ImportReason {
         /// The principal point.
         centre_px: [f64; 2],
     },
-    /// A file that ends too early, or holds something else.
-    #[error("it ends too early, or is none of that kind, at byte {0}")]
+    /// A file that ends too early, or has another content.
+    #[error("it ends too early at byte {0}, or is a file of another kind")]
     Cut(usize),
-    /// A count that the file has no room for, or that is too large.
+    /// A count that is too large for the file, or for a model.
     #[error("{0} of them do not fit into the file")]
     Count(u64),
     /// A camera that is not in the list.
     #[error("camera {0} is not in the list of cameras")]
     NoCamera(u64),
-    /// Several objects, of which nobody said which is the toy.
+    /// Several objects, none of which was named as the toy.
     #[error("the scene has the objects {0}: say which is the toy by --object")]
     Objects(String),
-    /// A mesh that cannot be taken.
+    /// A mesh that cannot be read.
     #[error("{0}")]
     Mesh(String),
 }

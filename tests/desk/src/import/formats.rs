@@ -1,4 +1,4 @@
-//! Which formats there are, and which files each has.
+//! The formats, and the files of each.
 
 use app_core::session::Files;
 
@@ -7,7 +7,7 @@ use super::imported::{Imported, MAX_TEXT_BYTES};
 use super::paths::Known;
 use super::{bop, colmap, nerfstudio, record3d, stray_scanner};
 
-/// Which program wrote it.
+/// The program that wrote a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Format {
     /// A folder with `transforms.json`.
@@ -23,10 +23,10 @@ pub enum Format {
     Bop,
 }
 
-/// Reads a folder, but no picture. `object` is the number of the toy among those of a scene.
+/// Reads a folder, without its pictures. `object` is the number of the toy among a scene's objects.
 ///
 /// # Errors
-/// When a file is missing, or a number in it cannot be taken.
+/// When a file is missing, or a number in it is invalid.
 pub fn read(
     format: Format,
     files: &dyn Files,
@@ -68,7 +68,8 @@ pub fn read(
     }
 }
 
-/// Reads the files of a format as they are, of COLMAP's those that are binary if they are no text: for tests that change them.
+/// Reads the files of a format as they are (a COLMAP model's as binary if they are no text), for
+/// tests that change them.
 ///
 /// # Errors
 /// As [`read`].
@@ -101,7 +102,7 @@ fn bytes(files: &dyn Files, file: &str) -> Result<Vec<u8>, ImportError> {
         .map_err(|error| ImportError::new(file, "the file", error))
 }
 
-/// Without the mark that some editors begin a file with.
+/// The text without the byte order mark that some editors write.
 fn text(file: &str, bytes: Vec<u8>) -> Result<String, ImportError> {
     let text =
         String::from_utf8(bytes).map_err(|_| ImportError::new(file, "the file", ImportReason::NotText))?;

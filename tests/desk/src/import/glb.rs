@@ -3,25 +3,25 @@
 use app_core::toy::binary_gltf;
 use serde_json::{Value, json};
 
-/// Corners of a mesh and what they have; every list is empty or as long as the positions.
+/// Vertices of a mesh; every list is empty or as long as the positions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Mesh {
     pub(super) positions: Vec<[f32; 3]>,
     pub(super) normals: Vec<[f32; 3]>,
-    /// Linear.
+    /// Linear colours.
     pub(super) colors: Vec<[f32; 3]>,
-    /// From the top of the texture.
+    /// Texture coordinates, from the top of the texture.
     pub(super) tex_coords: Vec<[f32; 2]>,
     pub(super) indices: Vec<u32>,
 }
 
-/// A picture on a mesh.
+/// The texture of a mesh.
 pub(super) struct Texture {
     pub(super) bytes: Vec<u8>,
     pub(super) media_type: &'static str,
 }
 
-/// The binary chunk while it is filled, and what the tree says of it.
+/// The binary chunk while it is filled, and its description in the JSON tree.
 #[derive(Default)]
 struct Parts {
     bin: Vec<u8>,

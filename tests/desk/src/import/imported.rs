@@ -1,50 +1,51 @@
-//! What a format tells, whichever it is.
+//! The common result of all formats.
 
 use glam::{DMat4, DVec3};
 
 use super::lens::Lens;
 
-/// No list of frames is larger.
+/// Limit for the size of a list of frames.
 pub(super) const MAX_TEXT_BYTES: u64 = 512 << 20;
-/// An hour of 60 frames a second is more than twice as many.
+/// More than twice an hour of 60 frames per second.
 pub(super) const MAX_FRAMES: usize = 100_000;
-/// Focal lengths, places in a picture, metres: whatever is larger is no camera's.
+/// Limit for focal lengths, image coordinates and metres.
 pub(super) const MAX_NUMBER: f64 = 1e6;
 
-/// What a format tells of a camera frame.
+/// A camera frame of another format.
 #[derive(Clone, Debug)]
 pub struct ImportedFrame {
-    /// Seconds; none where the format has no times.
+    /// Time in seconds; `None` if the format has no times.
     pub time_s: Option<f64>,
     /// Path of the picture.
     pub image: String,
     /// Focal lengths, then the principal point, in pixels, the first pixel's centre at (.5, .5).
     pub intrinsics: [f64; 4],
-    /// Size of the pictures that the intrinsics are of, width first; none if the format does not tell.
+    /// Size of the pictures that the intrinsics refer to, width first; `None` if the format does
+    /// not state it.
     pub size_px: Option<[f64; 2]>,
-    /// Of the picture.
+    /// Distortion of the picture.
     pub lens: Lens,
-    /// Camera space (+Y up, looks along -Z) to the recording's own world.
+    /// Transform from camera space (+Y up, looks along -Z) to the recording's own world.
     pub recorded_from_camera: DMat4,
 }
 
-/// What a format tells.
+/// A recording of another format.
 #[derive(Clone, Debug)]
 pub struct Imported {
-    /// Frames whose picture is there, in the order of their times, or else of their pictures' names.
+    /// Frames whose picture exists, in the order of their times, or else of their pictures' names.
     pub frames: Vec<ImportedFrame>,
-    /// Up in the recording's world, where the format fixes it.
+    /// Up in the recording's world, if the format fixes it.
     pub up: Option<DVec3>,
     /// Whether its lengths are metres.
     pub is_metric: bool,
-    /// Where the toy stands in the recording's world, if the format tells.
+    /// Pose of the toy in the recording's world, if the format has it.
     pub recorded_from_object: Option<DMat4>,
-    /// What was left out or taken otherwise than written, for people.
+    /// Messages about skipped or changed values.
     pub notes: Vec<String>,
 }
 
 impl Imported {
-    /// Frames that have a time.
+    /// Number of frames that have a time.
     pub(super) fn n_times(&self) -> usize {
         self.frames.iter().filter(|frame| frame.time_s.is_some()).count()
     }

@@ -7,32 +7,33 @@ use app_core::lens::{Distortion, Lens as SessionLens, resampled};
 use app_core::scene::{FieldError, Image, Intrinsics};
 use glam::{DMat2, DVec2};
 
-/// Places a side at which a lens is looked at.
+/// Number of sampled places per side of the picture.
 const N_PLACES: u32 = 33;
-/// Step of a difference quotient, in parts of the focal length.
+/// Step of a difference quotient, as a fraction of the focal length.
 const STEP: f64 = 1e-6;
 
-/// From where a pinhole sees a point, `(x, y) = ((u - cx) / fx, (v - cy) / fy)`, to where the photograph has it.
+/// The map from a pinhole's image point, `(x, y) = ((u - cx) / fx, (v - cy) / fy)`, to the
+/// photograph's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lens {
     /// `(x, y) (1 + k1 r2 + k2 r2^2 + ...) / (1 + d1 r2 + ...)`, and a tangential part.
     Brown {
-        /// Of r2, r2^2, r2^3 and r2^4.
+        /// Coefficients of r2, r2^2, r2^3 and r2^4.
         radial: [f64; 4],
-        /// The same below the line: OpenCV's k4, k5 and k6.
+        /// Coefficients of the divisor: OpenCV's k4, k5 and k6.
         divisor: [f64; 3],
         /// OpenCV's p1 and p2.
         tangential: [f64; 2],
     },
-    /// Angle times `1 + k1 angle^2 + ...` in place of the angle's tangent.
+    /// The angle times `1 + k1 angle^2 + ...` in place of the angle's tangent.
     Fisheye([f64; 4]),
 }
 
 impl Lens {
-    /// That of a pinhole.
+    /// A pinhole.
     pub const NONE: Self = Self::radial([0.0; 4]);
 
-    /// One without anything but a polynomial.
+    /// A lens with a radial polynomial alone.
     #[must_use]
     pub const fn radial(radial: [f64; 4]) -> Self {
         Self::Brown {
@@ -42,7 +43,7 @@ impl Lens {
         }
     }
 
-    /// What a session's lens can say of it; none if it is more than that.
+    /// The lens as a session states it; `None` if it has more terms.
     #[must_use]
     pub fn as_session(&self) -> Option<Distortion> {
         match *self {
@@ -63,7 +64,7 @@ impl Lens {
             .is_some_and(|lens| SessionLens::new(lens, intrinsics, size_px).is_ok())
     }
 
-    /// Where the photograph has what a pinhole sees at `place`.
+    /// The photograph's image of the pinhole's point `place`.
     #[must_use]
     pub fn distorted(&self, place: DVec2) -> DVec2 {
         let r2 = place.length_squared();
@@ -92,7 +93,7 @@ impl Lens {
         }
     }
 
-    /// Refuses a lens that shows two places of a pinhole's picture at one, or any of them nowhere.
+    /// Refuses a lens that maps two points of a pinhole's picture to one, or any point nowhere.
     pub(super) fn check(&self, intrinsics: &Intrinsics, size_px: [u32; 2]) -> Result<(), FieldError> {
         let size = DVec2::from_array(size_px.map(f64::from));
         let [centre, focal] = centre_and_focal(intrinsics);
@@ -112,7 +113,7 @@ impl Lens {
         }
     }
 
-    /// A photograph as a pinhole of the same size and intrinsics would have seen it.
+    /// Converts a photograph to the picture of a pinhole of the same size and intrinsics.
     #[must_use]
     pub fn to_pinhole(&self, intrinsics: &Intrinsics, photograph: &Image) -> Image {
         let [centre, focal] = centre_and_focal(intrinsics);
@@ -121,7 +122,7 @@ impl Lens {
         })
     }
 
-    /// Its coefficients that are not nought, by OpenCV's names.
+    /// Its coefficients that are not zero, by OpenCV's names.
     pub(super) fn named(&self) -> String {
         let (kind, named) = match *self {
             Self::Brown {

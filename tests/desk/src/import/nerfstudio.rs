@@ -1,7 +1,8 @@
 //! nerfstudio's `transforms.json`, and that of instant-ngp.
 //!
-//! Camera axes are OpenGL's, which are ours; the world has +Z up; matrices are written row by row. Principal points are
-//! taken as they are: `cx` is half the width in the middle. Scale and the scene itself are not in it, and times hardly ever.
+//! Camera axes are OpenGL's, which are ours; the world has +Z up; matrices are written row by row.
+//! Principal points are used unchanged: `cx` is half the width for a centred one. The file has
+//! neither scale nor scene, and rarely times.
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 use serde::Deserialize;
@@ -12,7 +13,7 @@ use super::lens::Lens;
 use super::paths::{Known, Taken};
 use super::values::{is_scaled_rotation, number, numbers, ordered, time_s, without_picture};
 
-/// How far the last row of a matrix may be from 0 0 0 1.
+/// Largest deviation of a matrix's last row from 0 0 0 1.
 const SAME_ROW: f64 = 1e-6;
 
 #[derive(Deserialize)]
@@ -50,7 +51,7 @@ struct Frame {
     camera: Projection,
 }
 
-/// Which of OpenCV's models the coefficients are of.
+/// The model of OpenCV that the coefficients belong to.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Model {
     Brown,
@@ -120,14 +121,14 @@ fn model(file: &str, transforms: &Transforms) -> Result<Model, ImportError> {
             return Err(ImportError::new(file, "camera_model", reason));
         }
     };
-    // What instant-ngp has in place of a model.
+    // instant-ngp has this flag in place of a model.
     Ok(match transforms.is_fisheye {
         Some(true) => Model::Fisheye,
         _ => named,
     })
 }
 
-/// A frame's camera, and that of all, of which the first counts that states a number.
+/// A frame's camera and the common one; the first that states a number counts.
 struct Cameras<'a> {
     file: &'a str,
     both: [&'a Projection; 2],

@@ -1,14 +1,14 @@
-//! Pictures of a recording by the paths that its index has for them, which may be of another machine.
+//! Pictures of a recording by the paths in its index, which may be another machine's.
 
 use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
 
-/// Endings that a path may lack.
+/// File name extensions that a path may lack.
 const ENDINGS: [&str; 7] = ["", ".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".JPEG"];
-/// Folders that nerfstudio has smaller pictures in.
+/// nerfstudio's folders of smaller pictures.
 const SMALLER: [&str; 3] = ["images_2", "images_4", "images_8"];
 
-/// Files that are there.
+/// The existing files.
 pub(super) struct Known<'a>(HashSet<&'a str>);
 
 impl<'a> Known<'a> {
@@ -20,13 +20,13 @@ impl<'a> Known<'a> {
         self.0.contains(path)
     }
 
-    /// The first of a picture's possible paths that is there.
+    /// The first candidate that exists.
     pub(super) fn first(&self, candidates: impl IntoIterator<Item = String>) -> Option<String> {
         candidates.into_iter().find(|path| self.has(path))
     }
 
-    /// The picture of a path that may begin with folders of another machine, be written as Windows does, or have no ending; in one of
-    /// `folders` or above them.
+    /// The picture of a path that may begin with folders of another machine, be written for
+    /// Windows, or have no extension; in one of `folders` or above them.
     pub(super) fn picture(&self, stated: &str, folders: &[&str]) -> Option<String> {
         let parts = parts(stated);
         let tails = (0..parts.len()).map(|skipped| parts[skipped..].join("/"));
@@ -40,7 +40,7 @@ impl<'a> Known<'a> {
         })
     }
 
-    /// Numbers of the pictures in a folder that are counted.
+    /// Numbers of the numbered pictures in a folder.
     fn numbers(&self, folder: &str) -> Vec<u64> {
         let names = self.0.iter().filter_map(|path| path.strip_prefix(folder));
         let stems = names.filter_map(|name| {
@@ -52,8 +52,9 @@ impl<'a> Known<'a> {
         numbers
     }
 
-    /// What is to be added to a frame's number, counted from 0, for its picture's in `folder`, by how many there are: 0, or 1 where a
-    /// program like ffmpeg counted them from 1. Where that cannot be known, the pictures' first and last number.
+    /// The offset from a frame's number, counted from 0, to its picture's number in `folder`: 0, or
+    /// 1 if a program like ffmpeg counted from 1. If it cannot be known, the pictures' first and
+    /// last number.
     pub(super) fn first_number(
         &self,
         folder: &str,
@@ -68,7 +69,7 @@ impl<'a> Known<'a> {
     }
 }
 
-/// Folders and name of a path, whichever system wrote it.
+/// Folders and name of a path of any system.
 fn parts(path: &str) -> Vec<&str> {
     let mut parts = Vec::new();
     for part in path.split(['/', '\\']) {
@@ -83,7 +84,7 @@ fn parts(path: &str) -> Vec<&str> {
     parts
 }
 
-/// Frames that name different pictures, and are led to one.
+/// Pictures that are in use, to find frames that name different pictures but lead to the same file.
 pub(super) struct Taken<'a>(HashMap<String, &'a str>);
 
 impl<'a> Taken<'a> {
@@ -91,13 +92,13 @@ impl<'a> Taken<'a> {
         Self(HashMap::new())
     }
 
-    /// Takes a picture for the path that an index has; false if another path led to it.
+    /// Reserves a picture for a path of the index; false if another path led to it.
     pub(super) fn take(&mut self, picture: &str, stated: &'a str) -> bool {
         *self.0.entry(picture.to_owned()).or_insert(stated) == stated
     }
 }
 
-/// The order of names as people count: 2 before 10.
+/// Natural order of names: 2 before 10.
 pub(super) fn natural(a: &str, b: &str) -> Ordering {
     let [mut a_rest, mut b_rest] = [a, b];
     loop {
@@ -114,7 +115,7 @@ pub(super) fn natural(a: &str, b: &str) -> Ordering {
     }
 }
 
-/// What comes before the first number of a text, the number, and what follows.
+/// The text before the first number, the number, and the rest.
 fn piece(text: &str) -> (&str, &str, &str) {
     let begin = text.find(|c: char| c.is_ascii_digit()).unwrap_or(text.len());
     let (before, rest) = text.split_at(begin);

@@ -1,4 +1,4 @@
-//! Pictures of a recording as those of a session: one size, one lens, intrinsics of that size.
+//! Pictures of a recording as a session needs them: one size, one lens, intrinsics of that size.
 
 use std::io::Cursor;
 
@@ -13,26 +13,27 @@ use super::error::{ImportError, ImportReason};
 use super::imported::Imported;
 use super::lens::Lens;
 
-/// No picture and no toy of a session is larger.
+/// Limit for the size of a session's file.
 pub(super) const MAX_FILE_BYTES: u64 = 512 << 20;
-/// Pixels that a smaller picture's sides may be rounded by.
+/// Rounding of a scaled picture's sides, in pixels.
 const ROUNDED_PX: f64 = 1.5;
-/// How far a principal point may be from the middle, in parts of the picture's side, if nothing tells the size that it is of.
+/// Largest distance of a principal point from the centre, as a fraction of the picture's side, if
+/// its picture's size is unknown.
 const OFF_CENTRE: f64 = 0.2;
 
-/// What is written of the pictures.
+/// The pictures' properties in the session.
 pub(super) struct Fitted {
     pub(super) size_px: [u32; 2],
-    /// Of each frame.
+    /// Intrinsics of each frame.
     pub(super) intrinsics: Vec<Intrinsics>,
-    /// The session's own lens, if that is the one of all pictures.
+    /// The session's own lens, if all pictures have it.
     pub(super) lens: Option<LensRecord>,
-    /// Whether pictures are undistorted, each by its own lens, since the session cannot say it.
+    /// Whether each picture is undistorted by its own lens, since the session cannot express it.
     pub(super) is_undistorted: bool,
     pub(super) notes: Vec<String>,
 }
 
-/// Looks at every picture's header, before any is written.
+/// Reads every picture's header, before any picture is written.
 pub(super) fn fit(files: &dyn Files, imported: &Imported) -> Result<Fitted, ImportError> {
     let mut first: Option<(String, [u32; 2])> = None;
     let mut intrinsics = Vec::new();
@@ -76,7 +77,7 @@ pub(super) fn fit(files: &dyn Files, imported: &Imported) -> Result<Fitted, Impo
 }
 
 impl Fitted {
-    /// The session's own lens if that says it all, else none and pictures that are undistorted.
+    /// Chooses the session's own lens if it is exact, else undistorted pictures.
     fn choose_lens(&mut self, imported: &Imported) -> Result<(), ImportError> {
         let Some(first) = imported.frames.first() else {
             return Ok(());
@@ -109,7 +110,7 @@ impl Fitted {
         Ok(())
     }
 
-    /// Path and bytes of a frame's picture, as they are written.
+    /// Path and bytes of a frame's picture in the session.
     pub(super) fn picture(
         &self,
         files: &dyn Files,
@@ -134,7 +135,7 @@ impl Fitted {
         Ok(png)
     }
 
-    /// Where it is written.
+    /// Path of a picture in the session.
     pub(super) fn path(&self, image: &str) -> String {
         if self.is_undistorted && !image.ends_with(".png") {
             format!("{image}.png")
@@ -144,7 +145,8 @@ impl Fitted {
     }
 }
 
-/// Intrinsics of a picture, and by what they were scaled for it; those of another picture are scaled if it is the same but for its size.
+/// Intrinsics of a picture, and their scale factor; those of another picture are scaled if it
+/// differs in size alone.
 fn of_size(
     [fx, fy, cx, cy]: [f64; 4],
     stated_px: Option<[f64; 2]>,
@@ -187,7 +189,7 @@ fn read(files: &dyn Files, path: &str) -> Result<Vec<u8>, ImportError> {
         .map_err(|error| ImportError::new(path, "the file", error))
 }
 
-/// By the picture's header.
+/// Size in the picture's header.
 fn size_px(files: &dyn Files, path: &str) -> Result<[u32; 2], ImportError> {
     let bytes = read(files, path)?;
     let is_read = matches!(

@@ -1,6 +1,8 @@
-//! Meshes as scanners and data sets of poses have them: PLY, text or binary, made a binary glTF file. Axes and units stay.
+//! Meshes of scanners and pose data sets: PLY, text or binary, converted to a binary glTF file.
+//! Axes and units stay.
 //!
-//! Source: Greg Turk, «The PLY Polygon File Format»; colours are sRGB codes, textures begin at their lower left corner.
+//! Source: Greg Turk, «The PLY Polygon File Format»; colours are sRGB codes, textures begin at
+//! their lower left corner.
 
 use std::path::Path;
 
@@ -10,14 +12,14 @@ use app_scene::geometry::color::linear_from_srgb;
 use super::error::{ImportError, ImportReason};
 use super::glb::{Mesh, Texture, glb};
 
-/// Corners of a face; more are those of a damaged file.
+/// Limit for the corners of a face; a file with more is damaged.
 const MAX_CORNERS: u64 = 1 << 16;
-/// A toy has no more of either.
+/// Limit for vertices and for faces.
 const MAX_ELEMENTS: u64 = 16 << 20;
-/// No texture is larger.
+/// Limit for a texture's size.
 const MAX_TEXTURE_BYTES: u64 = 256 << 20;
 
-/// How numbers are written.
+/// The encoding of numbers.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Encoding {
     Text,
@@ -25,7 +27,7 @@ enum Encoding {
     Big,
 }
 
-/// A type of a number.
+/// The type of a number.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     I8,
@@ -41,7 +43,7 @@ enum Kind {
 struct Property {
     name: String,
     kind: Kind,
-    /// Type of the length, of a list.
+    /// Type of a list's length.
     list: Option<Kind>,
 }
 
@@ -61,7 +63,7 @@ fn wrong(reason: impl Into<String>) -> ImportReason {
     ImportReason::Mesh(reason.into())
 }
 
-/// The mesh of a file as binary glTF, with the texture that lies beside it.
+/// The mesh of a file as binary glTF, with the texture beside it.
 pub(super) fn glb_of_ply_file(path: &Path, bytes: &[u8]) -> anyhow::Result<Vec<u8>> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = Folder::open(folder.unwrap_or(Path::new(".")))?;
@@ -94,7 +96,7 @@ pub fn glb_of_ply(bytes: &[u8], beside: &dyn Fn(&str) -> Option<Vec<u8>>) -> Res
     Ok(glb(&mesh, texture.as_ref()))
 }
 
-/// What the lines up to `end_header` say, and what follows them.
+/// The header up to `end_header`, and the bytes after it.
 fn header(bytes: &[u8]) -> Result<(Header, &[u8]), ImportReason> {
     let mut rest = bytes;
     let mut header = Header {
@@ -104,7 +106,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), ImportReason> {
     };
     loop {
         let end = rest.iter().position(|byte| *byte == b'\n');
-        let end = end.ok_or_else(|| wrong("the header has no end"))?;
+        let end = end.ok_or_else(|| wrong("the header has no line `end_header`"))?;
         let line = std::str::from_utf8(&rest[..end]).map_err(|_| ImportReason::NotText)?;
         rest = &rest[end + 1..];
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -125,7 +127,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), ImportReason> {
             }),
             ["property", words @ ..] => {
                 let element = header.elements.last_mut();
-                let element = element.ok_or_else(|| wrong("a property of nothing"))?;
+                let element = element.ok_or_else(|| wrong("a property stands before the first element"))?;
                 element.properties.push(property(words)?);
             }
             _ => {}
@@ -134,7 +136,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), ImportReason> {
 }
 
 impl Header {
-    /// Refuses a texture whose coordinates stand in the faces alone, as MeshLab writes them.
+    /// Refuses texture coordinates that are stored per face, as MeshLab writes them.
     fn check_texture(&self) -> Result<(), ImportReason> {
         let is_of_faces = |property: &Property| property.name == "texcoord" && property.list.is_some();
         let mut elements = self.elements.iter();
@@ -189,7 +191,7 @@ fn kind(name: &str) -> Result<Kind, ImportReason> {
     })
 }
 
-/// Numbers one after another, however they are written.
+/// Numbers in sequence, in any encoding.
 struct Numbers<'a> {
     encoding: Encoding,
     rest: &'a [u8],
@@ -241,7 +243,7 @@ impl Kind {
         }
     }
 
-    /// From little endian bytes.
+    /// Reads little-endian bytes.
     fn read(self, bytes: &[u8]) -> Option<f64> {
         Some(match self {
             Self::I8 => i8::from_le_bytes(*bytes.first_chunk()?).into(),
@@ -291,11 +293,11 @@ fn mesh(header: &Header, body: &[u8]) -> Result<Mesh, ImportReason> {
     }
     let n_vertices = mesh.positions.len() as u64;
     if mesh.indices.iter().any(|index| u64::from(*index) >= n_vertices) {
-        return Err(wrong("a face has a corner that is no vertex"));
+        return Err(wrong("a face refers to a vertex that does not exist"));
     }
     if mesh.indices.is_empty() {
         return Err(wrong(
-            "it has no faces: a cloud of points is no toy; reconstruct its surface, as MeshLab does",
+            "it has no faces: a cloud of points is no toy: reconstruct its surface, for example by MeshLab",
         ));
     }
     Ok(mesh)
@@ -306,7 +308,7 @@ fn list(numbers: &mut Numbers, length: Kind, kind: Kind) -> Result<Vec<f64>, Imp
     #[expect(clippy::cast_precision_loss, reason = "65536")]
     let is_allowed = n >= 0.0 && n <= MAX_CORNERS as f64 && n.fract() == 0.0;
     if !is_allowed {
-        return Err(wrong(format!("a face of {n} corners")));
+        return Err(wrong(format!("a face has {n} corners")));
     }
     let mut list = Vec::new();
     let mut left = n;
@@ -317,27 +319,27 @@ fn list(numbers: &mut Numbers, length: Kind, kind: Kind) -> Result<Vec<f64>, Imp
     Ok(list)
 }
 
-/// Triangles around the first corner.
+/// Splits a face into triangles around its first corner.
 fn add_face(indices: &mut Vec<u32>, corners: &[f64]) -> Result<(), ImportReason> {
     let whole = |corner: &f64| {
         let is_index = (0.0..=f64::from(u32::MAX)).contains(corner) && corner.fract() == 0.0;
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "it is one of 32 bits"
+            reason = "an index of 32 bits"
         )]
         let index = *corner as u32;
         is_index.then_some(index)
     };
     let corners: Option<Vec<u32>> = corners.iter().map(whole).collect();
-    let corners = corners.ok_or_else(|| wrong("a face has a corner that is no vertex"))?;
+    let corners = corners.ok_or_else(|| wrong("a face refers to a vertex that does not exist"))?;
     if let Some((first, others)) = corners.split_first() {
         indices.extend(others.windows(2).flat_map(|pair| [*first, pair[0], pair[1]]));
     }
     Ok(())
 }
 
-/// Where the numbers of a vertex are among its properties.
+/// Indices of a vertex's numbers among its properties.
 struct Columns {
     position: Option<[usize; 3]>,
     normal: Option<[usize; 3]>,
@@ -394,7 +396,7 @@ impl Columns {
         if let Some(normal) = self.normal {
             let [x, y, z] = three(normal)?;
             let length = (x * x + y * y + z * z).sqrt();
-            // One without a direction is any.
+            // A zero vector is replaced by any unit vector.
             let unit = if length > 0.0 {
                 [x, y, z].map(|part| part / length)
             } else {

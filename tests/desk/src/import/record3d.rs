@@ -1,7 +1,8 @@
-//! Record3D: `metadata`, JSON, and pictures that are counted from 0.
+//! Record3D: `metadata`, JSON, and pictures that are numbered from 0.
 //!
-//! Poses are quaternion (x, y, z, w), then position, of a camera as ARKit has it; the world begins with the recording, so
-//! that which way is up is not told. `K` is column by column. There may be more poses than pictures.
+//! Poses are quaternion (x, y, z, w), then position, with ARKit's camera axes; the world is that of
+//! the recording's start, so that up is unknown. `K` is column by column. There may be more poses
+//! than pictures.
 
 use serde::Deserialize;
 
@@ -11,7 +12,7 @@ use super::lens::Lens;
 use super::paths::Known;
 use super::values::{number, ordered, pose, time_s as time, without_picture};
 
-/// Folders that pictures may be in.
+/// Possible folders of the pictures.
 const FOLDERS: [&str; 3] = ["rgbd/", "rgb/", ""];
 
 #[derive(Deserialize)]
@@ -70,13 +71,14 @@ pub(super) fn parse(file: &str, text: &str, known: &Known) -> Result<Imported, I
     })
 }
 
-/// The number of the first frame's picture, by how many there are.
+/// The number of the first frame's picture.
 fn first_number(file: &str, known: &Known, last_frame: u64) -> Result<u64, ImportError> {
     let of_folders = FOLDERS.map(|folder| known.first_number(folder, [0, last_frame]));
     if of_folders.contains(&Ok(1)) {
         return Ok(1);
     }
-    // More poses than pictures are usual: numbers from 1 that end before the last pose are ambiguous all the same.
+    // More poses than pictures are usual: numbers from 1 that end before the last pose are
+    // ambiguous nevertheless.
     match of_folders.into_iter().find_map(Result::err) {
         Some(numbers) => Err(ImportError::new(
             file,

@@ -1,8 +1,9 @@
 //! Stray Scanner: `odometry.csv` and the video's frames.
 //!
-//! A line is a time, a frame's number, position and quaternion (x, y, z, w), and in newer files the frame's intrinsics;
-//! the oldest have neither header, time nor number. There are blanks after commas, and empty columns at the end. The
-//! camera's axes are those of OpenCV (y down, z forward), ARKit's turned by half about x; the world is ARKit's, +Y up.
+//! A line is a time, a frame's number, position and quaternion (x, y, z, w), and in newer files the
+//! frame's intrinsics; the oldest have neither header, time nor number. There are blanks after
+//! commas, and empty columns at the end. The camera's axes are OpenCV's (y down, z forward), which
+//! are ARKit's after half a turn about x; the world is ARKit's, +Y up.
 
 use glam::DVec3;
 
@@ -15,9 +16,9 @@ use super::values::{OPENCV_FROM_CAMERA, number, ordered, pose, time_s, without_p
 pub(super) const ODOMETRY_FILE: &str = "odometry.csv";
 pub(super) const MATRIX_FILE: &str = "camera_matrix.csv";
 
-/// Where the video's frames are.
+/// Folder of the video's frames.
 const FOLDER: &str = "rgb/";
-/// No frame has a higher number.
+/// Limit for a frame's number.
 const MAX_FRAME: u64 = 1 << 32;
 /// Columns of a file that has no header.
 const OLDEST: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
@@ -87,7 +88,7 @@ fn cells(line: &str) -> Vec<&str> {
 }
 
 struct Row<'a> {
-    /// Counted from 1.
+    /// Line number, counted from 1.
     line: usize,
     header: &'a [&'a str],
     cells: Vec<&'a str>,
@@ -153,7 +154,7 @@ impl<'a> Row<'a> {
         format!("line {}, {name}", self.line)
     }
 
-    /// None where there is no such column, or nothing in it.
+    /// The text of a cell; `None` if there is no such column, or if it is empty.
     fn cell(&self, name: &str) -> Option<&'a str> {
         let column = self.header.iter().position(|other| *other == name)?;
         self.cells.get(column).copied().filter(|cell| !cell.is_empty())
@@ -179,7 +180,7 @@ fn parsed(file: &str, field: &str, cell: &str) -> Result<f64, ImportError> {
     }
 }
 
-/// Rows of a matrix of 3 x 3.
+/// Parses the rows of a 3 x 3 matrix.
 fn of_matrix(text: &str) -> Result<[f64; 4], ImportError> {
     let rows: Vec<Vec<&str>> = text.lines().map(cells).filter(|row| !row.is_empty()).collect();
     let at = |row: usize, column: usize| {

@@ -1,4 +1,4 @@
-//! Numbers and poses of files, and frames put in their order.
+//! Numbers and poses in files, and the order of frames.
 
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
@@ -6,17 +6,18 @@ use super::error::{ImportError, ImportReason};
 use super::imported::{ImportedFrame, MAX_FRAMES, MAX_NUMBER};
 use super::paths::natural;
 
-/// No clock shows more, seconds either way.
+/// Limit for a time, in seconds.
 const MAX_TIME_S: f64 = 1e10;
-/// How far lengths, angles and the determinant of a rotation may be from those of one, as parts of 1: some files have four digits.
+/// Largest deviation of lengths, angles and determinant from a rotation's: some files have four
+/// digits.
 const ROUNDED: f64 = 0.02;
 
-/// OpenCV's camera axes (y down, z forward) from ours, or the other way.
+/// OpenCV's camera axes (y down, z forward) from ours, and the inverse.
 pub(super) const OPENCV_FROM_CAMERA: DMat4 = DMat4::from_cols_array(&[
     1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
 ]);
 
-/// A number of a file, if it can be one of a camera.
+/// A finite number of a file within the limit for cameras.
 pub(super) fn number(file: &str, field: &str, value: f64) -> Result<f64, ImportError> {
     if value.abs() <= MAX_NUMBER {
         Ok(value)
@@ -29,7 +30,7 @@ pub(super) fn number(file: &str, field: &str, value: f64) -> Result<f64, ImportE
     }
 }
 
-/// A time of a file, seconds.
+/// A time of a file, in seconds.
 pub(super) fn time_s(file: &str, field: &str, value: f64) -> Result<f64, ImportError> {
     if value.abs() <= MAX_TIME_S {
         Ok(value)
@@ -38,7 +39,7 @@ pub(super) fn time_s(file: &str, field: &str, value: f64) -> Result<f64, ImportE
     }
 }
 
-/// So many numbers.
+/// Exactly `N` numbers.
 pub(super) fn numbers<const N: usize>(
     file: &str,
     field: &str,
@@ -55,7 +56,7 @@ pub(super) fn numbers<const N: usize>(
     Ok(all)
 }
 
-/// A pose of a quaternion (x, y, z, w) of about length 1 and a position.
+/// A pose from a quaternion (x, y, z, w) of about unit length and a position.
 pub(super) fn pose(
     file: &str,
     field: &str,
@@ -87,7 +88,7 @@ pub(super) fn is_scaled_rotation(matrix: &DMat3) -> bool {
         && [x.dot(y), y.dot(z), z.dot(x)].into_iter().all(near)
 }
 
-/// A pose of a rotation, row by row, and a position.
+/// A pose from a rotation, row by row, and a position.
 pub(super) fn pose_of_rows(
     file: &str,
     field: &str,
@@ -102,7 +103,8 @@ pub(super) fn pose_of_rows(
     pose(file, field, rotation.to_array(), position)
 }
 
-/// Frames in the order of their times, or else of their pictures' names, if there are any and not too many.
+/// Frames in the order of their times, or else of their pictures' names. Refuses an empty list, and
+/// one that is too long.
 pub(super) fn ordered(
     file: &str,
     mut frames: Vec<ImportedFrame>,
@@ -123,11 +125,11 @@ pub(super) fn ordered(
     Ok(frames)
 }
 
-/// What is said of frames that have no picture.
+/// The note about frames that have no picture.
 pub(super) fn without_picture(missing: &[String], n_frames: usize) -> Option<String> {
     let first = missing.first()?;
     let n_missing = missing.len();
     Some(format!(
-        "{n_missing} of {n_frames} frames have no picture and are left out, the first of them {first:?}"
+        "{n_missing} of {n_frames} frames have no picture and are skipped; the first is {first:?}"
     ))
 }

@@ -1,4 +1,4 @@
-//! A session made of what a format tells and of what somebody says beside it.
+//! Writes a session from a recording of another format and from the arguments.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -28,41 +28,43 @@ pub enum PlateFrames {
     None,
 }
 
-/// What no format tells; world is the session's, +Y up and in metres.
+/// Values that no format has; world is the session's, +Y up and in metres.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct Lacking {
-    /// The toy's model: a .glb, or a .ply, which is converted
+    /// Model of the toy: a .glb, or a .ply, which is converted
     #[arg(long, value_name = "FILE")]
     pub toy: Option<PathBuf>,
-    /// Which object is the toy, in a scene of several
+    /// Number of the toy's object, in a scene of several
     #[arg(long, value_name = "NUMBER")]
     pub object: Option<u32>,
-    /// Where the toy stands: 16 numbers, column by column, object space to world, with blanks or commas between them; a scene of bop
-    /// tells it
+    /// Pose of the toy: 16 numbers, column by column, object space to world, with blanks or commas
+    /// between them; a scene of bop has it
     #[arg(long, value_name = "NUMBERS", allow_hyphen_values = true)]
     pub world_from_object: Option<String>,
     /// A plane that catches the shadow, as an entry of `receivers`; may be given several times
     #[arg(long, value_name = "JSON")]
     pub receiver: Vec<String>,
-    /// A light, as an entry of `lights`, or `none` to have them looked for; may be given several times
+    /// A light, as an entry of `lights`, or `none` to have them estimated; may be given several
+    /// times
     #[arg(long, value_name = "JSON|none")]
     pub light: Vec<String>,
-    /// Frames that show the place without the toy, as in 0-11, or `none`; they become plates
+    /// Frames that show the place without the toy, for example 0-11, or `none`; they become plates
     #[arg(long, value_name = "A-B|none")]
     pub plates: Option<String>,
-    /// Up in the recording's world, three numbers: where the format loses gravity
+    /// Up in the recording's world, three numbers; needed if the format does not have the direction
+    /// of gravity
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub up: Option<String>,
-    /// Metres in the recording's unit: where the format has none
+    /// Metres per unit of the recording; needed if the format has no scale
     #[arg(long, value_name = "NUMBER")]
     pub metres: Option<f64>,
-    /// Frames in a second: where the format has no times
+    /// Frames per second; needed if the format has no times
     #[arg(long, value_name = "NUMBER")]
     pub fps: Option<f64>,
 }
 
 impl Lacking {
-    /// What is needed beside the format and was not said, as arguments.
+    /// The arguments that are needed but missing.
     fn missing(&self, imported: &Imported) -> Vec<&'static str> {
         let needed = [
             ("--toy FILE", self.toy.is_none()),
@@ -113,7 +115,7 @@ impl Lacking {
         Ok((DQuat::from_rotation_arc(up, DVec3::Y), metres))
     }
 
-    /// When each frame was taken, from the first one on.
+    /// Time of each frame since the first one.
     fn times_s(&self, imported: &Imported) -> anyhow::Result<Vec<f64>> {
         let fps = self.fps.unwrap_or(1.0);
         ensure!(fps.is_normal() && fps > 0.0, "--fps: {fps} is not above 0");
@@ -166,7 +168,7 @@ fn numbers<const N: usize>(argument: &str, text: &str) -> anyhow::Result<[f64; N
         .with_context(|| format!("{argument}: {n} numbers, {N} are needed"))
 }
 
-/// Entries of a list of the index.
+/// Parses entries of a list of the index.
 fn entries<T: DeserializeOwned>(argument: &str, texts: &[String]) -> anyhow::Result<Vec<T>> {
     let texts = texts.iter().filter(|text| *text != "none");
     texts
@@ -174,18 +176,19 @@ fn entries<T: DeserializeOwned>(argument: &str, texts: &[String]) -> anyhow::Res
         .collect()
 }
 
-/// A session that was written.
+/// A written session.
 pub struct Written {
-    /// As it is read.
+    /// The session as its reader opens it.
     pub capture: Capture,
-    /// What was left out or taken otherwise than written, for people.
+    /// Messages about skipped or changed values.
     pub notes: Vec<String>,
 }
 
-/// Writes a session's folder of a recording, and opens it.
+/// Writes a session's folder from a recording, and opens it.
 ///
 /// # Errors
-/// When something is missing, which is named, `out` is there already, or what is written is no session.
+/// When an argument is missing, which is named, `out` exists already, or the result is no valid
+/// session.
 pub fn write(
     name: &str,
     files: &Folder,
@@ -196,26 +199,33 @@ pub fn write(
     let missing = lacking.missing(imported);
     ensure!(
         missing.is_empty(),
-        "the format does not tell all that a session needs: give {}",
+        "the format lacks values that a session needs: give {}",
         missing.join(", ")
     );
-    ensure!(!out.exists(), "{}: is there already", out.display());
+    ensure!(
+        !out.exists(),
+        "{}: exists already: delete it or name another folder",
+        out.display()
+    );
     let fitted = fit(files, imported)?;
     let index = index(name, imported, &fitted, lacking)?;
     let toy = lacking.toy()?;
     make_folder(out)?;
     if files.holds(out)? {
         fs::remove_dir(out)?;
-        bail!("{}: lies in the recording itself", out.display());
+        bail!(
+            "{}: lies in the recording itself: name a folder outside of it",
+            out.display()
+        );
     }
     let capture = write_files(files, imported, &fitted, (&toy, index), out).inspect_err(|_| {
-        // What is left of it is no session; the error says why.
+        // The rest is no valid session; the error gives the reason.
         let _ = fs::remove_dir_all(out);
     })?;
     let n_times = imported.n_times();
     let mixed = (n_times > 0 && !imported.has_times()).then(|| {
         let n = imported.frames.len();
-        format!("only {n_times} of {n} frames have a time: all are counted by --fps")
+        format!("only {n_times} of {n} frames have a time: --fps gives the times of all")
     });
     let notes = imported.notes.iter().chain(&fitted.notes).cloned();
     Ok(Written {

@@ -1,4 +1,4 @@
-//! A session's frames as nerfstudio has them.
+//! Writes a session's frames in nerfstudio's format.
 
 use std::path::Path;
 
@@ -11,15 +11,20 @@ use crate::files::SESSION_FILE;
 use crate::output::{make_folder, write_whole};
 use crate::stored::Stored;
 
-/// No picture of a session is larger.
+/// Limit for a picture's size.
 const MAX_FILE_BYTES: u64 = 512 << 20;
 
-/// Writes a session's frames as a folder with `transforms.json`. Toy, receivers, lights and plates have no place in it.
+/// Writes a session's frames as a folder with `transforms.json`, which has no place for toy,
+/// receivers, lights and plates.
 ///
 /// # Errors
-/// When `out` is there already, the session cannot be read, or the system refuses.
+/// When `out` exists already, the session cannot be read, or the system refuses.
 pub fn write_transforms(session: &Stored, out: &Path) -> anyhow::Result<()> {
-    anyhow::ensure!(!out.exists(), "{}: is there already", out.display());
+    anyhow::ensure!(
+        !out.exists(),
+        "{}: exists already: delete it or name another folder",
+        out.display()
+    );
     let index = session.read(SESSION_FILE, MAX_FILE_BYTES).context(SESSION_FILE)?;
     let index: Value = serde_json::from_slice(&index).context(SESSION_FILE)?;
     let shared = &index["intrinsics"];

@@ -1,4 +1,4 @@
-//! Flicker: how much of what changes from one picture to the next does not change in the truth, or the other way round.
+//! Flicker: changes from one picture to the next that differ from the truth's changes.
 
 use app_core::scene::Image;
 use app_core::session::Truth;
@@ -6,13 +6,14 @@ use serde::Serialize;
 
 use super::{N_REGIONS, Regions, SizeError};
 
-/// Root of the mean squared (picture' - picture) - (truth' - truth), ' being the next frame, in 8-bit sRGB units over the
-/// three colours and over pixels that are of the region in both frames; 0 where there are none.
+/// Root of the mean squared (picture' - picture) - (truth' - truth), ' being the next frame, in
+/// 8-bit sRGB units over the three colours and over pixels that belong to the region in both
+/// frames; 0 if there are none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Flicker {
-    /// Where a shadow is or was and no toy covers it.
+    /// Pixels of a former or present shadow outside of the toy.
     pub shadow: f64,
-    /// Inside the moved toy.
+    /// Pixels inside the moved toy.
     pub toy: f64,
     /// The rim of the moved toy.
     pub edge: f64,
@@ -20,7 +21,7 @@ pub struct Flicker {
     pub frame: f64,
 }
 
-/// How far a picture is from its truth, pixel by pixel.
+/// Difference of a picture from its truth, pixel by pixel.
 #[derive(Clone, Debug)]
 pub struct Errors {
     regions: Regions,
@@ -29,10 +30,10 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Those of a picture. Alpha is not looked at.
+    /// The errors of a picture. Alpha is ignored.
     ///
     /// # Errors
-    /// When picture or truth is not of the mask's size.
+    /// When the size of picture or truth differs from the mask's.
     pub fn new(picture: &Image, truth: &Truth) -> Result<Self, SizeError> {
         let regions = Regions::from_mask(&truth.mask);
         regions.check_size("picture", picture)?;
@@ -48,7 +49,7 @@ impl Errors {
     /// The flicker from the frame before to this one.
     ///
     /// # Errors
-    /// When that one is of another size.
+    /// When their sizes differ.
     pub fn flicker_from(&self, before: &Self) -> Result<Flicker, SizeError> {
         let [own, other] = [&self.regions, &before.regions];
         if [own.width_px, own.height_px] != [other.width_px, other.height_px] {
@@ -83,17 +84,18 @@ impl Errors {
     }
 }
 
-/// The flicker of frames that follow one another, whose pictures come one by one.
+/// The flicker of successive frames, whose pictures arrive one by one.
 #[derive(Debug, Default)]
 pub struct Follower {
     before: Option<(usize, Errors)>,
 }
 
 impl Follower {
-    /// Takes the picture of frame `index`; its flicker where the last one was of the frame before.
+    /// Takes the picture of frame `index`; returns its flicker if the previous call had the frame
+    /// before.
     ///
     /// # Errors
-    /// When picture or truth is not of the mask's size, or another one than that before.
+    /// When the size of picture or truth differs from the mask's, or from the frame before.
     pub fn next(
         &mut self,
         index: usize,
@@ -110,7 +112,7 @@ impl Follower {
     }
 }
 
-/// The mean, region by region; none of none.
+/// The mean, region by region; `None` of an empty list.
 #[must_use]
 pub fn mean_flicker(all: &[Flicker]) -> Option<Flicker> {
     let n = all.len() as f64;

@@ -2,7 +2,7 @@
 //!
 //! Gaussian window of 11 taps and the constants of the paper; beyond the border the picture is
 //! mirrored, outermost pixel included (`d c b a | a b c d`). Scores are averaged over regions, so
-//! the map must cover the border too. No library crate offers this definition, so it stands here.
+//! the map must cover the border too. No library crate offers this definition.
 //!
 //! Source: Wang, Bovik, Sheikh, Simoncelli, "Image quality assessment: from error visibility to
 //! structural similarity", IEEE Transactions on Image Processing 13(4), 2004, equation 13.
@@ -17,8 +17,7 @@ const C2: f64 = 58.5225;
 /// Weights of the taps along one axis, from -5 to 5 pixels.
 type Window = [f64; 2 * WINDOW_RADIUS_PX + 1];
 
-/// The four local means that SSIM is made of. Its two variances are only ever added up, so their
-/// sum is enough.
+/// The four local means in SSIM. Its two variances occur only as their sum, which is stored.
 type Moments<T> = [T; 4];
 
 /// Structural similarity around every pixel.
@@ -85,9 +84,9 @@ fn window() -> Window {
     weights.map(|weight: f64| weight / sum)
 }
 
-/// Where tap number `tap` of the window around `center` reads, folded back into `0..n`.
+/// The index that tap number `tap` of the window around `center` reads, folded back into `0..n`.
 fn reflect(center: usize, tap: usize, n: usize) -> usize {
-    // Adding whole periods of 2 n keeps the position from going below zero.
+    // Adding whole periods of 2 n keeps the position above zero.
     let position = (center + tap + 2 * n * WINDOW_RADIUS_PX - WINDOW_RADIUS_PX) % (2 * n);
     position.min(2 * n - 1 - position)
 }

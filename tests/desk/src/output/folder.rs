@@ -1,5 +1,5 @@
-//! A folder of results that belongs to one run while it writes. A list of what was written lies in it, so that the next run
-//! can take away what is ours, and nothing else.
+//! A folder of results that belongs to one run while it writes. A list of the written files lies in
+//! it, so that the next run removes these and nothing else.
 
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -10,12 +10,12 @@ use app_core::scene::Image;
 
 use crate::output::{WriteError, make_folder, png_of, remove_file, write_whole};
 
-/// The list of what was written, which the running program holds locked.
+/// The list of written files, which the running program holds locked.
 pub const MANIFEST_FILE: &str = ".written";
-/// Files that desktops leave wherever a folder is looked at; they have no say. Hidden files have none, either.
+/// Files that desktops leave in every folder they show; they are ignored, and so are hidden files.
 const OF_DESKTOPS: [&str; 2] = ["Thumbs.db", "desktop.ini"];
 
-/// A folder that this run alone writes to, until it is dropped.
+/// A folder that only this run writes to, until it is dropped.
 #[derive(Debug)]
 pub struct OutputFolder {
     root: PathBuf,
@@ -23,11 +23,11 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// Takes a folder, which is made if it is missing, and removes what earlier runs wrote into it.
+    /// Takes a folder, which is made if it is missing, and removes the files of earlier runs.
     ///
     /// # Errors
-    /// When another run writes into it, or a file lies in it that no run wrote, or that was changed since: nothing is removed
-    /// then.
+    /// When another run writes into it, or a file lies in it that no run wrote or that has changed
+    /// since: nothing is removed then.
     pub fn take(root: &Path) -> Result<Self, WriteError> {
         refuse_unlisted(root)?;
         let folder = Self::reopen(root)?;
@@ -45,7 +45,7 @@ impl OutputFolder {
         Ok(folder)
     }
 
-    /// Takes a folder to go on in it: what is there stays.
+    /// Takes a folder to continue in it: existing files stay.
     ///
     /// # Errors
     /// When another run writes into it, or the system refuses.
@@ -63,13 +63,16 @@ impl OutputFolder {
         match manifest.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                return Err(WriteError::new(root, "another run is writing into this folder"));
+                return Err(WriteError::new(
+                    root,
+                    "another run is writing into this folder: wait for its end, or choose another folder",
+                ));
             }
-            // There are file systems without locks; the list is worth having there, too.
+            // Some file systems have no locks; the list is useful there, too.
             Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {}
             Err(TryLockError::Error(error)) => return Err(failed(error)),
         }
-        // Windows does not lock a file that is open to append alone.
+        // Windows does not lock a file that is open for appending alone.
         (&manifest).seek(SeekFrom::End(0)).map_err(failed)?;
         Ok(Self {
             root: root.to_owned(),
@@ -77,7 +80,7 @@ impl OutputFolder {
         })
     }
 
-    /// Where it is.
+    /// Path of the folder.
     #[must_use]
     pub fn root(&self) -> &Path {
         &self.root
@@ -92,7 +95,8 @@ impl OutputFolder {
         if let Some(folder) = path.parent() {
             make_folder(folder)?;
         }
-        // Listed before it is there: a run that is killed between the two leaves nothing behind that is not on the list.
+        // Listed before it exists: a run that is killed between the two steps leaves no unlisted
+        // file.
         let line = format!("{:08x} {file}\n", crc32fast::hash(bytes));
         (&self.manifest)
             .write_all(line.as_bytes())
@@ -119,7 +123,7 @@ impl OutputFolder {
             .and_then(|()| manifest.read_to_string(&mut text))
             .map_err(|error| WriteError::new(&self.root.join(MANIFEST_FILE), error))?;
         let mut written: HashMap<String, Vec<u32>> = HashMap::new();
-        // A line that was cut off by a kill, or by a hand, lists nothing.
+        // A line that was cut off by a kill or an editor lists nothing.
         for (checksum, file) in text.lines().filter_map(|line| line.split_once(' ')) {
             let is_below = Path::new(file)
                 .components()
@@ -140,7 +144,7 @@ fn refuse_unlisted(root: &Path) -> Result<(), WriteError> {
     check(root, &HashMap::new()).map(drop)
 }
 
-/// The files that are there of those that were written; an error if there are others.
+/// The existing files of the list; an error if there are others.
 fn check(root: &Path, written: &HashMap<String, Vec<u32>>) -> Result<Vec<PathBuf>, WriteError> {
     let mut present = Vec::new();
     for (file, path) in files_below(root)? {
@@ -157,7 +161,7 @@ fn check(root: &Path, written: &HashMap<String, Vec<u32>>) -> Result<Vec<PathBuf
             None if is_remnant(&file, written) => {}
             None => {
                 return refused(
-                    "is not of an earlier run, or was written by an earlier version of this program: delete the folder, move the \
+                    "was not written by an earlier run, or was written by an earlier version of this program: delete the folder, move the \
                      file away, or choose another folder",
                 );
             }
@@ -167,7 +171,7 @@ fn check(root: &Path, written: &HashMap<String, Vec<u32>>) -> Result<Vec<PathBuf
     Ok(present)
 }
 
-/// Whether it is what a killed run has left of a file.
+/// Whether a file is the remnant of a killed run.
 fn is_remnant(file: &str, written: &HashMap<String, Vec<u32>>) -> bool {
     let whole = file
         .strip_suffix(".partial")
@@ -175,7 +179,7 @@ fn is_remnant(file: &str, written: &HashMap<String, Vec<u32>>) -> bool {
     whole.is_some_and(|(file, process)| process.parse::<u32>().is_ok() && written.contains_key(file))
 }
 
-/// All files below a folder that have a say, in order, each with its path as the list has it.
+/// All relevant files below a folder, in order, each with its path as in the list.
 fn files_below(root: &Path) -> Result<Vec<(String, PathBuf)>, WriteError> {
     let mut files = Vec::new();
     let mut folders = vec![(String::new(), root.to_owned())];
@@ -188,7 +192,7 @@ fn files_below(root: &Path) -> Result<Vec<(String, PathBuf)>, WriteError> {
                 continue;
             }
             let file = format!("{prefix}{name}");
-            // A link is not followed: what it leads to is not ours.
+            // Links are not followed: their targets are not ours.
             if entry.file_type().map_err(failed)?.is_dir() {
                 folders.push((format!("{file}/"), entry.path()));
             } else {
@@ -200,11 +204,11 @@ fn files_below(root: &Path) -> Result<Vec<(String, PathBuf)>, WriteError> {
     Ok(files)
 }
 
-/// Removes the folders around a file, up to the first that is not empty.
+/// Removes the folders around a file, up to the first one that is not empty.
 fn remove_empty_folders(root: &Path, file: &str) {
     let folders = Path::new(file).ancestors().skip(1);
     for folder in folders.filter(|folder| !folder.as_os_str().is_empty()) {
-        // One that holds something stays, which is no error.
+        // A folder that is not empty stays, which is no error.
         if fs::remove_dir(root.join(folder)).is_err() {
             return;
         }

@@ -1,4 +1,5 @@
-//! The page of a film: the same viewer, with what each frame is made of in words, and errors over film time if there is a truth.
+//! The page of a film: the same viewer, with the sources of each frame in words, and errors over
+//! film time if there is a truth.
 
 use app_core::scene::Image;
 use serde::Serialize;
@@ -10,14 +11,15 @@ use crate::output::folder::OutputFolder;
 use crate::page::{PAGE_FILE, html, values};
 use crate::report::{MapEntry, Mean, mean_scores};
 
-/// A film to be looked at. Paths of pictures are below the folder that the page is written to.
+/// A film to view. Paths of pictures are below the page's folder.
 #[derive(Clone, Debug)]
 pub struct Film<'a> {
     /// Its title.
     pub title: &'a str,
     /// Width and height of all pictures.
     pub size_px: [u32; 2],
-    /// What pictures there are beside the film's own, in the order they are offered; frames refer to them by name.
+    /// Kinds of pictures beside the film's own, in the order of the menu; frames refer to them by
+    /// name.
     pub pictures: Vec<Shown>,
     /// Its frames, in the order of time.
     pub frames: Vec<FilmFrame>,
@@ -28,19 +30,19 @@ pub struct Film<'a> {
 pub struct FilmFrame {
     /// Its number in file names.
     pub index: usize,
-    /// When it is shown, from the film's start.
+    /// Time of the frame since the film's start.
     pub time_secs: f64,
     /// Its picture.
     pub picture: String,
-    /// The photograph that it is made of; none if it is made of several.
+    /// The photograph that it is made from; `None` if it is made from several.
     #[serde(skip)]
     pub photograph: Option<String>,
-    /// What the camera would have seen.
+    /// The truth: what the camera would have seen.
     #[serde(skip)]
     pub truth: Option<String>,
     /// Its other pictures, such as the keys on both sides.
     pub maps: Vec<MapEntry>,
-    /// What it is made of, such as keys and their weights; a line each.
+    /// Its sources, for example keys and their weights; one line each.
     pub words: Vec<String>,
     /// Its error against the truth.
     pub scores: Option<Scores>,
@@ -69,7 +71,7 @@ struct Made<'a> {
     report: FilmReport<'a>,
 }
 
-/// What the viewer and the tables of errors read of a report.
+/// The parts of a report that viewer and error tables read.
 #[derive(Serialize)]
 struct FilmReport<'a> {
     preset: &'static str,
@@ -79,7 +81,7 @@ struct FilmReport<'a> {
     frames: &'a [FilmFrame],
 }
 
-/// Writes a picture whose values the page can name; other pictures are shown without them.
+/// Writes a picture whose values the page can show; other pictures have none.
 ///
 /// # Errors
 /// When the picture's bytes do not fit its size, or the system refuses.

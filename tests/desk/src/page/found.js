@@ -38,7 +38,7 @@ function showAlignment() {
     against(discovered_against_listed[i])])));
   if (no_light) rows.push(row("lights", [probe?.lights.length ? "as the probe shows: no shadow shows them" : "none found", no_light, n_listed ? `${n_listed} on the list` : ""]));
   if (assumed) rows.push(row("a light", ["assumed", `${(100 * assumed.share).toFixed(0)} % of the light, far away and wide`,
-    `explains ${(100 * assumed.explained).toFixed(0)} % of what light from all around leaves`]));
+    `explains ${(100 * assumed.explained).toFixed(0)} % of the error with ambient light alone`]));
   if (is_long) rows.push(row("the light", ["long", "shown as a line of four round ones", ""]));
   if (unexplained !== null) rows.push(row("shadows in the picture", ["cast by the lights", `but for ${(100 * unexplained).toFixed(1)} %`,
     is_relit ? "the plates were taken in another light" : ""]));

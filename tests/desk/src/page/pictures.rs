@@ -1,4 +1,4 @@
-//! The pictures that a page shows beside the results.
+//! The pictures of a page beside the results.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -10,11 +10,11 @@ use crate::output::WriteError;
 use crate::output::folder::OutputFolder;
 use crate::page::values;
 
-/// Writes pictures into one folder. One that is the same as the last of its name is not written again: what is learned
-/// from the real shadow stays for many frames.
+/// Writes pictures into one folder. A picture equal to the last one of its name is not written
+/// again: results of learning from the real shadow stay for many frames.
 pub(crate) struct Pictures {
     output: Rc<OutputFolder>,
-    /// Goes before the paths that are returned.
+    /// Prefix of returned paths.
     prefix: String,
     folder: &'static str,
     has_values: bool,
@@ -22,7 +22,8 @@ pub(crate) struct Pictures {
 }
 
 impl Pictures {
-    /// Into `folder` below `prefix`, which is empty or ends in `/`; nothing is made yet.
+    /// A writer into `folder` below `prefix`, which is empty or ends in `/`; nothing is created
+    /// yet.
     pub(crate) fn new(output: &Rc<OutputFolder>, prefix: &str, folder: &'static str) -> Self {
         Self {
             output: Rc::clone(output),
@@ -33,7 +34,7 @@ impl Pictures {
         }
     }
 
-    /// The same, of pictures whose values the page can name.
+    /// A writer of pictures whose values the page can show.
     pub(crate) fn with_values(self) -> Self {
         Self {
             has_values: true,

@@ -1,4 +1,5 @@
-//! Pictures of more than 8 bits: PNG of 16, and OpenEXR with the layers that a picture is made of, in linear light.
+//! Pictures of more than 8 bits: PNG of 16, and OpenEXR with the layers of a picture, in linear
+//! light.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -16,7 +17,7 @@ use exr::prelude::{
 use image::codecs::png::PngEncoder;
 use image::{ImageBuffer, Rgb};
 
-/// Most that a channel of 16 bits holds.
+/// Largest code of 16 bits.
 const MOST_CODE: f32 = 65535.0;
 
 /// Writes a picture of linear light as a PNG of 16 bits, in sRGB.
@@ -30,13 +31,13 @@ pub fn write_png_16(path: &Path, light: &FloatMap) -> anyhow::Result<()> {
         .flat_map(|[r, g, b, _]| [*r, *g, *b].map(code_16));
     let codes: ImageBuffer<Rgb<u16>, Vec<u16>> =
         ImageBuffer::from_raw(light.width, light.height, codes.collect())
-            .context("a picture that is not of its size")?;
+            .context("the picture's bytes do not fit its size")?;
     let mut png = Vec::new();
     codes.write_with_encoder(PngEncoder::new(&mut png))?;
     Ok(write_whole(path, &png)?)
 }
 
-/// The code of 16 bits that is nearest to linear light; what is brighter than white is white.
+/// The code of 16 bits nearest to linear light; light brighter than white becomes white.
 #[must_use]
 #[allow(
     clippy::cast_possible_truncation,
@@ -85,7 +86,7 @@ const REC_709: Chromaticities = Chromaticities {
     white: Vec2(0.3127, 0.329),
 };
 
-/// Channels of a map, the first ones first.
+/// The first channels of a map, with names.
 fn named<const N: usize>(layer: &str, names: [&str; N], map: &FloatMap) -> Vec<AnyChannel<FlatSamples>> {
     let channel = |(index, name): (usize, &str)| {
         let values = map.texels.iter().map(|texel| f16::from_f32(texel[index]));

@@ -1,7 +1,7 @@
-//! A film's folder: what is in it is the film's own, and `film.json` says what each of its pictures shows.
+//! A film's folder: all its files are the film's own, and `film.json` describes each picture.
 //!
-//! `film.json` is written before any picture, and pictures that it says otherwise of are removed before that. So a picture that is
-//! there is always the one that `film.json` says, whenever a run is ended.
+//! `film.json` is written before any picture, and pictures that contradict it are removed before
+//! that. So every picture in the folder agrees with `film.json`, whenever a run ends.
 
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use serde_json::Value;
 
 use super::timeline::{FramePose, Timing};
 
-/// What a film is.
+/// File with the description of the film.
 pub const FILM_FILE: &str = "film.json";
 /// The copy of the session that its frames are made from, in the film's folder.
 pub const SESSION_FOLDER: &str = "session";
@@ -27,26 +27,26 @@ const LOCK_FILE: &str = ".film.lock";
 const TURN_FILE: &str = ".begin.lock";
 const MAX_SESSION_FILE_BYTES: u64 = 1 << 30;
 
-/// What decides each pixel of a film.
+/// All that determines the pixels of a film.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Film {
     /// Version of the program.
     pub version: String,
-    /// What made its pictures.
+    /// Program and driver of its pictures.
     #[serde(default)]
     pub made_by: MadeBy,
     /// Name of the session.
     pub name: String,
     /// The session's files.
     pub sources: Vec<SourceFile>,
-    /// Whether camera, pose and lights are the session's, without a look at its pictures.
+    /// Whether camera, pose and lights are the session's, without alignment by its pictures.
     pub is_as_given: bool,
-    /// Whether each frame shows the session's photograph of its time, in place of the first one.
+    /// Whether each frame shows the session's photograph of its time, instead of the first one.
     #[serde(default)]
     pub is_moving: bool,
     /// How much work a frame may cost.
     pub preset: String,
-    /// How the shadow looks.
+    /// Style of the shadow.
     #[serde(default)]
     pub shadow: ShadowStyle,
     /// Bits of a picture's channels: 8 or 16.
@@ -57,13 +57,13 @@ pub struct Film {
     pub has_layers: bool,
     /// The text of the clips.
     pub clips: String,
-    /// How they become frames.
+    /// Conversion of clips to frames.
     pub timing: Timing,
     /// All frames, in order.
     pub frames: Vec<FilmFrame>,
 }
 
-/// The program and the driver that make pictures: others may make them a little otherwise.
+/// The program and the driver that make pictures: those of others may differ slightly.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MadeBy {
     /// Checksum of the program.
@@ -90,20 +90,20 @@ pub struct FilmFrame {
     pub number: u32,
     /// Its picture.
     pub file: String,
-    /// Index of the session's frame whose photograph it is made of.
+    /// Index of the session's frame that provides the photograph.
     #[serde(default)]
     pub photograph: usize,
-    /// What it shows.
+    /// The pose that it shows.
     pub pose: FramePose,
 }
 
-/// What films have that say nothing else.
+/// Bits of films whose file does not state them.
 fn eight() -> u8 {
     8
 }
 
 impl FilmFrame {
-    /// The file of its layers, where it has any.
+    /// The file of its layers, if it has any.
     #[must_use]
     pub fn layers_file(&self) -> PathBuf {
         Path::new(&self.file).with_extension("exr")
@@ -118,7 +118,7 @@ impl Film {
         [PathBuf::from(&frame.file)].into_iter().chain(layers).collect()
     }
 
-    /// The photographs that it shows, in the order of its time, each once.
+    /// The photographs of the film, in the order of its time, each once.
     #[must_use]
     pub fn photographs(&self) -> Vec<usize> {
         let mut shown: Vec<usize> = self.frames.iter().map(|frame| frame.photograph).collect();
@@ -129,7 +129,7 @@ impl Film {
     /// The preset.
     ///
     /// # Errors
-    /// When there is none of that name.
+    /// When no preset has that name.
     pub fn preset(&self) -> anyhow::Result<Preset> {
         self.preset.parse().map_err(anyhow::Error::msg)
     }
@@ -143,7 +143,8 @@ impl Film {
         of(self) == of(other)
     }
 
-    /// Whether two films with equal frames have equal pictures. All poses decide on the part of the picture that is worked on.
+    /// Whether two films with equal frames have equal pictures. All poses determine the processed
+    /// part of the picture.
     fn has_pictures_of(&self, other: &Self) -> bool {
         let shown = |film: &Self| -> Vec<(usize, FramePose)> {
             let frames = film.frames.iter();
@@ -154,8 +155,8 @@ impl Film {
     }
 }
 
-/// Sizes and checksums of a session's files, as far as a film is made of them: with the photographs of all frames if the film is a
-/// moving one, else with that of the first.
+/// Sizes and checksums of a session's files that a film uses: with the photographs of all frames
+/// for a moving film, else with that of the first.
 ///
 /// # Errors
 /// When one cannot be read.
@@ -194,13 +195,13 @@ pub fn sources(session: &Stored, is_moving: bool) -> anyhow::Result<Vec<SourceFi
 /// Reads a session's index.
 ///
 /// # Errors
-/// When it cannot be read, or is none.
+/// When it cannot be read, or is no JSON.
 pub fn index_of(session: &Stored) -> anyhow::Result<Value> {
     let index = session.read(SESSION_FILE, MAX_INDEX_BYTES);
     serde_json::from_slice(&index.context(SESSION_FILE)?).context(SESSION_FILE)
 }
 
-/// A folder that one film is being made in.
+/// The folder of a film in work.
 pub struct FilmFolder {
     path: PathBuf,
     is_shared: bool,
@@ -209,18 +210,20 @@ pub struct FilmFolder {
 }
 
 impl FilmFolder {
-    /// Takes a new folder, an empty one, or that of a film. Several runs share one where each makes a part of its frames.
+    /// Takes a new folder, an empty one, or that of a film. Several runs share one if each makes a
+    /// part of its frames.
     ///
     /// # Errors
     /// When it has other files, or another run works in it.
     pub fn take(path: &Path, is_shared: bool) -> anyhow::Result<Self> {
         make_folder(path)?;
-        // In this order: another run that takes the same new folder in between makes the lock's file before any other.
+        // In this order, since another run that takes the same new folder in between makes the
+        // lock's file first.
         let is_empty = fs::read_dir(path)?.next().is_none();
         let is_film = [FILM_FILE, LOCK_FILE].iter().any(|file| path.join(file).exists());
         ensure!(
             is_film || is_empty,
-            "{}: has files that are no film's; name another folder",
+            "{}: has files of something else than a film; name another folder",
             path.display()
         );
         let lock_path = path.join(LOCK_FILE);
@@ -232,7 +235,10 @@ impl FilmFolder {
         };
         match locked {
             Err(TryLockError::WouldBlock) => {
-                bail!("{}: another run is making a film there", path.display())
+                bail!(
+                    "{}: another run is making a film there; wait for its end, or name another folder",
+                    path.display()
+                )
             }
             // Some network drives have no locks.
             Err(TryLockError::Error(error)) if error.kind() != io::ErrorKind::Unsupported => {
@@ -253,10 +259,10 @@ impl FilmFolder {
         &self.path
     }
 
-    /// The film that is in a folder, if any.
+    /// The film in a folder, if any.
     ///
     /// # Errors
-    /// When its file is none.
+    /// When its file cannot be read as one.
     pub fn film_in(path: &Path) -> anyhow::Result<Option<Film>> {
         let path = path.join(FILM_FILE);
         match fs::read(&path) {
@@ -275,8 +281,8 @@ impl FilmFolder {
         }
     }
 
-    /// Makes `film` the one that is in the folder: `write_session` makes its session where that is not there, and pictures that it
-    /// shows otherwise are removed.
+    /// Makes `film` the folder's film: `write_session` makes its session if it is missing, and
+    /// pictures that contradict the film are removed.
     ///
     /// # Errors
     /// When something cannot be read, written or removed.
@@ -288,10 +294,11 @@ impl FilmFolder {
     ) -> anyhow::Result<()> {
         let turn_path = self.path.join(TURN_FILE);
         let turn = File::create(&turn_path).with_context(|| turn_path.display().to_string())?;
-        // One of several runs begins, the others find it done. Where there are no locks, they are to be begun one by one.
+        // One of several runs begins, and the others find the film begun. Without locks, start the
+        // runs one by one.
         let _ = turn.lock();
         let before = Self::film_in(&self.path)?;
-        // As it will be read.
+        // The film as it will be read back.
         let mut film = film.clone();
         let mut bytes = serde_json::to_vec_pretty(&film)?;
         let as_read: Film = serde_json::from_slice(&bytes)?;
@@ -329,7 +336,7 @@ impl FilmFolder {
             remove_folder(&partial)?;
             write_session(&partial)?;
             self.remove_pictures(before.as_ref(), |_| false)?;
-            // Nobody knows of what film they are.
+            // It is unknown to which film these pictures belong.
             self.remove_pictures(Some(&film), |_| false)?;
             remove_file(&self.path.join(FILM_FILE))?;
             remove_folder(&session)?;
@@ -364,7 +371,7 @@ impl FilmFolder {
         Ok(())
     }
 
-    /// Removes what runs that were ended in the middle of a file have left.
+    /// Removes partial files of killed runs.
     ///
     /// # Errors
     /// When a file cannot be removed.

@@ -5,10 +5,10 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-/// Fewest digits of a number, as tools for stop motion want them.
+/// Smallest number of digits, as tools for stop motion want them.
 const MIN_DIGITS: usize = 4;
 
-/// A name with one run of `#` in it, which a frame's number stands for.
+/// A name with one run of `#`, which is replaced by a frame's number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamePattern {
     before: String,
@@ -16,13 +16,13 @@ pub struct NamePattern {
     after: String,
 }
 
-/// Why a text is no pattern of names.
+/// The reason why a text is no pattern of names.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum PatternError {
-    /// No place for the number, or two.
-    #[error("\"{0}\" must have one run of #, such as shot_####: a frame's number stands there")]
+    /// The text has no place for the number, or two.
+    #[error("\"{0}\" must have one run of #, such as shot_####, for the frame's number")]
     Runs(String),
-    /// Not a name of a file.
+    /// The text is no file name.
     #[error(
         "\"{0}\" must be the name of a file, of letters, digits, spaces and . _ - ( ) alone, and begin with none of . and -"
     )]
@@ -79,7 +79,7 @@ impl NamePattern {
     }
 }
 
-/// Frames by their numbers in the film: `3`, `3..`, `..9` or `3..9`, without the one after the dots.
+/// Frames by their numbers in the film: `3`, `3..`, `..9` or `3..9`, exclusive of the end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameRange {
     first: Option<u32>,
@@ -90,7 +90,8 @@ impl FromStr for FrameRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wanted = || "frames are such as 3, 3.., ..9 or 3..9, without the one after the dots".to_owned();
+        let wanted =
+            || "write frames as 3, 3.., ..9 or 3..9; the number after the dots is not included".to_owned();
         let number = |text: &str| text.parse::<u32>().map_err(|_| wanted());
         let optional = |text: &str| Some(text).filter(|text| !text.is_empty()).map(number).transpose();
         let range = match text.split_once("..") {
@@ -114,7 +115,7 @@ impl FromStr for FrameRange {
 }
 
 impl FrameRange {
-    /// Those of a film with frames `numbers`; none where it has not all that are asked for.
+    /// The selected frames of a film with frames `numbers`; `None` if it does not have all of them.
     #[must_use]
     pub fn within(&self, numbers: &Range<u32>) -> Option<Range<u32>> {
         let range = self.first.unwrap_or(numbers.start)..self.end.unwrap_or(numbers.end);

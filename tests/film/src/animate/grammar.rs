@@ -1,44 +1,44 @@
-//! The text of `--clips`: which clips follow one another, how often, how fast, and where a pose is held.
+//! The text of `--clips`: the order of clips, their repetitions and speeds, and held poses.
 
 use std::num::NonZeroU32;
 
 use thiserror::Error;
 
-/// Most repetitions of a clip, and frames of a hold.
+/// Largest number of repetitions of a clip, and of frames of a hold.
 pub const MAX_COUNT: u32 = 10_000;
 
-/// Fastest that a clip is played, and its inverse the slowest.
+/// Highest speed of a clip; its inverse is the lowest.
 const MAX_SPEED: f64 = 100.0;
 
-/// A clip of a toy, as far as a film needs to know it.
+/// The properties of a toy's clip that a film needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClipFacts {
-    /// A name that finds it.
+    /// Name of the clip.
     pub name: String,
     /// Its length.
     pub duration_secs: f64,
 }
 
-/// One of what follows one another in a film.
+/// An item of a film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Item {
     /// A clip is played.
     Clip {
-        /// Its index among the toy's.
+        /// Index of the clip among the toy's.
         clip: usize,
-        /// How often.
+        /// Number of repetitions.
         n_times: NonZeroU32,
-        /// How fast; below zero it runs backwards.
+        /// Speed; negative to run backwards.
         speed: f64,
     },
-    /// The pose before it is held; at the start, the first one after it.
+    /// The pose before it is held; at the start, the first pose after it.
     Hold {
-        /// How long, in frames of the film.
+        /// Length, in frames of the film.
         n_frames: NonZeroU32,
     },
 }
 
-/// Why a text says no film.
+/// The reason why a text describes no film.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum GrammarError {
     /// There is nothing between two commas, or nothing at all.
@@ -46,52 +46,52 @@ pub enum GrammarError {
         "item {number} is empty: an item is a clip such as Look, Look*2, Look@0.5x, Look*2@-1x, or a hold such as hold:12"
     )]
     Empty {
-        /// From 1.
+        /// Number of the item, from 1.
         number: usize,
     },
-    /// A name that no clip has.
+    /// No clip has that name.
     #[error("item {number}, \"{item}\": no clip is called \"{name}\"; {}", known(.clips))]
     UnknownClip {
-        /// From 1.
+        /// Number of the item, from 1.
         number: usize,
         /// Its text.
         item: String,
         /// The name in it.
         name: String,
-        /// Those that there are.
+        /// The existing clips.
         clips: Vec<String>,
     },
-    /// A speed that is none.
+    /// An invalid speed.
     #[error(
-        "item {number}, \"{item}\": \"{speed}\" is no speed: one is such as 0.5x, from 0.01x to 100x, or below zero to run backwards"
+        "item {number}, \"{item}\": \"{speed}\" is no speed: write one such as 0.5x, from 0.01x to 100x, or a negative one to run backwards"
     )]
     Speed {
-        /// From 1.
+        /// Number of the item, from 1.
         number: usize,
         /// Its text.
         item: String,
-        /// What stands for the speed.
+        /// The text in place of the speed.
         speed: String,
     },
-    /// A number of times or frames that is none.
+    /// An invalid number of repetitions or frames.
     #[error("item {number}, \"{item}\": \"{count}\" is no number from 1 to {MAX_COUNT}")]
     Count {
-        /// From 1.
+        /// Number of the item, from 1.
         number: usize,
         /// Its text.
         item: String,
-        /// What stands for the number.
+        /// The text in place of the number.
         count: String,
     },
     /// No clip is played.
-    #[error("no clip is played: there is a pose to hold only beside one; {}", known(.clips))]
+    #[error("no clip is played: a hold needs a clip before or after it; {}", known(.clips))]
     HoldsAlone {
-        /// Those that there are.
+        /// The existing clips.
         clips: Vec<String>,
     },
 }
 
-/// The names of a toy's clips, as a half sentence.
+/// The names of a toy's clips, as half a sentence.
 fn known(clips: &[String]) -> String {
     if clips.is_empty() {
         "the toy has none".to_owned()
@@ -100,11 +100,11 @@ fn known(clips: &[String]) -> String {
     }
 }
 
-/// Reads a list such as `Look,Step*2@0.5x,hold:12`. A clip without a name of its own, or with a comma in it, is called by its number
-/// from 0, such as `#1`.
+/// Parses a list such as `Look,Step*2@0.5x,hold:12`. A clip without a name of its own, or with a
+/// comma in it, is named by its number from 0, such as `#1`.
 ///
 /// # Errors
-/// When an item is none; the error says which one.
+/// When an item is invalid; the error names it.
 pub fn items(text: &str, clips: &[ClipFacts]) -> Result<Vec<Item>, GrammarError> {
     let texts = text.split(',').map(str::trim).enumerate();
     let items: Vec<Item> = texts
@@ -126,7 +126,7 @@ fn names(clips: &[ClipFacts]) -> Vec<String> {
     clips.iter().map(|clip| clip.name.clone()).collect()
 }
 
-/// A name wins over a number.
+/// A name has priority over a number.
 fn find(name: &str, clips: &[ClipFacts]) -> Option<usize> {
     let by_name = clips.iter().position(|clip| clip.name == name);
     let by_number = || {
@@ -153,7 +153,7 @@ impl ItemText<'_> {
             n_times: NonZeroU32::MIN,
             speed: 1.0,
         };
-        // Whatever marks a name has in it, it is a name.
+        // If the whole text is a name, marks in it belong to the name.
         if let Some(clip) = find(self.text, clips) {
             return Ok(once(clip));
         }

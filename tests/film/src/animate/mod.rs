@@ -1,4 +1,4 @@
-//! One photograph and clips become a film.
+//! Makes a film from one photograph and clips.
 
 pub mod fine;
 pub mod folder;

@@ -1,4 +1,4 @@
-//! Films of a recording: each frame shows the photograph of its time, as the camera has moved.
+//! Films of a recording with a moving camera: each frame shows the photograph of its time.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -16,13 +16,13 @@ use desk::stored::Stored;
 use super::folder::{Film, SESSION_FOLDER, index_of};
 use super::timeline::ROUNDING_SECS;
 
-/// What aligning the photographs has warned of, in the film's copy of the session: later runs say it, too.
+/// Warnings of the alignment, in the film's copy of the session: later runs repeat them.
 const WARNINGS_FILE: &str = "warnings.txt";
 
-/// When each photograph of a session was taken, in seconds from the first.
+/// Time of each photograph of a session, in seconds since the first.
 ///
 /// # Errors
-/// When the index cannot be read, or they are not in the order of time.
+/// When the index cannot be read, or times decrease.
 pub(super) fn times_secs(session: &Stored) -> anyhow::Result<Vec<f64>> {
     let index = index_of(session)?;
     let frames = index["frames"].as_array().into_iter().flatten();
@@ -30,7 +30,7 @@ pub(super) fn times_secs(session: &Stored) -> anyhow::Result<Vec<f64>> {
     let first = times.first().copied().unwrap_or_default();
     ensure!(
         times.is_sorted(),
-        "{SESSION_FILE}: frames[].time: a moving film needs photographs in the order of their times"
+        "{SESSION_FILE}: frames[].time: a moving film needs photographs in the order of their times; sort them"
     );
     Ok(times.into_iter().map(|time| time - first).collect())
 }
@@ -66,7 +66,7 @@ pub(super) fn write_aligned(
     Ok(())
 }
 
-/// What aligning the photographs of the film in a folder has warned of.
+/// Warnings of the alignment of the photographs of a film in a folder.
 ///
 /// # Errors
 /// When the file cannot be read.
@@ -79,7 +79,7 @@ pub(super) fn warnings(folder: &Path) -> anyhow::Result<BTreeSet<String>> {
     }
 }
 
-/// What becomes of a session's photographs that the film does not show, or of the film that they do not fill.
+/// Notes about photographs that the film does not show, or about their end before the film's.
 ///
 /// # Errors
 /// When the index cannot be read.

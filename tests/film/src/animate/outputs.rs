@@ -1,4 +1,5 @@
-//! What tells of a film beside its pictures: the exposure sheet, a contact sheet, and previews that play.
+//! Lists and previews of a film beside its pictures: the exposure sheet, a contact sheet, and
+//! previews that play.
 
 use std::fmt::Write as _;
 use std::io::Write;
@@ -23,18 +24,19 @@ const GIF_FILE: &str = "preview.gif";
 const MP4_FILE: &str = "preview.mp4";
 /// Longer side of a preview.
 const PREVIEW_PX: u32 = 640;
-/// That of a picture of the contact sheet.
+/// Longer side of a picture of the contact sheet.
 const CONTACT_PX: u32 = 240;
-/// Most pictures of the contact sheet, evenly over the film.
+/// Largest number of pictures on the contact sheet, evenly spread over the film.
 const N_CONTACTS: usize = 48;
 const N_COLUMNS: u32 = 8;
 const GAP_PX: u32 = 4;
-/// Shortest time that a picture of a GIF is shown for, in hundredths of a second: players take less for a tenth.
+/// Shortest display time of a GIF's picture, in hundredths of a second: players show shorter ones
+/// for a tenth.
 const LEAST_GIF_DELAY: f64 = 2.0;
-/// How hard colours of a GIF are looked for, from 1, the most, to 30.
+/// Effort of the colour search for a GIF, from 1, the most, to 30.
 const GIF_SPEED: i32 = 10;
 
-/// Writes a line for each frame: what it shows.
+/// Writes one line per frame with its clip, time and pose.
 ///
 /// # Errors
 /// When it cannot be written.
@@ -72,7 +74,8 @@ pub fn write_xsheet(folder: &Path, film: &Film, clips: &[ClipFacts]) -> anyhow::
     Ok(write_whole(&folder.join(XSHEET_FILE), text.as_bytes())?)
 }
 
-/// Writes a contact sheet and what plays the film, and returns what there is to say of it. Only a picture at a time is in memory.
+/// Writes a contact sheet and the playable previews, and returns a text about them. Only one
+/// picture at a time is in memory.
 ///
 /// # Errors
 /// When a picture cannot be read, or a file cannot be written.
@@ -84,10 +87,10 @@ pub fn write_previews(folder: &Path, film: &Film) -> anyhow::Result<String> {
     let mut said = if write_mp4(folder, film)? {
         format!("{files} and {MP4_FILE} show them all\n")
     } else {
-        format!("{files} show them all; {MP4_FILE} is made where ffmpeg is installed\n")
+        format!("{files} show them all; {MP4_FILE} is made if ffmpeg is installed\n")
     };
     if film.timing.fps > 100.0 / LEAST_GIF_DELAY {
-        said += &format!("{GIF_FILE} leaves some out: it can show at most 50 a second\n");
+        said += &format!("{GIF_FILE} skips some: it can show at most 50 a second\n");
     }
     Ok(said)
 }
@@ -116,7 +119,7 @@ pub fn write_rgb(path: &Path, picture: &RgbImage) -> anyhow::Result<()> {
     Ok(write_whole(path, &png)?)
 }
 
-/// Writes a file piece by piece, under a temporary name until it is whole.
+/// Writes a file piece by piece, under a temporary name until it is complete.
 fn write_in_pieces(
     path: &Path,
     write: impl FnOnce(&mut io::BufWriter<fs::File>) -> anyhow::Result<()>,
@@ -163,7 +166,7 @@ fn write_gif(folder: &Path, film: &Film) -> anyhow::Result<()> {
         encoder.set_repeat(gif::Repeat::Infinite)?;
         let mut until = 0.0;
         for (index, frame) in film.frames.iter().enumerate() {
-            // Hundredths of a second, whose sum is the film's length.
+            // Hundredths of a second, which add up to the film's length.
             let end = (100.0 * (index + 1) as f64 / film.timing.fps).round();
             if end - until < LEAST_GIF_DELAY {
                 continue;
@@ -185,7 +188,8 @@ fn write_gif(folder: &Path, film: &Film) -> anyhow::Result<()> {
     })
 }
 
-/// Hands the pictures to ffmpeg; false where there is none. Without words on colour, players guess by the picture's size.
+/// Hands the pictures to ffmpeg; false if it is not installed. Without colour tags, players guess
+/// by the picture's size.
 fn write_mp4(folder: &Path, film: &Film) -> anyhow::Result<bool> {
     let partial = folder.join(format!("{MP4_FILE}.partial"));
     let process = Command::new("ffmpeg")
@@ -211,7 +215,7 @@ fn write_mp4(folder: &Path, film: &Film) -> anyhow::Result<bool> {
     };
     if let Some(mut pipe) = process.stdin.take() {
         for frame in &film.frames {
-            // Where it has ended, its status says why.
+            // If ffmpeg has ended, its status says why.
             if pipe.write_all(&fs::read(folder.join(&frame.file))?).is_err() {
                 break;
             }

@@ -1,4 +1,4 @@
-//! Makes pictures of a film, in a process that ends before its driver has taken too much memory.
+//! Makes pictures of a film, in a process that ends before its driver uses too much memory.
 
 use std::collections::BTreeSet;
 use std::io::{self, Read, Write};
@@ -26,11 +26,11 @@ use super::fine::{write_exr, write_png_16};
 use super::folder::{Film, FilmFolder, FilmFrame, SESSION_FOLDER};
 use super::timeline::{FramePose, Moment};
 
-/// Pictures that one process makes on a software driver: Mesa 22.3 keeps some MiB of each until the process ends.
+/// Pictures per process on a software driver: Mesa 22.3 leaks some MiB per picture.
 const N_PICTURES_OF_PROCESS: usize = 50;
 
-/// Photographs of a moving film that a frame is made after, at least: the core learns of a place from each, so that no step is seen where
-/// the next process goes on.
+/// Number of photographs of a moving film that precede a frame in its process, at least: the core
+/// learns about a place from each, and a seam between two processes would be visible otherwise.
 const N_LEARNED: usize = 12;
 
 /// The pose of a frame.
@@ -56,14 +56,15 @@ fn pose_at(toy: &Toy, moment: &Moment) -> anyhow::Result<Pose> {
     })
 }
 
-/// What the process that makes pictures writes of each, before its number: whether it was retargeted.
+/// Prefix, in the output of the process that makes pictures, of a retargeted picture's number.
 pub(super) const RETARGETED: &str = "retargeted ";
 pub(super) const PASSED_THROUGH: &str = "passed through ";
-/// What it writes before a warning.
+/// Prefix of a warning.
 pub(super) const WARNING: &str = "warning: ";
 
-/// Makes those pictures of the film in `folder` with numbers in `range` that are not there, and writes a line for each and for each new
-/// warning to standard output. It may end before all are made. The process ends when standard input does, as it does with whoever began it.
+/// Makes the missing pictures of the film in `folder` with numbers in `range`, and writes a line
+/// for each picture and each new warning to standard output. It may end before all are made. The
+/// process ends when standard input closes, as it does when the parent ends.
 ///
 /// # Errors
 /// When the film cannot be read, or a picture cannot be made or written.
@@ -112,16 +113,16 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     Ok(())
 }
 
-/// What the pictures are made from.
+/// The input of the pictures.
 struct Studio<'a> {
     film: &'a Film,
     capture: &'a Capture,
-    /// The photographs that the film shows, in the order of its time.
+    /// The photographs of the film, in the order of its time.
     photographs: Vec<usize>,
     alignments: Alignments,
-    /// Where the toy is shown throughout; none where it stands.
+    /// The shown place of the toy throughout; `None` for the place of the real toy.
     world_from_shown: Option<DMat4>,
-    /// The photograph that the core was shown last, by its place among those of the film.
+    /// The photograph that the core received last, by its place among those of the film.
     latest: Option<(usize, FrameInput)>,
 }
 
@@ -130,7 +131,8 @@ impl<'a> Studio<'a> {
         let first = capture.frame(0)?;
         let mut alignments = Alignments::none();
         if !film.is_moving {
-            // Each process aligns the photograph for itself, and so in the same way: no file holds all that is found.
+            // Each process aligns the photograph by itself, and so in the same way: no file holds
+            // all estimates.
             if !film.is_as_given {
                 alignments = Alignments::new(capture.scene(), Asked::default());
             }
@@ -146,7 +148,8 @@ impl<'a> Studio<'a> {
         })
     }
 
-    /// A photograph as the core is given it, which has been shown those before it, in some pose.
+    /// A photograph as the core's input in some pose, after the core has received the photographs
+    /// before it.
     fn input(&mut self, core: &mut Core, photograph: usize, pose: &Pose) -> anyhow::Result<FrameInput> {
         let at = self.photographs.partition_point(|shown| *shown < photograph);
         let next = match &self.latest {
@@ -166,7 +169,8 @@ impl<'a> Studio<'a> {
     fn photographed(&mut self, index: usize) -> anyhow::Result<FrameInput> {
         let frame = self.capture.frame(index)?;
         if self.film.is_moving {
-            // They were aligned when the session was copied; what is seen in those before is not kept.
+            // They were aligned when the session was copied; observations of earlier ones are
+            // dropped.
             self.alignments = Alignments::none();
         }
         self.alignments.align(self.capture.scene(), index, &frame)?;
@@ -177,7 +181,8 @@ impl<'a> Studio<'a> {
     }
 }
 
-/// Writes the picture that the core has made, and its layers if they are wanted; the picture last, since it says that both are there.
+/// Writes the picture that the core has made, and its layers if requested; the picture last, since
+/// its file marks both as complete.
 fn write_picture(folder: &Path, studio: &Studio, frame: &FilmFrame, core: &Core) -> anyhow::Result<()> {
     let failed = || frame.file.clone();
     if studio.film.has_layers {
@@ -201,7 +206,7 @@ fn say(line: &str) -> io::Result<()> {
     out.flush()
 }
 
-/// Warnings that were said.
+/// Warnings that were printed.
 #[derive(Default)]
 struct Warnings(BTreeSet<String>);
 
@@ -216,7 +221,7 @@ impl Warnings {
     }
 }
 
-/// The scene that knows all that is going to be shown, so that no frame depends on those that were made before it.
+/// The scene with all shown poses, so that no frame depends on those made before it.
 fn with_film(scene: Scene, film: &Film, world_from_shown: Option<DMat4>) -> anyhow::Result<Scene> {
     let mut poses: Vec<&FramePose> = Vec::new();
     for frame in &film.frames {
@@ -235,7 +240,7 @@ fn with_film(scene: Scene, film: &Film, world_from_shown: Option<DMat4>) -> anyh
     Ok(scene.with_film(shown))
 }
 
-/// Frames of a film in a range of numbers whose pictures are not there.
+/// Frames of a film in a range of numbers whose pictures are missing.
 #[must_use]
 pub fn missing<'a>(folder: &Path, film: &'a Film, range: &Range<u32>) -> Vec<&'a FilmFrame> {
     let frames = film.frames.iter().filter(|frame| range.contains(&frame.number));
@@ -244,7 +249,8 @@ pub fn missing<'a>(folder: &Path, film: &'a Film, range: &Range<u32>) -> Vec<&'a
         .collect()
 }
 
-/// Whoever began this process holds the other end of its standard input, and lets it go when it ends, however that is.
+/// The parent process holds the other end of standard input, which closes when the parent ends in
+/// any way.
 fn end_with_stdin() {
     thread::spawn(|| {
         let mut sink = [0; 64];

@@ -1,4 +1,4 @@
-//! A film from its beginning to its end, or a part of it, by processes that make its pictures.
+//! Makes a film or a part of it, in processes that make its pictures.
 
 use std::collections::BTreeSet;
 use std::io::{self, BufRead, BufReader, IsTerminal, Write};
@@ -31,7 +31,7 @@ use super::outputs;
 use super::render::{PASSED_THROUGH, WARNING, missing};
 use super::timeline::{Timing, frames, photograph_at};
 
-/// What is asked for.
+/// The options of a film.
 pub struct Order {
     /// The session.
     pub session: PathBuf,
@@ -39,11 +39,11 @@ pub struct Order {
     pub out: PathBuf,
     /// The text of the clips.
     pub clips: String,
-    /// How they become frames.
+    /// Conversion of clips to frames.
     pub timing: Timing,
     /// How much work a frame may cost.
     pub preset: Preset,
-    /// How the shadow looks.
+    /// Style of the shadow.
     pub shadow: ShadowStyle,
     /// Bits of a picture's channels: 8 or 16.
     pub bits: u8,
@@ -55,17 +55,17 @@ pub struct Order {
     pub is_moving: bool,
     /// Number of the first frame.
     pub start: u32,
-    /// Names of pictures; those of the session where there is none.
+    /// Names of pictures; `None` for the session's.
     pub name: Option<NamePattern>,
-    /// Frames to make; all where there is none.
+    /// Frames to make; `None` for all.
     pub frames: Option<FrameRange>,
-    /// Whether what is there is made again.
+    /// Whether existing pictures are made again.
     pub is_forced: bool,
-    /// Whether no preview is made.
+    /// Whether previews are omitted.
     pub is_without_preview: bool,
     /// Part of a graphics adapter's name.
     pub adapter: Option<String>,
-    /// Whether nothing is said.
+    /// Whether nothing is printed.
     pub is_quiet: bool,
 }
 
@@ -81,10 +81,11 @@ pub fn clip_facts(toy: &Toy) -> Vec<ClipFacts> {
         .collect()
 }
 
-/// Makes a film, or what is missing of it. Returns what there is to say.
+/// Makes a film, or its missing frames. Returns a text for the user.
 ///
 /// # Errors
-/// When the order cannot be, the session cannot be read, or a picture cannot be made or written.
+/// When the options are invalid, the session cannot be read, or a picture cannot be made or
+/// written.
 pub fn run(order: &Order) -> anyhow::Result<String> {
     let named = || order.session.display().to_string();
     let capture = Capture::open(open_session(&order.session)?).with_context(named)?;
@@ -150,7 +151,7 @@ pub fn run(order: &Order) -> anyhow::Result<String> {
     Ok(said)
 }
 
-/// What there is to say where pictures that are there may be those of another program or driver.
+/// A warning if existing pictures may come from another program or driver.
 fn by_others(folder: &FilmFolder, film: &Film) -> anyhow::Result<String> {
     let begun = FilmFolder::film_in(folder.path())?.context("there is no film.json")?;
     let n_there = begun.frames.len() - missing(folder.path(), &begun, &(0..u32::MAX)).len();
@@ -166,13 +167,13 @@ fn by_others(folder: &FilmFolder, film: &Film) -> anyhow::Result<String> {
         String::new()
     } else {
         format!(
-            "warning: {n_there} of the pictures were there before, begun by {} on {}; this is {} on {}, which may make them a little otherwise: --force makes all again\n",
+            "warning: {n_there} of the pictures were made earlier, by {} on {}; this is {} on {}, whose pictures may differ slightly: --force makes all again\n",
             by.build, by.driver, now.build, now.driver
         )
     })
 }
 
-/// This program and the driver that it is going to use.
+/// This program and the driver that it will use.
 fn made_by(order: &Order) -> anyhow::Result<MadeBy> {
     let program = env::current_exe().context("this program's own path")?;
     let bytes = fs::read(&program).with_context(|| program.display().to_string())?;
@@ -185,22 +186,22 @@ fn made_by(order: &Order) -> anyhow::Result<MadeBy> {
     })
 }
 
-/// Refuses what a preset or a session cannot give.
+/// Refuses options that the preset or the session does not support.
 fn check_output(order: &Order, capture: &Capture) -> anyhow::Result<()> {
     let is_model = matches!(Settings::from(order.preset), Settings::Model(_));
     let is_fine = order.bits > 8 || order.has_layers;
     let preset = order.preset.name();
     ensure!(
         is_model || order.shadow == ShadowStyle::TRUE,
-        "--shadow-strength, --shadow-softness: preset {preset} draws shadows as published; take fast, balanced or best"
+        "--shadow-strength, --shadow-softness: preset {preset} draws shadows as published; choose fast, balanced or best"
     );
     ensure!(
         is_model || !is_fine,
-        "--bits 16, --exr: preset {preset} makes pictures of 8 bits without layers; take fast, balanced or best"
+        "--bits 16, --exr: preset {preset} makes pictures of 8 bits without layers; choose fast, balanced or best"
     );
     ensure!(
         !is_fine || capture.lens(0)?.is_none(),
-        "--bits 16, --exr: the session has a lens, by which pictures of 8 bits alone are bent; leave them out"
+        "--bits 16, --exr: the session has a lens, and only pictures of 8 bits can be distorted by it; leave the options out"
     );
     Ok(())
 }
@@ -245,8 +246,9 @@ fn planned(order: &Order, capture: &Capture, session: &Stored) -> anyhow::Result
     })
 }
 
-/// A copy of the session: what is made later is made of that. Of a film of one photograph it has the first frame alone; each process
-/// aligns that for itself. The photographs of a moving film are aligned here, as far as it shows them.
+/// A copy of the session as the source of the film. For a film of one photograph it has the first
+/// frame alone, which each process aligns by itself. The used photographs of a moving film are
+/// aligned here.
 fn write_session(
     session: &Stored,
     capture: &Capture,
@@ -270,14 +272,14 @@ fn write_session(
     Ok(())
 }
 
-/// What the processes said.
+/// Output of the processes.
 #[derive(Default)]
 struct Made {
     warnings: BTreeSet<String>,
     n_passed_through: usize,
 }
 
-/// Begins one process after the other until all pictures are there.
+/// Starts one process after the other until all pictures exist.
 fn make(order: &Order, folder: &Path, film: &Film, range: &Range<u32>) -> anyhow::Result<Made> {
     let program = env::current_exe().context("this program's own path")?;
     let mut made = Made::default();
@@ -320,7 +322,7 @@ fn make(order: &Order, folder: &Path, film: &Film, range: &Range<u32>) -> anyhow
     Ok(made)
 }
 
-/// How far a film is, with the time left: a bar on a terminal, a line now and then in a log.
+/// Progress of a film, with the time left: a bar on a terminal, an occasional line in a log.
 struct Progress(ProgressBar, bool);
 
 impl Progress {

@@ -1,4 +1,4 @@
-//! Which pose each frame of a film shows.
+//! The pose that each frame of a film shows.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -6,44 +6,44 @@ use thiserror::Error;
 use super::grammar::{ClipFacts, Item};
 use crate::ease::Ease;
 
-/// Most frames of a film: more than an hour at 24 a second.
+/// Largest number of frames of a film: more than an hour at 24 per second.
 pub const MAX_FRAMES: u32 = 100_000;
 
 /// Parts of a frame that rounding may add to a sum of lengths.
 const ROUNDING_FRAMES: f64 = 1e-6;
 
-/// A photograph that was taken so little after a frame's time is that of the frame.
+/// A photograph at most this much later than a frame belongs to that frame.
 pub const ROUNDING_SECS: f64 = 1e-4;
 
-/// How a film ends.
+/// The end of a film.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum End {
-    /// With the last pose.
+    /// It ends with the last pose.
     #[default]
     Once,
-    /// Before its first frame, which comes again after the last.
+    /// It ends before its first frame, which follows the last one.
     Loop,
-    /// With the way back to its second frame.
+    /// It ends with the way back to its second frame.
     PingPong,
 }
 
-/// How items become frames.
+/// The conversion of items to frames.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
-    /// Frames a second.
+    /// Frames per second.
     pub fps: f64,
-    /// Frames that each pose stays for.
+    /// Number of frames of each pose.
     pub on: u32,
-    /// How the film ends.
+    /// The end of the film.
     pub end: End,
-    /// How each clip runs.
+    /// The easing of each clip.
     pub ease: Ease,
-    /// Frames in which a clip's start takes over from the pose before it.
+    /// Number of frames in which a clip's start is blended with the pose before it.
     pub n_blend_frames: u32,
-    /// Where the film begins in what the items say, in seconds.
+    /// Start of the film within the items, in seconds.
     pub from_secs: f64,
-    /// Where it ends; none where they do.
+    /// End of the film within the items; `None` for their end.
     pub to_secs: Option<f64>,
 }
 
@@ -70,44 +70,44 @@ pub struct Moment {
     pub time_secs: f64,
 }
 
-/// What a frame shows.
+/// The content of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FramePose {
     /// The moment.
     pub moment: Moment,
-    /// The moment that it takes over from, and the share that it has reached.
+    /// The moment to blend from, and the share of the present one.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub after: Option<Blend>,
     /// Whether a pose is held.
     pub is_held: bool,
 }
 
-/// A pose that another takes over from.
+/// A blend from another pose.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Blend {
-    /// The pose.
+    /// The other pose.
     pub from: Moment,
-    /// The other's share, above 0 and below 1.
+    /// The share of the present pose, above 0 and below 1.
     pub share: f64,
 }
 
-/// Why there is no film of such a length.
+/// The reason why a film cannot have that length.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum TimelineError {
-    /// Too long.
-    #[error("the film would have {n_frames:.0} frames; at most {MAX_FRAMES} are made")]
+    /// The film would be too long.
+    #[error("the film would have {n_frames:.0} frames; the limit is {MAX_FRAMES}")]
     TooLong {
-        /// Its length.
+        /// Number of frames.
         n_frames: f64,
     },
-    /// Nothing is left of it.
+    /// No frame would be left.
     #[error("nothing lies from {from_secs} s to {to_secs} s: the clips last {length_secs:.3} s")]
     Empty {
-        /// Where it should begin.
+        /// The requested start.
         from_secs: f64,
-        /// Where it should end.
+        /// The requested end.
         to_secs: f64,
-        /// How long the items last.
+        /// Total length of the items.
         length_secs: f64,
     },
 }
@@ -117,7 +117,7 @@ struct Segment {
     start: f64,
     length: f64,
     shows: Shows,
-    /// The pose that a clip takes over from.
+    /// The pose that a clip is blended from.
     after: Option<Moment>,
 }
 
@@ -138,7 +138,8 @@ struct Played {
 impl Played {
     fn at(&self, progress: f64) -> Moment {
         let times = self.n_times * progress;
-        // The end of all repetitions is the clip's end, the end of any other the start of the next.
+        // All repetitions end with the clip's end; a single repetition ends with the start of the
+        // next.
         let share = if times >= self.n_times { 1.0 } else { times.fract() };
         let share = if self.is_backward { 1.0 - share } else { share };
         Moment {
@@ -159,7 +160,8 @@ pub fn frames(items: &[Item], clips: &[ClipFacts], timing: &Timing) -> Result<Ve
     let to = timing
         .to_secs
         .map_or(length, |secs| (secs * timing.fps).min(length));
-    // The last pose of a clip is shown, too, unless the first one follows it; a hold already shows its own long enough.
+    // The last pose of a clip is shown, too, unless the first one follows it; a hold already shows
+    // its pose long enough.
     let ends_in_clip = matches!(
         segments.last(),
         Some(Segment {
@@ -194,13 +196,13 @@ pub fn frames(items: &[Item], clips: &[ClipFacts], timing: &Timing) -> Result<Ve
     let on = timing.on.max(1);
     let n_poses = n_frames.div_ceil(on);
     let shown = |pose: u32| {
-        // The last pose is the end's, even if it comes too late for its turn.
+        // The last pose belongs to the end, even if it comes too late for its turn.
         let is_last = is_end_shown && pose + 1 == n_poses;
         let frame = if is_last { n_frames - 1 } else { pose * on };
         pose_at(&segments, timing, from + f64::from(frame))
     };
     let mut poses: Vec<FramePose> = (0..n_poses).filter_map(shown).collect();
-    // There and back are mirrored pose by pose: each stays as long as the others.
+    // The way back mirrors the way there pose by pose: each has the same length.
     if timing.end == End::PingPong && poses.len() > 2 {
         let back: Vec<FramePose> = poses[1..poses.len() - 1].iter().rev().copied().collect();
         poses.extend(back);
@@ -215,8 +217,8 @@ pub fn frames(items: &[Item], clips: &[ClipFacts], timing: &Timing) -> Result<Ve
     })
 }
 
-/// Index of the latest photograph that had been taken by a time of the film; both times are from the first photograph. The last one
-/// stays to the film's end.
+/// Index of the latest photograph at a time of the film; both times count from the first
+/// photograph. The last one stays to the film's end.
 #[must_use]
 pub fn photograph_at(times_secs: &[f64], film_secs: f64) -> usize {
     let n_taken = times_secs.partition_point(|time| *time <= film_secs + ROUNDING_SECS);
@@ -258,7 +260,7 @@ fn segments(items: &[Item], clips: &[ClipFacts], timing: &Timing) -> Vec<Segment
         });
         start += length;
     }
-    // What comes round again takes over from the end.
+    // A loop blends its start with its end.
     if timing.end == End::Loop
         && let Some(first) = segments.first_mut()
         && matches!(first.shows, Shows::Clip(_))

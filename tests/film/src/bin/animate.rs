@@ -1,4 +1,4 @@
-//! Makes a film of a session's photograph and clips of its toy.
+//! Makes a film from a session's photograph and clips of its toy.
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -18,51 +18,53 @@ use film::animate::run::{Order, run};
 use film::animate::timeline::{End, Timing};
 use film::ease::Ease;
 
-/// Where films go that were given no place, below the top of the repository.
+/// Default folder of films, below the top of the repository.
 const RESULTS: &str = "target/film";
 
-/// Make a film of one photograph: clips of the toy become numbered pictures, a contact sheet, an exposure sheet (xsheet.csv) and
-/// previews that play. A run that was ended goes on where it was: run it again.
+/// Make a film from one photograph: clips of the toy become numbered pictures, a contact sheet, an
+/// exposure sheet (xsheet.csv) and previews that play. Run an interrupted film again to continue
+/// it.
 #[derive(Parser)]
 #[command(name = "animate", bin_name = "cargo xtask animate")]
 struct Args {
     /// Folder of the session, or a recording; its first photograph is animated, or with --moving all of them [default: the bundled one]
     session: Option<PathBuf>,
-    /// What to play, such as 'Look,Step*2@0.5x,hold:12': clips one after the other, with how often and how fast, and frames to hold a
-    /// pose; `clips` lists a toy's
+    /// Clips to play, such as 'Look,Step*2@0.5x,hold:12': in this order, with repetitions and
+    /// speeds, and frames to hold a pose; `clips` lists a toy's
     #[arg(long, value_name = "CLIPS", required_unless_present = "render")]
     clips: Option<String>,
-    /// Frames a second
+    /// Frames per second
     #[arg(long, value_name = "N", default_value_t = 24.0, value_parser = parse_fps)]
     fps: f64,
-    /// Frames that each pose stays for: 2 is "on twos"
+    /// Number of frames of each pose: 2 is "on twos"
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=24))]
     on: u32,
-    /// Leave out the last pose, which the first one follows
+    /// Omit the last pose, which the first one follows
     #[arg(long = "loop", conflicts_with = "pingpong")]
     is_loop: bool,
-    /// Play it back to the start, too
+    /// Play the film back to the start, too
     #[arg(long)]
     pingpong: bool,
-    /// How each clip speeds up and slows down over its length
+    /// Change of each clip's speed over its length
     #[arg(long, value_enum, default_value_t)]
     ease: Ease,
-    /// Frames in which a clip's start takes over from the pose before it
+    /// Number of frames in which a clip's start is blended with the pose before it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=240))]
     blend: u32,
-    /// Where to begin in what the clips say, and with --moving in the recording, in seconds
+    /// Start within the clips, and with --moving within the recording, in seconds
     #[arg(long, value_name = "SECS", default_value_t = 0.0, value_parser = parse_secs)]
     from: f64,
-    /// Where to end
+    /// End, in seconds
     #[arg(long, value_name = "SECS", value_parser = parse_secs)]
     to: Option<f64>,
     /// How much work a frame may cost
     #[arg(long, value_name = "NAME", default_value = "best")]
     preset: Preset,
-    /// How strong the shadow is, from 0, none, to 4: 1 is the truth, 2 is laid over itself
+    /// Strength of the shadow, from 0, none, to 4: 1 is the truth, 2 squares the light left in the shadow
     #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = parse_strength)]
     shadow_strength: f64,
-    /// How soft the shadow is, from 0, that of points of light, to 4: 1 is the truth, 2 has an edge twice as wide
+    /// Softness of the shadow, from 0, that of point lights, to 4: 1 is the truth, 2 has an edge
+    /// twice as wide
     #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = parse_softness)]
     shadow_softness: f64,
     /// Bits of a picture's channels: 8, or 16
@@ -71,8 +73,8 @@ struct Args {
     /// Write each picture as OpenEXR, too, of linear half floats, with layers: clean plate, shadow ratio, toy, masks
     #[arg(long)]
     exr: bool,
-    /// Make these frames alone, by their numbers: 3, 3.., ..9 or 3..9, without the one after the dots. Several such runs may share a
-    /// folder
+    /// Make only these frames, by their numbers: 3, 3.., ..9 or 3..9, exclusive of the end. Several
+    /// such runs may share a folder
     #[arg(long, value_name = "A..B")]
     frames: Option<FrameRange>,
     /// Number of the first frame
@@ -81,7 +83,7 @@ struct Args {
     /// Names of the pictures, with a # for each digit of the number; without it the session's name and four digits
     #[arg(long, value_name = "NAME_####")]
     name: Option<NamePattern>,
-    /// Make again what is there, and remove another film's pictures
+    /// Make existing pictures again, and remove another film's pictures
     #[arg(long, conflicts_with = "frames")]
     force: bool,
     /// Folder of the film [default: target/film/ and the name of folder or recording]
@@ -90,10 +92,10 @@ struct Args {
     /// Take camera, pose and lights as recorded, without aligning them by the photograph
     #[arg(long)]
     as_given: bool,
-    /// Show each photograph at its time, as the camera of a recording has moved
+    /// Show each photograph at its time, for a recording with a moving camera
     #[arg(long)]
     moving: bool,
-    /// Make the pictures alone
+    /// Make only the pictures
     #[arg(long)]
     no_preview: bool,
     /// Part of a graphics adapter's name [default: the fastest]
@@ -102,7 +104,7 @@ struct Args {
     /// Print nothing but errors
     #[arg(long)]
     quiet: bool,
-    /// Make some pictures of the film in this folder, as this program asks itself
+    /// Make some pictures of the film in this folder; the program starts itself with this option
     #[arg(long, value_name = "FILM", hide = true)]
     render: Option<PathBuf>,
 }
@@ -185,7 +187,7 @@ fn order(args: Args) -> anyhow::Result<Order> {
 
 fn parse_fps(text: &str) -> Result<f64, String> {
     let fps = text.parse().ok().filter(|fps| (1.0..=240.0).contains(fps));
-    fps.ok_or_else(|| "from 1 to 240 frames a second".to_owned())
+    fps.ok_or_else(|| "a number of frames per second from 1 to 240".to_owned())
 }
 
 fn parse_strength(text: &str) -> Result<f64, String> {

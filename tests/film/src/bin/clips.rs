@@ -13,10 +13,10 @@ use film::animate::outputs::write_rgb;
 use film::small::sheet;
 use film::thumbnail::Stand;
 
-/// Where sheets go that were given no place, below the top of the repository.
+/// Default folder of sheets, below the top of the repository.
 const RESULTS: &str = "target/film";
 const FPS: f64 = 24.0;
-/// Thumbnails of each clip, from its start to its end.
+/// Number of thumbnails of each clip, from its start to its end.
 const N_THUMBNAILS: u32 = 6;
 const THUMBNAIL_PX: u32 = 160;
 const GAP_PX: u32 = 4;

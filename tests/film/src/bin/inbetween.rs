@@ -16,11 +16,11 @@ use film::inbetween::shot::Shot;
 use film::inbetween::timing::Rate;
 use film::inbetween::{CONTACT_FILE, Options, PictureNames, REPORT_FILE, SHEET_FILE, findings, make};
 
-/// Where results go that were given no place, below the top of the repository.
+/// Default folder of results, below the top of the repository.
 const RESULTS: &str = "target/inbetween";
 
-/// Make the frames between key poses that were printed and photographed one by one. Prints that stand elsewhere, a nudged camera and
-/// light that wanders are found, undone and said.
+/// Make the frames between key poses that were printed and photographed one by one. Misplaced
+/// prints, a nudged camera and changing light are detected, corrected and reported.
 #[derive(Parser)]
 #[command(name = "inbetween", bin_name = "cargo xtask inbetween")]
 struct Args {
@@ -32,13 +32,13 @@ struct Args {
     /// Number of frames between two keys
     #[arg(long, value_name = "N", default_value_t = 3, conflicts_with = "fps")]
     between: usize,
-    /// Frames a second in place of it, by the times of the keys
+    /// Frames per second, by the times of the keys, in place of --between
     #[arg(long, value_name = "RATE", value_parser = parse_fps)]
     fps: Option<f64>,
-    /// For how many frames a picture stays
+    /// Number of frames of each picture
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     on: u16,
-    /// How the way from key to key is gone
+    /// Change of speed from key to key
     #[arg(long, value_enum, default_value_t)]
     ease: Ease,
     /// How much work a frame may cost
@@ -50,10 +50,10 @@ struct Args {
     /// Name of the pictures before their number
     #[arg(long, value_name = "TEXT", default_value = "frame_", value_parser = parse_prefix)]
     name: String,
-    /// Show keys as they were photographed, though camera, light and place of the toy jump there
+    /// Show keys as they were photographed, although camera, light and place of the toy jump there
     #[arg(long)]
     keep_keys: bool,
-    /// Write onion skins into the folder onion, too: each frame with the keys beside it shining through
+    /// Write onion skins into the folder onion, too: each frame overlaid with the keys beside it
     #[arg(long)]
     onion: bool,
     /// Part of a graphics adapter's name [default: the fastest]
@@ -113,7 +113,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
 }
 
 fn default_out(shot: &Path) -> anyhow::Result<PathBuf> {
-    // `.` and `..` have a name of their own only when they are followed.
+    // `.` and `..` have a name only after they are resolved.
     let shot = shot.canonicalize().with_context(|| shot.display().to_string())?;
     let folder = if shot.is_file() {
         shot.parent()

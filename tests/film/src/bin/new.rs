@@ -1,4 +1,4 @@
-//! Makes a session of photographs.
+//! Makes a session from photographs.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,44 +10,47 @@ use film::length::metres;
 use film::new::{DRAWING, Key, View, Wanted, new};
 use glam::DVec3;
 
-/// Make a session of photographs: the place without the toy, then the toy on it. The toy is the marker: camera, table and lights
-/// are found by it. If that is not sure the program says why, and writes nothing.
+/// Make a session from photographs: the place without the toy, then the toy on it. The toy is the
+/// marker: camera, table and lights are estimated from it. If the result is uncertain, the program
+/// says why and writes nothing.
 #[derive(Parser)]
 #[command(name = "new", bin_name = "cargo xtask new")]
 struct Args {
-    /// Photographs of the place without the toy, if there are any, and one of the toy last; PNG or JPEG, or a video of a camera that
-    /// stands still, if ffmpeg is installed: `animate --moving` then shows each of its pictures at its time
+    /// Photographs of the place without the toy, if there are any, and one of the toy last; PNG or
+    /// JPEG, or a video from a camera that stands still, if ffmpeg is installed: `animate --moving`
+    /// then shows each of its pictures at its time
     #[arg(required = true, value_name = "PLATE... PHOTO")]
     photographs: Vec<PathBuf>,
     /// The toy's model, a .glb
     #[arg(long, value_name = "TOY.glb")]
     toy: PathBuf,
-    /// Folder to be made
+    /// Folder of the new session
     #[arg(long, value_name = "SESSION")]
     out: PathBuf,
     /// The toy's height as it stands, such as 12cm [default: the model's, in metres]
     #[arg(long, value_name = "LENGTH", value_parser = metres)]
     height: Option<f64>,
-    /// The pose that the toy was made in: a clip of the model and seconds in it [default: as authored]
+    /// The pose of the printed toy: a clip of the model and seconds in it [default: as authored]
     #[arg(long, value_name = "CLIP@TIME", value_parser = moment)]
     pose: Option<(String, f64)>,
     /// Focal length as on 35 mm film, in millimetres [default: the photograph's, by its EXIF]
     #[arg(long, value_name = "MM", value_parser = millimetres)]
     focal_35mm: Option<f64>,
-    /// The side of the toy that is seen: front, left, back or right, and low or high after a comma [default: all are tried]
+    /// The visible side of the toy: front, left, back or right, and low or high after a comma
+    /// [default: all are tried]
     #[arg(long, default_value = None, value_name = "SIDE[,HEIGHT]")]
     view: Option<View>,
     /// The model's axis that points up as it stands: +x, -x, +y, -y, +z or -z
     #[arg(long, default_value = "+y", value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
     up: DVec3,
-    /// The photograph of another print and its pose; one for each further key of a film, in their order. A shot for `inbetween` is then
-    /// written, too
+    /// The photograph of another print and its pose; one for each further key of a film, in their
+    /// order. A shot for `inbetween` is then written, too
     #[arg(long, value_name = "PHOTO@CLIP@TIME", value_parser = key)]
     key: Vec<Key>,
     /// Seconds of the film between two keys
     #[arg(long, value_name = "SECONDS", default_value_t = 1.0, value_parser = seconds)]
     apart: f64,
-    /// How far the toy's lowest points are above the table, if it does not stand on it
+    /// Height of the toy's lowest points above the table, if it does not stand on it
     #[arg(long, value_name = "LENGTH", value_parser = metres)]
     lifted: Option<f64>,
 }
@@ -89,7 +92,7 @@ fn run(args: Args) -> anyhow::Result<()> {
     print(&(lines.join("\n") + "\n"))
 }
 
-/// `CLIP@TIME`; a clip's name may have an @ itself.
+/// `CLIP@TIME`; a clip's name may contain an @.
 fn moment(text: &str) -> Result<(String, f64), String> {
     let wanted = || format!("{text:?} is not CLIP@SECONDS");
     let (clip, time) = text.rsplit_once('@').ok_or_else(wanted)?;

@@ -1,4 +1,4 @@
-//! One picture of two: what the keys before and after a moment make of it, in linear light.
+//! Blends two pictures in linear light: those made for a moment from the keys before and after it.
 
 use app_core::grain::Grain;
 use reference::grain::grain_at;
@@ -6,71 +6,73 @@ use reference::grain::grain_at;
 use super::light::{LightPicture, smoothed};
 use super::stage::seen_weight;
 
-/// Reach of the averages that seams are faded by.
+/// Reach of the averages that fade seams.
 const SEAM_PX: usize = 2;
-/// Averages of this reach are compared to see whether both pictures show the same.
+/// Reach of the averages by which two pictures are compared.
 const SAME_PX: usize = 1;
-/// The least that a usual difference is taken for, in parts of the light.
+/// Lower bound of the usual difference, as a fraction of the light.
 const LEAST_NOISE: f32 = 2e-3;
-/// Light that differences are compared with, at least.
+/// Lower bound of the light that differences are divided by.
 const DARK: f32 = 0.01;
 
-/// Where the reference's detail is shown, and how level and detail are told apart.
+/// The use of the reference's detail, and its separation from the level.
 #[derive(Clone, Copy, Debug)]
 struct Detail {
-    /// How far from what lies on it the detail is shown, in pixels.
+    /// Distance of the detail from whatever lies on it, in pixels.
     clear_px: usize,
-    /// Reach of the averages that are the level, in pixels.
+    /// Reach of the averages that define the level, in pixels.
     level_px: usize,
-    /// Differences of so many times the usual one are no noise: an edge, or something that the reference lacks.
+    /// Ratio to the usual difference above which a difference is no noise: an edge, or something
+    /// that the reference lacks.
     most_noise: f32,
 }
 
-/// The table, well clear of toy and shadows, outlines and penumbras that are a little elsewhere.
+/// The table far from toy and shadows, outlines and penumbras of other frames included.
 const TABLE: Detail = Detail {
     clear_px: 6,
     level_px: 8,
     most_noise: 8.0,
 };
-/// The table in shadow, clear of the toy: a shadow is a smooth factor. Chosen on one shot, where half and twice as much noise are
-/// within a fiftieth.
+/// The table in shadow, away from the toy: a shadow is a smooth factor. Chosen on one shot, on
+/// which half and twice as much noise are within a fiftieth.
 const SHADOW: Detail = Detail {
     clear_px: 3,
     level_px: 1,
     most_noise: 2.0,
 };
 
-/// The picture whose table is shown throughout, so that neither grain nor texture changes from frame to frame.
+/// The picture whose table is shown throughout, so that neither grain nor texture changes from
+/// frame to frame.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// A plate, or without one the first key.
+    /// A plate, or without plates the first key.
     pub picture: LightPicture,
-    /// Where it shows something else than the table.
+    /// Pixels that show something else than the table.
     pub touched: Option<Vec<bool>>,
 }
 
-/// The grain of the photographs, which a mean of two has less of.
+/// The grain of the photographs, of which a mean of two has less.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameGrain {
-    /// As it was measured.
+    /// The measured grain.
     pub grain: Grain,
-    /// The frame, whose noise is its own.
+    /// The frame; its noise differs from others'.
     pub frame: u32,
 }
 
-/// What a picture is made of.
+/// The input of a blend.
 pub struct Mix<'a> {
-    /// The moment, as it is made from the key before it and from that after it.
+    /// The pictures of the moment, made from the key before it and from the key after it.
     pub pictures: [&'a LightPicture; 2],
-    /// The part of the way, from 0 to 1.
+    /// The share of the way, from 0 to 1.
     pub share: f32,
-    /// How well each pixel of the toy was seen in both photographs; none where it does not show the toy.
+    /// Visibility of each pixel of the toy in both photographs; `None` for pixels beside the toy.
     pub seen: [&'a [Option<f32>]; 2],
     /// Pixels of the toy.
     pub covered: &'a [bool],
     /// Pixels of the toy and its shadows.
     pub touched: &'a [bool],
-    /// None where the photographs have hardly any.
+    /// `None` if the photographs have hardly any.
     pub grain: Option<FrameGrain>,
 }
 
@@ -95,8 +97,9 @@ impl Mix<'_> {
         }
     }
 
-    /// The blend with the noise that it lacks on toy and shadows: means of two photographs with independent noise have
-    /// `w^2 + (1 - w)^2` of its variance. The table beside them shows one photograph, or none that needs it.
+    /// Adds the missing noise on toy and shadows: means of two photographs with independent noise
+    /// have `w^2 + (1 - w)^2` of its variance. The table beside them shows one photograph and needs
+    /// none.
     fn with_grain(&self, blend: LightPicture, of_frame: &FrameGrain, weights: &[f32]) -> LightPicture {
         let FrameGrain { grain, frame } = *of_frame;
         let [beside, channels] = [grain.beside, grain.channels].map(f64::from);
@@ -124,7 +127,8 @@ impl Mix<'_> {
         }
     }
 
-    /// The blend with the reference's detail on the table, in the light, and in shadow where the pictures are clean.
+    /// The blend with the reference's detail on the table, in the light, and in shadow if the
+    /// pictures are clean.
     fn with_table(&self, blend: LightPicture, reference: &Reference) -> LightPicture {
         let own = reference.touched.as_deref();
         let with_own = |covered: &[bool]| -> Vec<bool> {
@@ -137,13 +141,13 @@ impl Mix<'_> {
         let blend = if self.grain.is_none() {
             SHADOW.shown(blend, table, &with_own(self.covered), |pixel| self.touched[pixel])
         } else {
-            // The plate's grain, as dark as a shadow, is less than that of a photograph there.
+            // The plate's grain, darkened as by a shadow, is weaker than a photograph's there.
             blend
         };
         TABLE.shown(blend, table, &with_own(self.touched), |_| true)
     }
 
-    /// Of the key after it, pixel by pixel: by time, and on the toy by what each has seen.
+    /// Weights of the key after the moment, pixel by pixel: by time, and on the toy by visibility.
     fn weights(&self) -> Vec<f32> {
         let width_px = self.pictures[0].width_px;
         let [left, right] = self.seen;
@@ -151,7 +155,7 @@ impl Mix<'_> {
             (Some(left), Some(right)) => [seen_weight(*left), seen_weight(*right), 1.0],
             _ => [0.0; 3],
         });
-        // A pixel at the outline goes by its neighbours.
+        // A pixel at the outline takes the value of its neighbours.
         let seen = smoothed(seen.collect(), width_px, SAME_PX);
         let weight = |[left, right, covered]: [f32; 3]| {
             let [left, right] = [(1.0 - self.share) * left, self.share * right];
@@ -165,7 +169,7 @@ impl Mix<'_> {
         seen.into_iter().map(weight).collect()
     }
 
-    /// Part of the toy's pixels that neither key has seen; none where no pixel shows the toy.
+    /// Share of the toy's pixels that neither key shows; `None` if no pixel shows the toy.
     #[must_use]
     pub fn unseen(&self) -> Option<f64> {
         let [left, right] = self.seen;
@@ -185,8 +189,8 @@ fn mixed(a: &[f32; 3], b: &[f32; 3], weight: f32) -> [f32; 3] {
 }
 
 impl Detail {
-    /// The blend with the reference's detail at the blend's level, wherever it is clear of what is `covered`. Usual differences are those
-    /// at pixels that are `usual`.
+    /// The blend with the reference's detail at the blend's level, wherever it is clear of
+    /// `covered` pixels. The usual difference is taken from the `usual` pixels.
     fn shown(
         self,
         blend: LightPicture,
@@ -209,7 +213,7 @@ impl Detail {
         LightPicture { rgb, ..blend }
     }
 
-    /// 1 well clear of what is covered, and 0 there.
+    /// 1 far from covered pixels, and 0 on them.
     fn clear(self, covered: &[bool], width_px: usize) -> Vec<[f32; 1]> {
         let near = |is_near: bool| [if is_near { 1.0 } else { 0.0 }];
         let covered = covered.iter().map(|is_covered| near(*is_covered));
@@ -221,7 +225,7 @@ impl Detail {
             .collect()
     }
 
-    /// Light of the blend over that of the reference, over a neighbourhood of what is clear.
+    /// Light of the blend over that of the reference, over a neighbourhood of clear pixels.
     fn level(self, blend: &LightPicture, reference: &LightPicture, clear: &[[f32; 1]]) -> Vec<[f32; 3]> {
         let weighted = |picture: &LightPicture| {
             let pixels = picture.rgb.iter().zip(clear);
@@ -231,7 +235,7 @@ impl Detail {
         let pairs = weighted(blend).into_iter().zip(weighted(reference));
         let ratio = |(blend, reference): ([f32; 3], [f32; 3])| {
             [0, 1, 2].map(|channel| {
-                // Far from all that is clear there is nothing to compare, and the blend is shown.
+                // Far from all clear pixels there is nothing to compare, and the blend is shown.
                 if reference[channel] > 1e-6 {
                     blend[channel] / reference[channel]
                 } else {
@@ -242,7 +246,7 @@ impl Detail {
         pairs.map(ratio).collect()
     }
 
-    /// 1 where two pictures differ by no more than noise, 0 where something else is seen.
+    /// 1 if two pictures differ by no more than noise, 0 if they show different things.
     fn same(self, blend: &LightPicture, detailed: &[[f32; 3]], is_usual: impl Fn(usize) -> bool) -> Vec<f32> {
         let pairs = blend.rgb.iter().zip(detailed);
         let differences = pairs.map(|(blend, detailed)| {

@@ -1,26 +1,27 @@
-//! How bright a key's photograph is, against the reference: by the table that neither toy nor shadow touches.
+//! Exposure of a key's photograph relative to the reference, from the table outside of toy and
+//! shadow.
 
 use super::blend::Reference;
 use super::keys::median;
 use super::light::{LightPicture, smoothed};
 
-/// How far from toy and shadows a pixel must be, in parts of the picture's width: the toy takes light away from all around it. The
-/// largest of these that leaves enough pixels.
+/// Distance of usable pixels from toy and shadows, as a fraction of the picture's width: the toy
+/// occludes light all around it. The largest distance that leaves enough pixels is used.
 const CLEAR_OF: [usize; 3] = [8, 16, 64];
-/// Part of the picture's pixels that is enough.
+/// The inverse of the share of pixels that is enough.
 const ENOUGH: usize = 50;
-/// Averages of this reach are compared.
+/// Reach of the compared averages.
 const REACH_PX: usize = 1;
 /// Light that is neither clipped nor mostly rounding.
 const USABLE: std::ops::RangeInclusive<f32> = 0.004..=0.93;
-/// A change of no more than this is left.
+/// Smaller changes are ignored.
 const LEAST_CHANGE: f64 = 0.004;
 
-/// Pixels of the table that are well clear of everything.
+/// Pixels of the table far from everything.
 pub(super) struct Clear(Vec<bool>);
 
 impl Clear {
-    /// Clear of what is touched in a picture and in the reference.
+    /// Pixels clear of touched ones in a picture and in the reference.
     #[must_use]
     pub(super) fn new(touched: &[bool], reference: &Reference, [width_px, height_px]: [usize; 2]) -> Self {
         let own = reference.touched.as_deref();
@@ -42,8 +43,8 @@ impl Clear {
     }
 }
 
-/// What each channel of a picture is to be multiplied by to be as bright as another; 1 where nothing can be compared, or where all differ
-/// by no more than can be told.
+/// Factors per channel that make a picture as bright as another; 1 if nothing can be compared, or
+/// if all differences are below the accuracy.
 #[must_use]
 pub(super) fn gains(picture: &LightPicture, reference: &LightPicture, clear: &Clear) -> [f64; 3] {
     let [ours, theirs] =

@@ -23,15 +23,15 @@ use super::timing::{Moment, Rate, moments};
 use crate::ease::Ease;
 use crate::sheet::Cell;
 
-/// Folder of onion skins, below the output folder; each is called as its frame.
+/// Folder of onion skins, below the output folder; each has the name of its frame.
 pub(super) const ONION_FOLDER: &str = "onion";
-/// Of the key before, the frame and the key after in an onion skin.
+/// Weights of the key before, the frame and the key after in an onion skin.
 const ONION_WEIGHTS: [f32; 3] = [0.25, 0.5, 0.25];
 
-/// Noise of frames is numbered from here, far from the pictures' own that the core makes.
+/// First noise number of frames, far from those of the core's own pictures.
 const OWN_NOISE: u32 = 1 << 31;
 
-/// How pictures are called: a text before and after a number of at least four digits.
+/// File names: a text before and after a number of at least four digits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PictureNames {
     /// Before the number.
@@ -48,34 +48,35 @@ impl PictureNames {
     }
 }
 
-/// What is to be made.
+/// The options of a film.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Folder for pictures and lists; made if it is missing. What an earlier run wrote into it is removed.
+    /// Folder for pictures and lists, made if it is missing. Files of an earlier run in it are
+    /// removed.
     pub out: PathBuf,
     /// How much work a frame may cost.
     pub preset: Preset,
     /// Number of frames.
     pub rate: Rate,
-    /// How the way between two keys is gone.
+    /// Easing between two keys.
     pub ease: Ease,
-    /// For how many frames a picture stays.
+    /// Number of frames of each picture.
     pub hold: usize,
     /// Names of the pictures.
     pub names: PictureNames,
-    /// Whether keys are shown as they were photographed, camera, exposure, place and all.
+    /// Whether keys are shown as they were photographed, with their own camera, exposure and place.
     pub keeps_keys: bool,
     /// Whether onion skins are written, too: each frame between the keys beside it.
     pub has_onion: bool,
 }
 
-/// What was made.
+/// The result.
 pub struct Film {
     /// Number of frames.
     pub n_frames: usize,
-    /// What was found of the keys.
+    /// The keys and their corrections.
     pub keys: Keys,
-    /// What may be wrong with pictures that were made of them.
+    /// Possible mistakes of the pictures.
     pub warnings: Vec<String>,
 }
 
@@ -101,7 +102,7 @@ impl<'a> Ready<'a> {
         })
     }
 
-    /// What the core has learned of the key that may be wrong.
+    /// The core's warnings about the key.
     fn warnings(&self) -> Result<Vec<String>, InbetweenError> {
         let index = self.index;
         let warnings = self.core.read_fit_warnings();
@@ -112,7 +113,7 @@ impl<'a> Ready<'a> {
             .collect())
     }
 
-    /// The toy in a pose at the place where all frames show it.
+    /// The toy in a pose at its common place.
     fn picture(&mut self, pose: &Pose) -> Result<LightPicture, InbetweenError> {
         let input = self.key.input.clone().with_shown_pose(pose.clone());
         let input = input.with_world_from_shown(Some(self.world_from_shown));
@@ -125,10 +126,11 @@ impl<'a> Ready<'a> {
     }
 }
 
-/// Makes the film of a shot on the device of `core`. Tells `progress` the step that begins, and how many there are.
+/// Makes the film of a shot on the device of `core`. Reports each step and their number to
+/// `progress`.
 ///
 /// # Errors
-/// When a key cannot be used, or a file cannot be written; pictures before it stay.
+/// When a key cannot be used, or a file cannot be written; earlier pictures stay.
 pub fn make(
     shot: &Shot,
     core: &Core,
@@ -179,9 +181,9 @@ struct Maker<'a> {
     output: &'a OutputFolder,
     /// The keys beside the latest frame.
     ready: Vec<Ready<'a>>,
-    /// The latest moment with what was made of it, for frames that hold it.
+    /// The latest moment with its picture, for frames that hold it.
     last: Option<(Moment, FrameEntry, Image)>,
-    /// What the core has warned of.
+    /// The core's warnings.
     warnings: BTreeSet<String>,
 }
 
@@ -266,11 +268,11 @@ impl Maker<'_> {
         Ok((entry, image))
     }
 
-    /// What a key makes of a pose.
+    /// The picture of a pose made from a key.
     fn picture(&mut self, key: usize, pose: &Pose) -> Result<LightPicture, InbetweenError> {
         let is_new = !self.ready.iter().any(|ready| ready.index == key);
         if is_new {
-            // Keys before the one before are not needed any more.
+            // Keys before the previous one are no longer needed.
             self.ready.retain(|ready| ready.index + 1 == key);
             let ready = Ready::new(self.keys, key, self.core, self.options.preset)?;
             self.ready.push(ready);
@@ -307,7 +309,7 @@ impl Maker<'_> {
         }
     }
 
-    /// The frame with the keys beside it shining through.
+    /// The frame overlaid with the keys beside it.
     fn write_onion(&self, entry: &FrameEntry, moment: &Moment, image: &Image) -> Result<(), WriteError> {
         let last = self.keys.keys.len() - 1;
         let key = |index: usize| LightPicture::of(self.keys.keys[index.min(last)].input.image.rgba());

@@ -1,4 +1,5 @@
-//! Keys brought together: one camera, one exposure and one light for all, and each print where it was found.
+//! Registers all keys: one camera, one exposure and one light for all, and the estimated place of
+//! each print.
 
 use std::sync::Arc;
 
@@ -16,16 +17,16 @@ use super::resample::resampled;
 use super::shot::Shot;
 use super::stage::Figure;
 
-/// A print this near to its mark stands on it.
+/// Largest distance of a print that stands on its mark.
 const MOST_OFF_MARK_M: f64 = 0.006;
 const MOST_OFF_MARK_RAD: f64 = 0.1;
-/// A camera nearer to the reference than this, at the picture's corners, is left as it is.
+/// A camera nearer to the reference than this, at the picture's corners, is not corrected.
 const LEAST_MOVED_PX: f64 = 0.02;
 
 /// A key as it would have been photographed by the reference camera, in the reference exposure.
 #[derive(Clone, Debug)]
 pub struct Key {
-    /// What the core is given for it, but for the pose and the place to show.
+    /// The core's input, without the pose and the place to show.
     pub input: FrameInput,
     /// The scene with the toy in the pose of the print.
     pub scene: Arc<Scene>,
@@ -35,24 +36,26 @@ pub struct Key {
     pub time_secs: f64,
     /// The print in the reference camera.
     pub figure: Figure,
-    /// What was found of it.
+    /// Its corrections.
     pub found: Found,
 }
 
-/// What was found of a key, and undone.
+/// The detected and corrected differences of a key.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Found {
-    /// How far the camera was from the reference: at the picture's corners in pixels, in metres, and in radians.
+    /// Difference of the camera from the reference: at the picture's corners in pixels, in metres,
+    /// and in radians.
     pub camera: Option<Off>,
-    /// How far the print is from where it is shown, in pixels of its middle, in metres, and in radians.
+    /// Difference of the print from its shown place: in pixels at its centre, in metres, and in
+    /// radians.
     pub print: Option<Off>,
-    /// What each channel is multiplied by.
+    /// Factors per channel.
     pub gains: [f64; 3],
-    /// Why the toy was not found, or what else there is to be said.
+    /// Warnings, for example if the toy was not found.
     pub warnings: Vec<String>,
 }
 
-/// How far something is from where it should be.
+/// A difference of two poses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Off {
     /// In the picture, in pixels.
@@ -67,19 +70,19 @@ pub struct Off {
 pub struct Keys {
     /// In the order of the film.
     pub keys: Vec<Key>,
-    /// The camera that the film is seen by.
+    /// The camera of the film.
     pub camera: Camera,
-    /// Where the toy is shown in all frames.
+    /// The place of the toy in all frames.
     pub world_from_shown: DMat4,
-    /// Whether that is the shot's mark, and not where the first print stands.
+    /// Whether that is the shot's mark, and not the place of the first print.
     pub is_mark: bool,
     /// The lights of all keys.
     pub lights: Arc<[Light]>,
-    /// What the table is shown by.
+    /// The picture of the table.
     pub reference: Reference,
 }
 
-/// A key whose camera, print and lights were found in its own photograph.
+/// A key whose camera, print and lights were estimated in its own photograph.
 struct Sighted {
     recorded: FrameInput,
     alignment: Alignment,
@@ -88,7 +91,7 @@ struct Sighted {
 }
 
 impl Keys {
-    /// Finds what differs from key to key. Tells `progress` about each.
+    /// Estimates the differences between keys. Reports each key to `progress`.
     ///
     /// # Errors
     /// When a photograph cannot be read or aligned.
@@ -162,7 +165,7 @@ fn aligned(aligner: &mut Aligner, input: &FrameInput, index: usize) -> Result<Al
         })
 }
 
-/// The lights as most keys have them: medians of what was found in each.
+/// The common lights: medians over the keys.
 fn common_lights(scene: &Scene, keys: &[Sighted]) -> Arc<[Light]> {
     let found = |key: &Sighted| key.alignment.lights.clone();
     let lists: Vec<Arc<[Light]>> = keys
@@ -173,14 +176,14 @@ fn common_lights(scene: &Scene, keys: &[Sighted]) -> Arc<[Light]> {
         return scene.lights.as_slice().into();
     };
     if lists.iter().any(|list| list.len() != first.len()) {
-        // The list of most lights that anyone has found.
+        // The longest list of lights among the keys.
         return lists
             .iter()
             .max_by_key(|list| list.len())
             .unwrap_or(first)
             .clone();
     }
-    // Each key sorts what it finds by strength: the same light is the one in about the same direction.
+    // Each key sorts its lights by strength: the same light is the one in the nearest direction.
     let toy = scene.world_from_object.w_axis.truncate();
     let common = |light: &Light| {
         let of_keys: Option<Vec<Light>> = lists.iter().map(|list| same_light(list, light, toy)).collect();
@@ -191,7 +194,7 @@ fn common_lights(scene: &Scene, keys: &[Sighted]) -> Arc<[Light]> {
     first.iter().map(common).collect()
 }
 
-/// Of a list, the light in the direction nearest to another's, as seen from a place.
+/// The light of a list in the direction nearest to another's, as seen from a place.
 fn same_light(list: &[Light], light: &Light, place: DVec3) -> Option<Light> {
     let wanted = light.direction_from(place)?;
     let along = |light: &Light| {
@@ -202,7 +205,7 @@ fn same_light(list: &[Light], light: &Light, place: DVec3) -> Option<Light> {
     list.iter().max_by(|a, b| along(a).total_cmp(&along(b))).copied()
 }
 
-/// None where they are of several kinds.
+/// `None` if they are of several kinds.
 fn median_light(lights: &[Light]) -> Option<Light> {
     let numbers: Option<Vec<(DVec3, f64)>> = lights
         .iter()
@@ -244,15 +247,15 @@ pub(super) fn median(mut values: Vec<f64>) -> f64 {
     middle.iter().filter_map(|at| values.get(*at)).sum::<f64>() / 2.0
 }
 
-/// A photograph in the camera of all keys.
+/// A photograph registered to the common camera.
 struct Brought {
     picture: LightPicture,
-    /// How far it was moved, at the corners; 0 where it is as it was taken.
+    /// Its shift at the corners; 0 if it was not resampled.
     moved_px: f64,
     gains: [f64; 3],
 }
 
-/// What all keys are brought to.
+/// The common reference of all keys.
 struct Stage<'a> {
     shot: &'a Shot,
     camera: Camera,
@@ -290,7 +293,8 @@ impl Stage<'_> {
         )?)
     }
 
-    /// Where a print stands that was found somewhere: shifted and turned on the table alone, if that explains it.
+    /// The place of a print from its estimated pose: shifted and turned on the table alone, if that
+    /// explains it.
     fn on_plane(&self, key: &Sighted, found: &DMat4) -> Result<DMat4, InbetweenError> {
         let scene = self.shot.scene();
         let mark = &scene.world_from_object;
@@ -302,7 +306,8 @@ impl Stage<'_> {
         Ok(standing.unwrap_or(*found))
     }
 
-    /// A photograph in the camera of all, and what its channels are to be multiplied by. `from_px` is where its camera was found.
+    /// A photograph registered to the common camera, and its factors per channel. `from_px` is the
+    /// estimate of its camera.
     fn brought(
         &self,
         own: &LightPicture,
@@ -325,7 +330,7 @@ impl Stage<'_> {
         brought
     }
 
-    /// A key's photograph in camera and exposure of all, and its print as it is found in there.
+    /// A key's photograph in the common camera and exposure, and the estimate of its print there.
     fn key(&self, index: usize, key: &Sighted, reference: &Reference) -> Result<Key, InbetweenError> {
         let scene = self.shot.scene();
         let found_camera = key.alignment.camera;
@@ -359,7 +364,7 @@ impl Stage<'_> {
                 .with_exposure(1.0);
             alignment = aligned(&mut Aligner::new(of_print.clone()), &input, index)?;
         }
-        // A foot of a posed print may well be off the table.
+        // A foot of a posed print may well be above the table.
         let is_other = |warning: &&AlignmentWarning| !matches!(warning, AlignmentWarning::OffReceiver { .. });
         let others = alignment.warnings.iter().filter(is_other);
         let warnings = others.map(ToString::to_string).collect();
@@ -427,8 +432,8 @@ fn nearest<'a>(receivers: &'a [Receiver], world_from_object: &DMat4) -> Option<&
     receivers.iter().min_by(|a, b| height(a).total_cmp(&height(b)))
 }
 
-/// Where pixels of one camera lie in the picture of another, for points of a receiver; without one, or where it is seen edge-on, for
-/// points that are far away.
+/// The map from pixels of one camera to another's, for points of a receiver; for points at infinity
+/// if there is none or if it is seen edge-on.
 fn carried(camera: &Camera, other: &Camera, receiver: Option<&Receiver>) -> DMat3 {
     let other_from_camera = other.world_from_camera.inverse() * camera.world_from_camera;
     let rotation = DMat3::from_mat4(other_from_camera);
@@ -454,7 +459,7 @@ fn pixels(k: &Intrinsics) -> DMat3 {
     )
 }
 
-/// How far a homography moves the corner that it moves farthest, in pixels.
+/// The largest shift of a corner by a homography, in pixels.
 fn corner_px(from_px: &DMat3, [width_px, height_px]: [usize; 2]) -> f64 {
     let [width, height] = [width_px as f64, height_px as f64];
     let corners = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]];
@@ -466,9 +471,9 @@ fn corner_px(from_px: &DMat3, [width_px, height_px]: [usize; 2]) -> f64 {
     moved.into_iter().fold(0.0, f64::max)
 }
 
-/// How far a pose is from another, at a point of the world.
+/// The difference of two poses, at a point of the world.
 fn off(world_from_a: &DMat4, world_from_b: &DMat4, middle_in_world: &DVec3) -> Off {
-    // What takes a point of a to where it is in b.
+    // Moves a point of a to its place in b.
     let motion = *world_from_b * world_from_a.inverse();
     let (_, rotation, _) = motion.to_scale_rotation_translation();
     let back = motion.inverse().transform_point3(*middle_in_world);

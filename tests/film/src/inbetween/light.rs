@@ -1,4 +1,4 @@
-//! Pictures in linear light, and the sums over squares that level and detail are told apart by.
+//! Pictures in linear light, and the box sums that separate level and detail.
 
 use app_core::scene::Image;
 use app_scene::geometry::color::{code_of_linear, linear_of_codes};
@@ -10,7 +10,7 @@ pub struct LightPicture {
     pub width_px: usize,
     /// Rows.
     pub height_px: usize,
-    /// Red, green and blue of each pixel, from 0 to 1 where nothing was computed with it.
+    /// Red, green and blue of each pixel, from 0 to 1 in a decoded picture.
     pub rgb: Vec<[f32; 3]>,
 }
 
@@ -29,7 +29,7 @@ impl LightPicture {
         }
     }
 
-    /// Encodes it as sRGB codes, alpha 255. What is no number is black.
+    /// Encodes it as sRGB codes, alpha 255. NaN becomes black.
     #[must_use]
     pub fn encoded(&self) -> Image {
         let mut rgba8 = Vec::with_capacity(4 * self.rgb.len());
@@ -46,8 +46,9 @@ impl LightPicture {
     }
 }
 
-/// Values of each pixel, averaged over squares of `2 * reach_px + 1` three times, which is close to a Gaussian whose deviation is
-/// `reach_px + 0.5`. Beyond the border there is nothing, which counts as 0: divide by the same of a picture of ones.
+/// Values of each pixel, averaged over squares of `2 * reach_px + 1` three times, which is close to
+/// a Gaussian with a standard deviation of `reach_px + 0.5`. Values outside of the picture count as
+/// 0: divide by the same average of a picture of ones.
 #[must_use]
 pub fn smoothed<const N: usize>(
     mut values: Vec<[f32; N]>,

@@ -1,7 +1,8 @@
 //! In-between frames of key poses that were printed and photographed one by one.
 //!
-//! All keys are brought to one camera, one exposure, one light and one place of the toy. Each frame between two of them is made from
-//! the photograph of either by the core, and the two pictures are blended in linear light.
+//! All keys are registered to one camera, one exposure, one light and one place of the toy. For
+//! each frame between two keys, the core makes a picture from either photograph, and the two are
+//! blended in linear light.
 
 pub mod blend;
 mod exposure;
@@ -32,7 +33,7 @@ pub use keys::{Found, Key, Keys, Off};
 pub use report::{CONTACT_FILE, REPORT_FILE, SHEET_FILE};
 pub use words::findings;
 
-/// In-between frames that cannot be made.
+/// The reason why in-between frames cannot be made.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum InbetweenError {
@@ -40,39 +41,39 @@ pub enum InbetweenError {
     #[error(transparent)]
     Shot(#[from] shot::ShotError),
     /// A shot without keys.
-    #[error("the shot has no key")]
+    #[error("the shot has no key; in-between frames need two or more")]
     NoKey,
     /// A key cannot be aligned.
     #[error("aligning key {index}: {reason}")]
     Align {
         /// The key, from 0.
         index: usize,
-        /// What is wrong with it.
+        /// The reason.
         reason: Box<AlignError>,
     },
     /// The toy cannot be posed.
     #[error(transparent)]
     Toy(#[from] ToyError),
-    /// The core cannot take a key, or make a frame of it.
+    /// The core refuses a key, or cannot make a frame from it.
     #[error("key {index}: {reason}")]
     Core {
         /// The key, from 0.
         index: usize,
-        /// What the core said.
+        /// The core's error.
         reason: CoreError,
     },
-    /// Too many frames.
+    /// The film would have too many frames.
     #[error(transparent)]
     Timing(#[from] timing::TooMany),
-    /// A folder that is not to be written into.
+    /// The output folder cannot be used.
     #[error("{}: {reason}", folder.display())]
     Out {
         /// The folder.
         folder: PathBuf,
-        /// Why not.
+        /// The reason.
         reason: &'static str,
     },
-    /// A file that cannot be written.
+    /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
 }

@@ -1,4 +1,4 @@
-//! Poses of prints that no clip holds: node by node, by their names.
+//! Poses of prints that are in no clip: node by node, by their names.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -8,10 +8,10 @@ use app_core::toy::{NodePose, Toy, ToyError, Trs};
 use glam::{DQuat, DVec3};
 use serde::Deserialize;
 
-/// Transforms of nodes by name; what is not named stays as authored.
+/// Transforms of nodes by name; other nodes stay as authored.
 pub(super) type NodeRecords = BTreeMap<String, NodeRecord>;
 
-/// From a node to its parent; what is missing stays as authored.
+/// Transform from a node to its parent; missing parts stay as authored.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct NodeRecord {
@@ -21,7 +21,7 @@ pub(super) struct NodeRecord {
     scale: Option<[f64; 3]>,
 }
 
-/// The pose that these nodes make.
+/// The pose with these nodes.
 ///
 /// # Errors
 /// When the toy has no node of a name.
@@ -45,7 +45,7 @@ pub(super) fn pose(toy: &Toy, records: &NodeRecords) -> Result<Pose, ToyError> {
         parent_from_node: nodes,
         ..NodePose::default()
     }));
-    // What cannot be posed is refused here, where the key is known.
+    // An impossible pose is refused here, where the key is known.
     toy.bounds_of_pose(&pose)?;
     Ok(pose)
 }

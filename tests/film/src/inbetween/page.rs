@@ -1,4 +1,4 @@
-//! The page that a film is looked at with: each frame beside its keys, and which part each of them has.
+//! The page of a film: each frame beside its keys, with the weight of each.
 
 use app_core::scene::Image;
 use desk::false_color::Shown;
@@ -11,7 +11,8 @@ use super::film::ONION_FOLDER;
 use super::keys::Keys;
 use super::report::{FrameEntry, Report};
 
-/// Folder of the keys' photographs, each as the first plate's camera would have taken it, below the output folder.
+/// Folder of the keys' photographs, registered to the first plate's camera, below the output
+/// folder.
 const KEYS_FOLDER: &str = "keys";
 
 const KEY_BEFORE: Shown = Shown {
@@ -36,7 +37,7 @@ const ONION: Shown = Shown {
     swatches: &[],
 };
 
-/// Writes the page, and the photographs of the keys that it shows. The frames' own pictures are there.
+/// Writes the page and the photographs of the keys. The frames' own pictures exist already.
 pub(super) fn write_page(
     output: &OutputFolder,
     report: &Report,
@@ -94,7 +95,7 @@ fn film_frame(entry: &FrameEntry, has_onion: bool) -> FilmFrame {
     }
 }
 
-/// What a frame is made of, a line each.
+/// The sources of a frame, one line each.
 fn words(entry: &FrameEntry) -> Vec<String> {
     let mut words = vec![entry.pose.clone()];
     if entry.is_key {
@@ -104,7 +105,7 @@ fn words(entry: &FrameEntry) -> Vec<String> {
         words.extend(parts.map(|(key, weight)| format!("key {key}: {:.0} %", 100.0 * weight)));
     }
     if let Some(unseen) = entry.unseen.filter(|unseen| *unseen > 0.0) {
-        words.push(format!("neither has seen {:.1} % of the toy", 100.0 * unseen));
+        words.push(format!("neither key shows {:.1} % of the toy", 100.0 * unseen));
     }
     words
 }

@@ -1,16 +1,17 @@
 //! A print that was put back on its mark: it stands on the same plane, shifted and turned there.
 //!
-//! An outline tells a toy's height and lean ten times worse than its place in the picture. Prints on one table have them in common, so
-//! that only two shifts and a turn about the plane's normal are taken from the picture.
+//! An outline constrains a toy's height and lean ten times worse than its place in the picture.
+//! Prints on one table share height and lean, so that only two shifts and a turn about the plane's
+//! normal are estimated from the picture.
 
 use app_core::scene::{Camera, Receiver};
 use glam::{DMat3, DMat4, DQuat, DVec2, DVec3};
 
-/// Rounds of Gauss-Newton; it ends within three.
+/// Rounds of Gauss-Newton; it converges within three.
 const N_ROUNDS: usize = 8;
-/// A print that is found this much off in the picture does not stand as the mark says: root mean square in pixels.
+/// Residual of a print that does not stand on the mark's plane: root mean square in pixels.
 const MOST_OFF_PX: f64 = 0.4;
-/// At most so many vertices are looked at.
+/// Largest number of vertices used.
 const MOST_POINTS: usize = 2000;
 
 /// A motion in a plane.
@@ -20,8 +21,9 @@ struct Shift {
     numbers: DVec3,
 }
 
-/// Where a print stands that was found at `found`, shifted and turned on a plane from `mark` alone; none where that is not how it is seen.
-/// `points` are those of the print on the mark, in world.
+/// The pose of a print that was found at `found`, shifted and turned on a plane from `mark` alone;
+/// `None` if such a pose does not explain the picture. `points` are those of the print on the mark,
+/// in world.
 pub(super) fn on_plane(
     [mark, found]: [&DMat4; 2],
     points: &[DVec3],
@@ -69,7 +71,7 @@ impl Fit<'_> {
             .pixel_of(self.camera_from_world.transform_point3(point))
     }
 
-    /// Of points in world.
+    /// The motion of points in world.
     fn motion(&self, shift: Shift) -> DMat4 {
         let [x, z, turn_rad] = shift.numbers.to_array();
         let turn = DQuat::from_axis_angle(self.plane.y_axis, turn_rad);
@@ -77,9 +79,9 @@ impl Fit<'_> {
         DMat4::from_translation(place) * DMat4::from_quat(turn) * DMat4::from_translation(-self.middle)
     }
 
-    /// What a shift is to be changed by.
+    /// The Gauss-Newton step of a shift.
     fn step(&self, pairs: &[(DVec3, DVec2)], shift: Shift) -> Option<DVec3> {
-        /// In metres, and for the turn in radians.
+        /// Step of difference quotients, in metres, and for the turn in radians.
         const SMALL: f64 = 1e-6;
         let at = |numbers: DVec3, point: DVec3| {
             self.seen_at(self.motion(Shift { numbers }).transform_point3(point))

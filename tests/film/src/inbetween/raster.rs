@@ -1,8 +1,8 @@
-//! Meshes drawn on the processor: which triangle a pixel shows, and which pixels a flat shape covers.
+//! Rasterises meshes on the processor: the triangle of each pixel, and the pixels of a flat shape.
 
 use glam::{DVec2, DVec3};
 
-/// What a pixel shows of a mesh.
+/// The surface point of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
     /// Index of the triangle.
@@ -21,8 +21,8 @@ pub struct Sights {
 }
 
 impl Sights {
-    /// Draws triangles of `corners`: u, v in pixels and the depth in metres, which is not above 0 behind the camera. Triangles with such a
-    /// corner are left out.
+    /// Draws triangles of `corners`: u, v in pixels and the depth in metres, which is not above 0
+    /// behind the camera. Triangles with such a corner are skipped.
     #[must_use]
     pub fn draw(corners: &[DVec3], triangles: &[[u32; 3]], [width_px, height_px]: [usize; 2]) -> Self {
         let mut sights = vec![None; width_px * height_px];
@@ -56,13 +56,14 @@ impl Sights {
         Self { width_px, sights }
     }
 
-    /// Of a pixel by its index, rows from the top.
+    /// The surface point of a pixel by its index, rows from the top.
     #[must_use]
     pub fn at(&self, pixel: usize) -> Option<Sight> {
         self.sights.get(pixel).copied().flatten()
     }
 
-    /// The largest depth in a square of three pixels around a place; none outside the picture or where one shows no mesh.
+    /// The largest depth in a square of three pixels around a place; `None` outside the picture or
+    /// if one of them shows no mesh.
     #[must_use]
     pub fn farthest_m(&self, at_px: DVec2) -> Option<f32> {
         let n_rows = self.sights.len().checked_div(self.width_px)?;
@@ -79,7 +80,8 @@ impl Sights {
     }
 }
 
-/// Marks the pixels whose centre a triangle covers, and those that its outline passes, so that thin ones are not lost.
+/// Marks the pixels whose centre a triangle covers, and those on its outline, so that thin
+/// triangles are not lost.
 pub fn mark(mask: &mut [bool], size_px: [usize; 2], corners: [DVec2; 3]) {
     cover(corners, size_px, |pixel, _| mask[pixel] = true);
     for corner in corners {
@@ -107,7 +109,8 @@ fn index(at: f64, n: usize) -> Option<usize> {
     index
 }
 
-/// Calls with the index of each pixel whose centre a triangle covers, and the weights of its corners there.
+/// Calls with the index of each pixel whose centre a triangle covers, and the weights of its
+/// corners there.
 fn cover(corners: [DVec2; 3], [width_px, height_px]: [usize; 2], mut each: impl FnMut(usize, [f64; 3])) {
     let [a, b, c] = corners;
     let area = (b - a).perp_dot(c - a);

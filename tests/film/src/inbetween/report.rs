@@ -1,4 +1,4 @@
-//! What is written beside the pictures: the exposure sheet, the report and the contact sheet.
+//! Lists beside the pictures: the exposure sheet, the report and the contact sheet.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -35,15 +35,15 @@ pub(super) struct FrameEntry {
     pub(super) pose: String,
     /// Numbers of the keys that it is made from, counted from 0.
     pub(super) keys: Vec<usize>,
-    /// One for each of them.
+    /// One weight for each of them.
     pub(super) weights: Vec<f64>,
-    /// The same: what red, green and blue of the photograph are multiplied by.
+    /// For each of them the factors of red, green and blue of the photograph.
     pub(super) gains: Vec<[f64; 3]>,
-    /// Part of the toy that neither has seen.
+    /// Share of the toy that neither key shows.
     pub(super) unseen: Option<f64>,
 }
 
-/// A key, as it was found.
+/// A key and its corrections.
 #[derive(Clone, Debug, Serialize)]
 struct KeyEntry {
     time_secs: f64,
@@ -105,8 +105,8 @@ impl Report {
     }
 }
 
-/// Takes the output folder, from which what an earlier run wrote is removed. One with a shot or a session in it is refused, though a
-/// program may have written that, too.
+/// Takes the output folder, and removes the files of an earlier run. A folder with a shot or a
+/// session in it is refused, even if a program wrote that, too.
 pub(super) fn take_folder(folder: &Path, shot: &Shot) -> Result<OutputFolder, InbetweenError> {
     let refused = |reason| {
         Err(InbetweenError::Out {
@@ -126,7 +126,7 @@ pub(super) fn take_folder(folder: &Path, shot: &Shot) -> Result<OutputFolder, In
     Ok(OutputFolder::take(folder)?)
 }
 
-/// Whether a folder is another one, or lies in it. One that is not there holds nothing.
+/// Whether a folder is another one, or lies in it. A missing folder contains nothing.
 fn is_within(inner: &Path, outer: &Path) -> bool {
     let real = |path: &Path| -> Option<PathBuf> { fs::canonicalize(path).ok() };
     real(inner)
@@ -148,7 +148,7 @@ pub(super) fn write_report(output: &OutputFolder, report: &Report, cells: &[Cell
     output.write(REPORT_FILE, &json)
 }
 
-/// A line for each frame. Numbers of keys are counted from 0; what there is not is empty.
+/// One line per frame. Numbers of keys are counted from 0; missing values are empty.
 fn exposure_sheet(report: &Report) -> String {
     let mut text =
         "frame,picture,source,time_s,pose,left_key,right_key,left_weight,right_weight,unseen_share,\
@@ -170,7 +170,7 @@ fn exposure_sheet(report: &Report) -> String {
         let unseen = frame
             .unseen
             .map_or(String::new(), |unseen| format!("{unseen:.4}"));
-        // A text cannot fail to grow.
+        // Writing to a text cannot fail.
         let _ = writeln!(
             text,
             "{},{},{source},{:.4},{},{},{},{unseen},{},{},{}",

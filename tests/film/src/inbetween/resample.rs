@@ -1,22 +1,22 @@
-//! A photograph as another camera beside the first would have taken it: sampled once, with hardly any loss of detail.
+//! Resamples a photograph to a camera beside its own: once, with hardly any loss of detail.
 //!
-//! The kernel is the cardinal spline of degree 5: the picture is the spline through its own pixels, so that what is not moved stays,
-//! and up to four fifths of the highest frequency next to nothing is lost. Source: Unser, Aldroubi and Eden, "B-spline signal
-//! processing", 1993.
+//! The kernel is the cardinal spline of degree 5: the spline interpolates the picture's pixels, so
+//! that an unmoved picture stays the same, and up to four fifths of the highest frequency hardly
+//! anything is lost. Source: Unser, Aldroubi and Eden, "B-spline signal processing", 1993.
 
 use glam::{DMat3, DVec2};
 
 use super::light::LightPicture;
 
-/// The poles of the filter that makes coefficients of pixels, for degree 5.
+/// The poles of the filter from pixels to coefficients, for degree 5.
 const POLES: [f64; 2] = [-0.430_575_347_099_973_8, -0.043_096_288_203_264_65];
 /// The product of (1 - pole) (1 - 1 / pole) over the poles.
 const GAIN: f64 = 120.0;
-/// Pixels that are summed for one, along each axis.
+/// Number of coefficients per sample, along each axis.
 const N_TAPS: usize = 6;
 
-/// The picture whose pixel at (u, v) is that of `picture` at `from_px`, a homography, of (u, v). Places beyond the border are
-/// mirrored in it.
+/// The picture whose pixel (u, v) is the pixel of `picture` at `from_px`, a homography, of (u, v).
+/// Places outside of the picture are mirrored.
 #[must_use]
 pub fn resampled(picture: &LightPicture, from_px: &DMat3) -> LightPicture {
     let coefficients = coefficients(picture);
@@ -45,7 +45,7 @@ fn weights(t: f64) -> [f64; N_TAPS] {
     [2.0, 1.0, 0.0, -1.0, -2.0, -3.0].map(|tap: f64| spline(t + tap))
 }
 
-/// An index mirrored in the first and the last pixel.
+/// An index mirrored at the first and the last pixel.
 fn mirrored(at: i64, n: usize) -> usize {
     let last = i64::try_from(n.saturating_sub(1)).unwrap_or(0);
     if last == 0 {
@@ -55,10 +55,10 @@ fn mirrored(at: i64, n: usize) -> usize {
     usize::try_from(at.min(2 * last - at)).unwrap_or(0)
 }
 
-/// The spline at a place, where (0, 0) is the centre of the first pixel. Not below 0 light.
+/// The spline at a place; (0, 0) is the centre of the first pixel. Not below 0 light.
 fn sampled(picture: &LightPicture, coefficients: &[[f64; 3]], at: DVec2) -> [f32; 3] {
     let (width, height) = (picture.width_px, picture.height_px);
-    // A place far outside, or none, is that of the border.
+    // A place far outside, or NaN, becomes the border's.
     let at = at
         .max(DVec2::splat(-8.0))
         .min(DVec2::new(width as f64, height as f64) + 8.0);
@@ -84,7 +84,7 @@ fn sampled(picture: &LightPicture, coefficients: &[[f64; 3]], at: DVec2) -> [f32
     light
 }
 
-/// What the spline's kernels are to be multiplied by to go through the pixels.
+/// The coefficients of the spline that interpolates the pixels.
 fn coefficients(picture: &LightPicture) -> Vec<[f64; 3]> {
     let (width, height) = (picture.width_px, picture.height_px);
     let mut values: Vec<[f64; 3]> = picture.rgb.iter().map(|pixel| pixel.map(f64::from)).collect();
@@ -114,9 +114,9 @@ fn filter(values: &mut [[f64; 3]], (first, step, n): (usize, usize, usize)) {
     }
 }
 
-/// One pole's part, forth and back, of two values or more.
+/// One pole's causal and anticausal filter, of two values or more.
 fn filter_line(line: &mut [f64], pole: f64) {
-    // The sum over all that is mirrored; a power beyond these is below rounding.
+    // The sum over all mirrored values; higher powers are below rounding.
     let mut power = 1.0;
     let mut start = 0.0;
     for value in line.iter().take(64) {

@@ -24,14 +24,14 @@ use thiserror::Error;
 use super::nodes;
 use super::nodes::NodeRecords;
 
-/// What a shot's index is called in its folder.
+/// File name of a shot's index in its folder.
 pub const SHOT_FILE: &str = "shot.json";
-/// What `format` has to say.
+/// Value of `format`.
 pub const FORMAT: &str = "shadow-shot";
-/// The one version that is read.
+/// The only supported version.
 pub const VERSION: u64 = 1;
 
-/// `shot.json`, version 1. What is not described here is as in `capture.json`.
+/// `shot.json`, version 1. Other fields are as in `capture.json`.
 #[derive(Clone, Debug, Deserialize)]
 struct ShotRecord {
     /// `shadow-shot`.
@@ -60,7 +60,7 @@ struct ShotRecord {
 #[derive(Clone, Debug, Deserialize)]
 struct MarkedToyRecord {
     file: String,
-    /// Where the mark is that all prints are to stand on: about there each is looked for.
+    /// The place of the mark for all prints: each print is searched near it.
     world_from_object: [f64; 16],
     resting: Option<bool>,
 }
@@ -73,14 +73,14 @@ struct KeyRecord {
     image: String,
     /// Seconds of the film.
     time: f64,
-    /// Pose that the print was made in: a moment of a clip.
+    /// Pose of the print: a moment of a clip.
     physical_pose: Option<PoseRecord>,
-    /// The same by its nodes, where no clip holds it.
+    /// The pose by its nodes, if it is in no clip.
     nodes: Option<NodeRecords>,
     /// The camera; without it, that of the first plate.
     world_from_camera: Option<[f64; 16]>,
     intrinsics: Option<IntrinsicsRecord>,
-    /// Where the print stands; without it, on the mark.
+    /// The place of the print; without it, the mark.
     world_from_object: Option<[f64; 16]>,
 }
 
@@ -96,25 +96,25 @@ pub enum ShotError {
     Index {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The reason.
         reason: String,
     },
     /// A value, the toy or a picture cannot be used.
     #[error(transparent)]
     Session(#[from] SessionError),
-    /// Photographs that are not as a pinhole sees them.
+    /// Photographs with a lens's distortion.
     #[error(
-        "{SHOT_FILE} (lens): the film would be as a pinhole sees it, unlike the photographs; free all photographs of the lens's \
+        "{SHOT_FILE} (lens): the film would have no distortion, unlike the photographs; remove the lens's \
          distortion in the program that develops them, and leave lens out"
     )]
     Lens,
-    /// A single key has nothing between.
+    /// A film needs more than one key.
     #[error("{SHOT_FILE} (keys): {n_keys} given, but in-between frames need two or more")]
     TooFewKeys {
         /// Number of keys.
         n_keys: usize,
     },
-    /// Keys that are not in the order of the film.
+    /// Keys out of the film's order.
     #[error("{SHOT_FILE} (keys[{index}].time): {time_secs} s is not later than that of the key before")]
     TimeOrder {
         /// The key, from 0.
@@ -123,7 +123,7 @@ pub enum ShotError {
         time_secs: f64,
     },
     /// A pose that is given twice.
-    #[error("{SHOT_FILE} (keys[{index}]): has both physical_pose and nodes; one of them tells the pose")]
+    #[error("{SHOT_FILE} (keys[{index}]): has both physical_pose and nodes; remove one of them")]
     TwoPoses {
         /// The key, from 0.
         index: usize,
@@ -133,12 +133,12 @@ pub enum ShotError {
     Nodes {
         /// The key, from 0.
         index: usize,
-        /// What is wrong with it.
+        /// The reason.
         reason: ToyError,
     },
-    /// Neither a key nor a plate tells where the camera is.
+    /// Neither a key nor a plate states the camera.
     #[error(
-        "{SHOT_FILE} (keys[{index}].world_from_camera): missing, and there is no plate whose camera could stand in for it"
+        "{SHOT_FILE} (keys[{index}].world_from_camera): missing, and there is no plate whose camera could replace it"
     )]
     NoCamera {
         /// The key, from 0.
@@ -146,16 +146,16 @@ pub enum ShotError {
     },
 }
 
-/// A shot that was opened: everything is checked, and its photographs are read when they are asked for.
+/// An open shot: all its files are checked, and its photographs are read on demand.
 pub struct Shot {
     capture: Capture,
     /// The folder that it was opened in.
     folder: Option<PathBuf>,
-    /// Poses that no clip holds, by the index of their key.
+    /// Poses that are in no clip, by the index of their key.
     node_poses: BTreeMap<usize, Pose>,
 }
 
-/// A shot's files, whose index is read as that of a session.
+/// A shot's files, whose index is read like a session's.
 struct ShotFiles<F> {
     files: F,
     index: Vec<u8>,
@@ -232,7 +232,7 @@ impl Shot {
         })
     }
 
-    /// The folder that it was opened in; none if its files come from elsewhere.
+    /// The shot's folder; `None` if its files come from elsewhere.
     #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
@@ -250,13 +250,13 @@ impl Shot {
         self.capture.n_frames()
     }
 
-    /// What is to be said of the files.
+    /// Warnings about the files.
     #[must_use]
     pub fn warnings(&self) -> &[SessionWarning] {
         self.capture.warnings()
     }
 
-    /// A key: its photograph, and as the pose to be shown that of its print.
+    /// A key: its photograph, and the print's pose as the pose to show.
     ///
     /// # Errors
     /// When there is no such key, or its photograph cannot be read.
@@ -298,7 +298,7 @@ fn parsed(text: &[u8]) -> Result<ShotRecord, String> {
     json.end().map_err(|error| error.to_string())?;
     if (record.format.as_str(), record.version) != (FORMAT, VERSION) {
         return Err(format!(
-            "(format, version): {:?} {} cannot be read, only {FORMAT:?} {VERSION} can",
+            "(format, version): {:?} {} is not supported; write {FORMAT:?} {VERSION}",
             record.format, record.version
         ));
     }

@@ -1,4 +1,5 @@
-//! The toy in the reference camera: what of it a key's photograph has seen, and where it and its shadows lie.
+//! The toy in the reference camera: the parts of it that a key's photograph shows, and the places
+//! of toy and shadows.
 
 use app_core::scene::{Camera, Light, Pose, Receiver};
 use app_core::toy::{PosedMesh, Toy, ToyError};
@@ -6,21 +7,22 @@ use glam::{DMat4, DVec2, DVec3};
 
 use super::raster::{Sights, in_front, mark};
 
-/// Points of a light whose shadows are drawn: its middle and so many around its rim.
+/// Points of a light whose shadows are drawn: its centre and this number around its rim.
 const N_RIM: u32 = 8;
-/// A surface this much of the toy's size behind what is seen there is hidden.
+/// A surface is hidden if it is farther than the visible one by this fraction of the toy's size.
 const HIDDEN_DEPTH: f64 = 0.01;
-/// Weight of what a key has not seen, so that where neither has, both count by time alone.
+/// Weight of parts that a key does not show, so that parts that neither shows are weighted by time
+/// alone.
 const UNSEEN: f32 = 0.02;
-/// What is seen at less than this part of the angle is not seen well.
+/// Cosine ratio below which a surface is seen too obliquely.
 const STEEP: f64 = 0.25;
 
-/// A toy that stands somewhere in a pose, in a camera.
+/// A toy with a pose and a place, in a camera.
 #[derive(Clone, Debug)]
 pub struct Figure {
     /// Vertices in world.
     points: Vec<DVec3>,
-    /// Where they are seen: u, v in pixels, and the depth in metres.
+    /// Their places in the picture: u, v in pixels, and the depth in metres.
     corners: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     sights: Sights,
@@ -43,7 +45,7 @@ impl View {
         }
     }
 
-    /// Where a point in world is seen: u, v in pixels, and the depth in metres.
+    /// The place of a world point in the picture: u, v in pixels, and the depth in metres.
     fn seen_at(&self, point: DVec3) -> DVec3 {
         let in_camera = self.camera_from_world.transform_point3(point);
         let at_px = self.camera.intrinsics.pixel_of(in_camera).unwrap_or(DVec2::ZERO);
@@ -106,7 +108,7 @@ impl Figure {
         &self.points
     }
 
-    /// The middle of the vertices.
+    /// The mean of the vertices.
     #[must_use]
     pub fn middle(&self) -> DVec3 {
         let (least, most) = self.bounds();
@@ -127,7 +129,8 @@ impl Figure {
         }
     }
 
-    /// Vertices thrown on a receiver by a point of a light, as the camera sees them; of depth 0 where there is no shadow.
+    /// Vertices projected on a receiver from a point of a light, as the camera sees them; of depth
+    /// 0 if there is no shadow.
     fn shadow(&self, receiver: &Receiver, light: &Light, source: DVec3) -> Vec<DVec3> {
         let plane_from_world = receiver.world_from_plane.inverse();
         let cast = |point: &DVec3| {
@@ -155,7 +158,8 @@ impl Figure {
             .collect()
     }
 
-    /// How well each pixel of this figure is seen in another of the same toy, 0 to 1; none where it does not show the toy.
+    /// The visibility of each pixel of this figure in another one of the same toy, 0 to 1; `None`
+    /// for pixels beside the toy.
     #[must_use]
     pub fn seen_in(&self, other: &Self) -> Vec<Option<f32>> {
         let (least, most) = self.bounds();
@@ -178,14 +182,14 @@ impl Figure {
         if is_hidden || cosine <= 0.0 {
             return Some(0.0);
         }
-        // Seen at a steeper angle than shown, it has fewer pixels than are needed.
+        // Seen more obliquely than shown, a surface has fewer pixels than needed.
         let ratio = cosine / self.cosine(triangle).max(STEEP);
         #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
         let seen = (ratio / STEEP).clamp(0.0, 1.0) as f32;
         Some(seen)
     }
 
-    /// Between a triangle's normal and the line of sight; below 0 where its back is seen.
+    /// Cosine between a triangle's normal and the line of sight; negative for a back face.
     fn cosine(&self, triangle: [u32; 3]) -> f64 {
         let [a, b, c] = triangle.map(|corner| self.points[corner as usize]);
         let normal = (b - a).cross(c - a).normalize_or_zero();
@@ -194,13 +198,13 @@ impl Figure {
     }
 }
 
-/// Weights of what a key has seen.
+/// Weight of a visibility.
 #[must_use]
 pub(super) fn seen_weight(seen: f32) -> f32 {
     UNSEEN + (1.0 - UNSEEN) * seen
 }
 
-/// Points of a light: places, or of a directional one directions to it.
+/// Points of a light: places, or directions to a directional one.
 fn points_of(light: &Light, from: DVec3) -> Vec<DVec3> {
     let (middle, radius) = match *light {
         Light::Sphere {

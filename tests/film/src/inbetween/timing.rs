@@ -1,19 +1,19 @@
-//! Which moment of the film each frame shows.
+//! The moment of the film that each frame shows.
 
 use std::fmt;
 
 use crate::ease::Ease;
 
-/// How many frames there are.
+/// The frame rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rate {
-    /// So many between two keys, whatever their times.
+    /// Number of frames between two keys, whatever their times.
     Between(usize),
-    /// So many a second, by the times of the keys.
+    /// Frames per second, by the times of the keys.
     PerSecond(f64),
 }
 
-/// What a frame of the film shows.
+/// The content of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// The key before it, or at it.
@@ -24,10 +24,10 @@ pub struct Moment {
     pub time_secs: f64,
 }
 
-/// Frames that cannot be counted out.
+/// A film with too many frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TooMany {
-    /// The most that are made.
+    /// The limit.
     pub most: usize,
 }
 
@@ -39,9 +39,9 @@ impl fmt::Display for TooMany {
 
 impl std::error::Error for TooMany {}
 
-/// No longer film is made: more than two hours at 24 frames a second.
+/// Limit for a film's length: more than two hours at 24 frames per second.
 const MOST_FRAMES: usize = 1 << 18;
-/// A frame this close to a key, in parts of the way, shows the key.
+/// A frame this close to a key, as a fraction of the way, shows the key.
 const AT_KEY: f64 = 1e-6;
 
 /// The moments of a film whose keys are at `times_secs`, in their order. A picture stays for `hold` frames, or until the next key.
@@ -64,7 +64,7 @@ pub fn moments(times_secs: &[f64], rate: Rate, ease: Ease, hold: usize) -> Resul
             let (Some(first), Some(last)) = (times_secs.first(), times_secs.last()) else {
                 return Ok(Vec::new());
             };
-            // The last key is shown, though it lies between two frames.
+            // The last key is shown, even if it lies between two frames.
             let n_steps = ((last - first) * fps - AT_KEY).ceil().max(0.0);
             if !(0.0..MOST_FRAMES as f64).contains(&n_steps) {
                 return Err(too_many);
@@ -91,13 +91,14 @@ pub fn moments(times_secs: &[f64], rate: Rate, ease: Ease, hold: usize) -> Resul
     Ok(held(&parts, hold.max(1)).into_iter().map(moment).collect())
 }
 
-/// Each part shown for `hold` frames. A key is always shown, from its own frame on; from there the frames are counted anew.
+/// Each part shown for `hold` frames. A key is always shown, from its own frame on, and the count
+/// starts anew there.
 fn held(parts: &[(usize, f64)], hold: usize) -> Vec<(usize, f64)> {
     let last = parts.len().saturating_sub(1);
     let mut shown = Vec::<(usize, f64)>::with_capacity(parts.len());
     let mut n_held = 0;
     for (frame, part) in parts.iter().enumerate() {
-        // With frames by time a key may lie between two frames: the first one after it stands for it.
+        // With frames by time, a key may lie between two frames: the first frame after it shows it.
         let is_new_key = frame == 0 || frame == last || part.1 == 0.0 || part.0 != parts[frame - 1].0;
         match shown.last() {
             Some(before) if !is_new_key && n_held < hold => {
@@ -113,7 +114,7 @@ fn held(parts: &[(usize, f64)], hold: usize) -> Vec<(usize, f64)> {
     shown
 }
 
-/// The key before a time, and the part of the time to the next.
+/// The key before a time, and the share of the time to the next.
 fn part_at(times_secs: &[f64], time_secs: f64) -> (usize, f64) {
     let last = times_secs.len() - 1;
     let left = times_secs
@@ -121,7 +122,7 @@ fn part_at(times_secs: &[f64], time_secs: f64) -> (usize, f64) {
         .clamp(1, last.max(1))
         - 1;
     let (start, end) = (times_secs[left], times_secs[(left + 1).min(last)]);
-    // Times of a shot rise from key to key.
+    // Times of a shot increase from key to key.
     let part = if end > start {
         ((time_secs - start) / (end - start)).clamp(0.0, 1.0)
     } else {

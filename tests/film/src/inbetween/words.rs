@@ -1,11 +1,11 @@
-//! What was found of the keys and undone, in sentences.
+//! The corrections of keys, in sentences.
 
 use super::keys::{Found, Keys, Off};
 
-/// Below these nothing is said.
+/// Smaller differences are not reported.
 const LEAST_PRINT_M: f64 = 1e-4;
 const LEAST_PRINT_RAD: f64 = 0.001_75;
-/// Channels that differ by more than this, in parts of the light, are told one by one.
+/// Channels that differ by more than this, as a fraction of the light, are reported one by one.
 const ONE_COLOR: f64 = 0.005;
 
 /// A sentence for each thing that differs from key to key, with the number of the key, from 0.
@@ -45,7 +45,7 @@ fn camera(found: &Found) -> Option<String> {
         turned_rad,
     } = found.camera?;
     Some(format!(
-        "the camera moved by {moved_px:.1} px at the corners ({:.2} mm, {:.3} degrees) from the reference; undone",
+        "the camera moved by {moved_px:.1} px at the corners ({:.2} mm, {:.3} degrees) from the reference; corrected",
         1e3 * moved_m,
         turned_rad.to_degrees()
     ))
@@ -58,7 +58,7 @@ fn print(found: &Found, is_mark: bool) -> Option<String> {
     }
     let place = if is_mark { "its mark" } else { "print 0" };
     Some(format!(
-        "the print stands {:.1} mm and {:.1} degrees off {place} ({:.1} px); put back",
+        "the print stands {:.1} mm and {:.1} degrees off {place} ({:.1} px); corrected",
         1e3 * off.moved_m,
         off.turned_rad.to_degrees(),
         off.moved_px
@@ -75,12 +75,12 @@ fn exposure(found: &Found) -> Option<String> {
         let change = 100.0 / green - 100.0;
         let word = if change < 0.0 { "darker" } else { "brighter" };
         return Some(format!(
-            "the photograph is {:.1} % {word} than the reference; undone",
+            "the photograph is {:.1} % {word} than the reference; corrected",
             change.abs()
         ));
     }
     let [red, green, blue] = found.gains.map(|gain| 100.0 / gain - 100.0);
     Some(format!(
-        "the photograph's red is {red:+.1} %, its green {green:+.1} % and its blue {blue:+.1} % off the reference; undone"
+        "the photograph's red is {red:+.1} %, its green {green:+.1} % and its blue {blue:+.1} % off the reference; corrected"
     ))
 }

@@ -1,4 +1,4 @@
-//! Why photographs do not make a session.
+//! Reasons why photographs make no session.
 
 use std::path::PathBuf;
 
@@ -6,13 +6,13 @@ use thiserror::Error;
 
 use super::Side;
 
-/// Photographs that make no session.
+/// The reason why photographs make no session.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum NewError {
-    /// Nothing says how wide the lens sees.
+    /// The angle of view is unknown.
     #[error(
-        "{}: its EXIF states no focal length: say --focal-35mm MM (the main camera of most phones has 24 to 28)",
+        "{}: its EXIF states no focal length: give --focal-35mm MM (the main camera of most phones has 24 to 28)",
         path.display()
     )]
     NoFocalLength {
@@ -29,35 +29,35 @@ pub enum NewError {
         path: PathBuf,
         /// Its size.
         size_px: [u32; 2],
-        /// That of the photograph.
+        /// Size of the photograph of the toy.
         expected_px: [u32; 2],
     },
-    /// The model's unit is no metre.
+    /// The model's unit seems to be no metre.
     #[error(
-        "the model is {own:.4} units high, which are hardly metres: say the toy's --height, such as 12cm"
+        "the model is {own:.4} units high, which can hardly be metres: give the toy's --height, such as 12cm"
     )]
     NoHeight {
         /// Its height.
         own: f64,
     },
     /// The model has no height.
-    #[error("the model has no height along the axis that points up: say another --up")]
+    #[error("the model has no height along the axis that points up: give another --up")]
     Flat,
-    /// No pose meets the outline.
+    /// No pose fits the outline.
     #[error("the toy is not found: {reached}. {advice}")]
     NotFound {
-        /// How near the search came.
+        /// The best fit of the search.
         reached: String,
-        /// What may help.
+        /// Advice.
         advice: String,
     },
-    /// Several do.
+    /// Several poses fit.
     #[error(
         "the toy fits in several ways, and neither outline nor colours say in which: {}",
         advice(sides)
     )]
     Ambiguous {
-        /// What is seen of it in these, each once.
+        /// The visible sides in these poses, each once.
         sides: Vec<Side>,
     },
 }
@@ -66,6 +66,6 @@ fn advice(sides: &[Side]) -> String {
     let names: Vec<String> = sides.iter().map(Side::to_string).collect();
     match &names[..] {
         [] | [_] => "photograph it from another side".to_owned(),
-        _ => format!("say --view {}", names.join("|")),
+        _ => format!("give --view {}", names.join("|")),
     }
 }

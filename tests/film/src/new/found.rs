@@ -1,4 +1,4 @@
-//! Where toy, table, cameras and lights are, by the photographs.
+//! Estimates toy, table, cameras and lights from the photographs.
 
 use anyhow::Context;
 use app_core::alignment::{
@@ -11,18 +11,21 @@ use glam::{DMat4, DVec2, DVec3};
 
 use super::{Given, NewError, Side, Wanted, table};
 
-/// Where the table is thought to be before the toy is found: in metres before the camera, which looks down on it by that angle.
+/// Assumed distance of the table before the toy is found, in metres, and the angle at which the
+/// camera looks down on it.
 const TABLE_AWAY_M: f64 = 0.5;
 const TABLE_DOWN_RAD: f64 = 0.7;
-/// Half the sides of a table that nobody has measured, over the diagonal of the toy's box, and at least.
+/// Half the sides of a table of unknown size, over the diagonal of the toy's box, and their lower
+/// bound.
 const TABLE: f64 = 6.0;
 const LEAST_TABLE_M: f64 = 0.3;
-/// A table whose slope is known worse, in radians, is worth a warning.
+/// Uncertainty of a table's slope that is worth a warning, in radians.
 const UNSURE_RAD: f64 = 0.01;
-/// The part of a shadow that may be left unexplained without one.
+/// Unexplained share of a shadow that is worth a warning.
 const UNEXPLAINED: f64 = 0.3;
 
-/// What was found; world is the table's space: the origin under the toy's middle, +Y up, +Z towards the camera.
+/// The estimates; world is the table's space: the origin under the toy's centre, +Y up, +Z towards
+/// the camera.
 pub(super) struct Found {
     pub(super) scene: Scene,
     pub(super) input: FrameInput,
@@ -32,7 +35,7 @@ pub(super) struct Found {
     height_m: f64,
 }
 
-/// Finds all by the photographs.
+/// Estimates all from the photographs.
 pub(super) fn find(given: &Given, wanted: &Wanted) -> anyhow::Result<Found> {
     let camera = given.camera();
     let plates = given.plates.iter().map(|plate| Plate {
@@ -82,7 +85,7 @@ pub(super) fn find(given: &Given, wanted: &Wanted) -> anyhow::Result<Found> {
     Ok(found)
 }
 
-/// Lays world into the table, and looks for the lights.
+/// Transforms world to the table, and estimates the lights.
 fn aligned(
     given: &Given,
     (scene, plate_cameras): (&Scene, &[Camera]),
@@ -99,7 +102,7 @@ fn aligned(
     }
     scene.world_from_object = *world_from_camera * toy.world_from_object;
     scene.receivers = vec![table(DMat4::IDENTITY, given)];
-    // Its place against the table comes from the toy; plates were registered to it.
+    // The toy defines the camera's place relative to the table; plates were registered to it.
     scene.uncertainty.camera = PoseUncertainty {
         position_m: Some(0.0),
         rotation_rad: Some(0.0),
@@ -128,7 +131,7 @@ fn aligned(
     })
 }
 
-/// From the camera's space, in which the toy was found, to the table's.
+/// Transform from the camera's space, in which the toy was found, to the table's.
 fn world_from_camera(given: &Given, wanted: &Wanted, toy: &FoundToy, table: &DMat4) -> DMat4 {
     let up = table.y_axis.truncate().normalize_or(DVec3::Y);
     let middle = toy.world_from_object.transform_point3(given.middle());
@@ -142,12 +145,12 @@ fn world_from_camera(given: &Given, wanted: &Wanted, toy: &FoundToy, table: &DMa
     camera_from_world.inverse()
 }
 
-/// How the toy is turned to the camera: 0 if its front is seen.
+/// The turn of the toy relative to the camera: 0 if its front is visible.
 fn turn_rad(toy: &FoundToy, given: &Given) -> f64 {
     let moved = toy.world_from_object * given.upright.inverse();
     let middle = toy.world_from_object.transform_point3(given.middle());
     let up = moved.transform_vector3(DVec3::Y).normalize_or(DVec3::Y);
-    // A model that was turned upright keeps its axes but for that turn.
+    // A model that was turned upright keeps its axes except for that turn.
     let front = moved.transform_vector3(DVec3::Z);
     let to_camera = (-middle - (-middle).dot(up) * up).normalize_or(DVec3::Z);
     let right = up.cross(to_camera);
@@ -178,18 +181,19 @@ fn not_found(given: &Given, nearest_px: Option<f64>) -> NewError {
     NewError::NotFound {
         reached,
         advice: format!(
-            "{plate}Check that all is taken from one place, that the model is this toy in this pose (--pose CLIP@TIME), which of the model's axes points up (--up), that nothing hides it, and the focal length (--focal-35mm); or say from where it is seen (--view)"
+            "{plate}Check that all is taken from one place, that the model is this toy in this pose (--pose CLIP@TIME), which of the model's axes points up (--up), that nothing hides it, and the focal length (--focal-35mm); or give the visible side (--view)"
         ),
     }
 }
 
 impl Found {
-    /// Part of the shadow that the lights leave unexplained: all if there is none.
+    /// Share of the shadow that the lights leave unexplained: all of it if there is no light.
     fn unexplained(&self) -> f64 {
         self.alignment.report.unexplained.unwrap_or(1.0)
     }
 
-    /// Moves toy and cameras to the height above the table that the shadow says, and aligns the lights there.
+    /// Moves toy and cameras to the height above the table that the shadow shows, and aligns the
+    /// lights there.
     fn lower_to_table(&mut self, given: &Given) -> anyhow::Result<()> {
         let Self { scene, input, .. } = self;
         if scene.lights.is_empty() || scene.plates.is_empty() {
@@ -225,7 +229,7 @@ impl Found {
         Ok(picture)
     }
 
-    /// What was found.
+    /// The results in sentences.
     pub(super) fn facts(&self) -> Vec<String> {
         let camera = self.input.camera.world_from_camera.w_axis.truncate();
         let toy = self.input.world_from_object.w_axis.truncate();
@@ -256,15 +260,15 @@ impl Found {
         self.alignment.report.pose.as_ref()
     }
 
-    /// What may be wrong, and what is lost.
+    /// Possible mistakes, and losses.
     pub(super) fn warnings(&self, given: &Given) -> Vec<String> {
-        // The table was laid under the toy.
+        // The table was fitted under the toy.
         let is_other = |warning: &&AlignmentWarning| !matches!(warning, AlignmentWarning::OffReceiver { .. });
         let others = self.alignment.warnings.iter().filter(is_other);
         let mut warnings: Vec<String> = others.map(ToString::to_string).collect();
         if given.plates.is_empty() {
             warnings.push(
-                "there is no photograph of the place without the toy: what the toy and its shadow hide is estimated, and the lights are found less well"
+                "there is no photograph of the place without the toy: what the toy and its shadow hide is estimated, and the lights are less accurate"
                     .to_owned(),
             );
         }
@@ -282,14 +286,14 @@ impl Found {
             .filter(|part| *part > UNEXPLAINED)
         {
             warnings.push(format!(
-                "{:.0} % of the shadow stays unexplained: look at the drawing before going on",
+                "{:.0} % of the shadow stays unexplained: look at the drawing before you go on",
                 100.0 * part
             ));
         }
         warnings
     }
 
-    /// Lights that were found.
+    /// The lights with a shadow.
     pub(super) fn lights(&self) -> &[Light] {
         &self.scene.lights
     }

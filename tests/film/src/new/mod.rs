@@ -1,5 +1,5 @@
-//! A session of photographs alone: the toy is the marker. Where it is in the photograph says where the camera was, its feet where the
-//! table is, and its shadow where the lights are.
+//! A session from photographs alone: the toy is the marker. Its place in the photograph gives the
+//! camera, its feet the table, and its shadow the lights.
 
 mod error;
 mod found;
@@ -28,40 +28,41 @@ pub use view::{Side, View};
 /// File name of the drawing in the session's folder.
 pub const DRAWING: &str = "found.png";
 
-/// Heights that a toy without a stated one may have by its model, in metres.
+/// Plausible heights of a toy by its model alone, in metres.
 const LIKELY_M: [f64; 2] = [0.01, 1.0];
 
-/// Which photographs, and what is known beside them.
+/// The options: photographs and known facts.
 #[derive(Clone, Debug)]
 pub struct Wanted {
     /// Photographs of the place without the toy, and that of the toy last.
     pub photographs: Vec<PathBuf>,
     /// The model, a .glb.
     pub toy: PathBuf,
-    /// The toy's height as it stands, in metres; that of the model if nobody says it.
+    /// The toy's height as it stands, in metres; `None` for the model's.
     pub height_m: Option<f64>,
-    /// The clip and the moment in seconds of the pose that the toy was made in; as authored without one.
+    /// The clip and the moment in seconds of the print's pose; `None` for the authored pose.
     pub moment: Option<(String, f64)>,
     /// Focal length as on 35 mm film, in millimetres, in place of the photograph's own.
     pub focal_35mm: Option<f64>,
-    /// From where the toy is seen.
+    /// The visible side of the toy.
     pub view: View,
     /// The model's axis that points up, of unit length.
     pub up: DVec3,
-    /// How far the toy's lowest points are above the table, in metres.
+    /// Height of the toy's lowest points above the table, in metres.
     pub lifted_m: f64,
-    /// Photographs of further prints, in the order of the film, which make a shot of the session.
+    /// Photographs of further prints, in the order of the film, which make the session a shot as
+    /// well.
     pub keys: Vec<Key>,
     /// Seconds of the film between two keys.
     pub apart_secs: f64,
 }
 
-/// What was made.
+/// The result.
 #[derive(Clone, Debug)]
 pub struct Made {
-    /// What was found and done, as sentences.
+    /// The results in sentences.
     pub facts: Vec<String>,
-    /// What may be wrong.
+    /// Possible mistakes.
     pub warnings: Vec<String>,
     /// The toy's first clip.
     pub clip: Option<String>,
@@ -69,19 +70,19 @@ pub struct Made {
     pub is_video: bool,
 }
 
-/// What is read before anything is searched.
+/// The input, read before the search.
 struct Given {
     plates: Vec<Photograph>,
     photograph: Photograph,
-    /// The video that it is the first picture of.
+    /// The video whose first picture it is.
     video: Option<Video>,
-    /// Of further prints.
+    /// Photographs of further prints.
     keys: Vec<Photograph>,
     toy: Arc<Toy>,
     toy_bytes: Vec<u8>,
     pose: Pose,
     intrinsics: Intrinsics,
-    /// The toy in its size and upright about the origin.
+    /// Transform of the toy to its size, upright about the origin.
     upright: DMat4,
     /// The toy's height as it stands.
     height_m: f64,
@@ -90,18 +91,23 @@ struct Given {
     facts: Vec<String>,
 }
 
-/// Makes a session's folder of photographs.
+/// Makes a session's folder from photographs.
 ///
 /// # Errors
-/// When `out` is there already, a file cannot be read, or the toy is not found for sure: nothing is written then.
+/// When `out` exists already, a file cannot be read, or the result is uncertain: nothing is written
+/// then.
 pub fn new(wanted: &Wanted, out: &Path) -> anyhow::Result<Made> {
-    anyhow::ensure!(!out.exists(), "{}: is there already", out.display());
+    anyhow::ensure!(
+        !out.exists(),
+        "{}: exists already: delete it or name another folder",
+        out.display()
+    );
     let mut partial = out.file_name().context("--out: has no name")?.to_owned();
     partial.push(".partial");
     let partial = out.with_file_name(partial);
     anyhow::ensure!(
         !partial.exists(),
-        "{}: another run writes there, or was ended: remove it",
+        "{}: another run writes there, or was interrupted: remove it in that case",
         partial.display()
     );
     let given = read(wanted, &out.with_extension("video"))?;
@@ -119,7 +125,8 @@ pub fn new(wanted: &Wanted, out: &Path) -> anyhow::Result<Made> {
     })
 }
 
-/// Reads all; `folder` may be made for pictures of videos, and is gone with what is returned.
+/// Reads all input; `folder` may be made for pictures of videos, and is removed with the returned
+/// value.
 fn read(wanted: &Wanted, folder: &Path) -> anyhow::Result<Given> {
     let (last, others) = wanted
         .photographs
@@ -205,9 +212,9 @@ fn read_first(path: &Path, folder: &Path, n_most: u32) -> anyhow::Result<(Photog
     path.clone_into(&mut photograph.path);
     let n_pictures = video.pictures().len();
     photograph.notes.push(match n_most {
-        1 => "is a video: its first picture is taken".to_owned(),
+        1 => "is a video: its first picture is used".to_owned(),
         _ => format!(
-            "is a video: {n_pictures} pictures are taken, {PICTURES_PER_SEC} a second, as of a camera that stands still"
+            "is a video: {n_pictures} pictures are used, {PICTURES_PER_SEC} a second, of a camera that is assumed to stand still"
         ),
     });
     Ok((photograph, Some(video)))
@@ -273,7 +280,7 @@ impl Given {
         self.upright.transform_vector3(max - min).length()
     }
 
-    /// The middle of the toy's box, in object space.
+    /// The centre of the toy's box, in object space.
     fn middle(&self) -> DVec3 {
         0.5 * (self.corners[0] + self.corners[1])
     }

@@ -1,4 +1,5 @@
-//! A shot of key poses beside a session: further photographs of prints become its keys, and `inbetween` makes the frames between.
+//! A shot of key poses beside a session: photographs of further prints become its keys, and
+//! `inbetween` makes the frames between.
 
 use std::path::Path;
 
@@ -15,7 +16,7 @@ use crate::photograph::Photograph;
 pub struct Key {
     /// The file.
     pub path: std::path::PathBuf,
-    /// The clip and the moment in seconds of the pose that the print was made in.
+    /// The clip and the moment in seconds of the print's pose.
     pub moment: (String, f64),
 }
 
@@ -23,7 +24,8 @@ fn key_file(index: usize) -> String {
     format!("key_{index}.png")
 }
 
-/// Writes the pictures of the keys and `shot.json` into a session's folder, of whose record it takes all but frames and pose.
+/// Writes the pictures of the keys and `shot.json` into a session's folder. The shot has the
+/// session's record except for frames and pose.
 pub(super) fn write(given: &Given, record: CaptureRecord, wanted: &Wanted, out: &Path) -> anyhow::Result<()> {
     let key = |index: usize, image: &str, pose: &PoseRecord| {
         json!({

@@ -1,8 +1,9 @@
-//! The table's height, by the toy's shadow.
+//! Estimates the table's height from the toy's shadow.
 //!
-//! A model's lowest points are rarely where the real toy touches the table to a tenth of a millimetre, and that is what a hard shadow shows.
-//! A table that is lower moves all of the shadow by the same; a light that is elsewhere moves what a high part casts by more. So both are
-//! found: the loss that the best lights leave is close to a parabola of the height.
+//! A model's lowest points are rarely within a tenth of a millimetre of the real contact with the
+//! table, and a hard shadow shows such a difference. A lower table moves all of the shadow equally;
+//! a change of the light moves the shadow of a high part more. So both can be estimated: the loss
+//! with the best lights is close to a parabola of the height.
 
 use std::thread;
 
@@ -11,14 +12,14 @@ use app_core::frame::FrameInput;
 use app_core::scene::{Light, Scene};
 use glam::{DMat4, DVec3};
 
-/// Between heights that are compared, over the diagonal of the toy's box.
+/// Distance of the compared heights, over the diagonal of the toy's box.
 const STEP: f64 = 0.002;
-/// The vertex of the parabola may be that many steps away.
+/// Largest distance of the parabola's vertex, in steps.
 const MOST_STEPS: f64 = 1.5;
-/// The loss has to fall by that part.
+/// Smallest relative fall of the loss.
 const LEAST_FALL: f64 = 0.04;
 
-/// By how far the table is higher than a scene has it, in metres; none if the shadow does not say.
+/// Height of the table above the scene's, in metres; `None` if the shadow does not constrain it.
 pub(super) fn higher_m(
     scene: &Scene,
     input: &FrameInput,
@@ -47,7 +48,7 @@ pub(super) fn higher_m(
         .map(|(steps, _)| steps * step_m))
 }
 
-/// Aligns with the table elsewhere: lights start where they are listed, and the toy floats where it is.
+/// Aligns with the table at another height: lights start as listed, and the toy stays in place.
 pub(super) fn aligned_at(
     scene: &Scene,
     input: &FrameInput,
@@ -64,7 +65,8 @@ pub(super) fn aligned_at(
     Ok(Aligner::new(scene).align(input)?)
 }
 
-/// Where a parabola through values at -1, 0 and 1 is least, and by which part of the middle one it is less there; none if it is nowhere.
+/// Place of the minimum of a parabola through values at -1, 0 and 1, and its relative fall below
+/// the middle value; `None` if there is no minimum.
 fn vertex([lower, own, higher]: [f64; 3]) -> Option<(f64, f64)> {
     let curvature = lower - 2.0 * own + higher;
     let slope = 0.5 * (higher - lower);

@@ -6,11 +6,12 @@ use std::str::FromStr;
 
 use app_core::alignment::ViewDirection;
 
-/// Turns that are tried if nobody says which side is seen, and to either side of one that somebody says.
+/// Number of turns to try if the visible side is unknown, and to either side of a given one.
 const N_TURNS: u32 = 12;
 const BESIDE: i32 = 3;
 const BESIDE_RAD: f64 = PI / 12.0;
-/// Angles of the camera above the toy's horizon that are tried, in degrees: if nobody says more, and for a low and a high camera.
+/// Elevations of the camera above the toy's horizon to try, in degrees: without a given height, and
+/// for a low and a high camera.
 const ELEVATIONS_DEG: [f64; 4] = [12.0, 28.0, 44.0, 62.0];
 const LOW_DEG: [f64; 4] = [4.0, 12.0, 20.0, 28.0];
 const HIGH_DEG: [f64; 4] = [44.0, 56.0, 68.0, 80.0];
@@ -28,14 +29,15 @@ pub enum Side {
     Right,
 }
 
-/// How high the camera is.
+/// Height of the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Height {
     Low,
     High,
 }
 
-/// What somebody says of the view: `front`, `left`, `back` or `right`, `low` or `high`, or one of each with a comma between them.
+/// A statement about the view: `front`, `left`, `back` or `right`, `low` or `high`, or one of each
+/// with a comma between them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct View {
     side: Option<Side>,
@@ -54,7 +56,7 @@ impl Side {
         }
     }
 
-    /// Turn of the toy that shows it.
+    /// Turn of the toy that shows this side.
     fn turn_rad(self) -> f64 {
         match self {
             Self::Front => 0.0,
@@ -106,7 +108,7 @@ impl FromStr for View {
 }
 
 impl View {
-    /// The directions that it leaves open.
+    /// The directions that agree with it.
     #[must_use]
     pub fn directions(self) -> Vec<ViewDirection> {
         let turns: Vec<f64> = match self.side {

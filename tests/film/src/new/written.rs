@@ -1,4 +1,4 @@
-//! The session's folder.
+//! Writes the session's folder.
 
 use std::path::{Path, PathBuf};
 
@@ -25,7 +25,7 @@ fn following(given: &Given) -> &[PathBuf] {
     given.video.as_ref().map_or(&[], |video| &video.pictures()[1..])
 }
 
-/// Of a video's pictures, counted from 0.
+/// File of a video's picture, counted from 0.
 fn picture_file(index: usize) -> String {
     match index {
         0 => PHOTOGRAPH.to_owned(),
@@ -37,7 +37,8 @@ fn plate_file(index: usize) -> String {
     format!("plate_{index}.png")
 }
 
-/// Writes a folder and reads it once, so that what is written is a session; the index is written last.
+/// Writes a folder and reads it once, to make sure that it is a valid session; the index is written
+/// last.
 pub(super) fn write(given: &Given, found: &Found, wanted: &Wanted, out: &Path) -> anyhow::Result<()> {
     make_folder(out)?;
     write_whole(&out.join(TOY), &given.toy_bytes)?;

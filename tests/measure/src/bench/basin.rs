@@ -1,6 +1,7 @@
-//! From how far off alignment comes back: pose and lights of a session's first frame are disturbed by ever more, and aligned.
+//! Basin of convergence of alignment: pose and lights of a session's first frame are disturbed by
+//! growing amounts, and aligned.
 //!
-//! Errors are against what is recorded, so a session is needed that is recorded exactly.
+//! Errors are relative to the recorded values, so the session must be recorded exactly.
 
 use app_core::alignment::Aligner;
 use app_core::frame::FrameInput;
@@ -19,42 +20,43 @@ use crate::random::Random;
 use desk::alignment::middle;
 use desk::replay::ReplayError;
 
-/// The largest disturbance: of the pose in millimetres and degrees, of each light's direction in degrees.
+/// The largest disturbance: of the pose in millimetres and degrees, of each light's direction in
+/// degrees.
 const MOST: Off = Off {
     pose_mm: 30.0,
     pose_deg: 18.0,
     light_deg: Some(30.0),
 };
-/// Parts of it that rows of the table are of.
+/// Number of rows in the table, each a fraction of it.
 const N_PARTS: usize = 6;
-/// Smaller errors are drawn as large, on an axis of powers.
+/// Lower bound of drawn errors, on a logarithmic axis.
 const LEAST_DRAWN: f64 = 0.01;
 const PANEL_PX: (u32, u32) = (1680, 420);
 const FONT: (&str, i32) = ("sans-serif", 14);
 
-/// How far pose and lights are from those recorded.
+/// Errors of pose and lights relative to the recorded ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Off {
-    /// Of the toy's middle.
+    /// Distance of the toy's centre.
     pub pose_mm: f64,
-    /// Of its rotation.
+    /// Error of its rotation.
     pub pose_deg: f64,
-    /// Of the light that is farthest off, seen from the toy's middle; none where none is listed.
+    /// Angle of the worst light, seen from the toy's centre; `None` without lights.
     pub light_deg: Option<f64>,
 }
 
-/// One start, and where it led to.
+/// One start, and its result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Draw {
-    /// As given.
+    /// Error of the start.
     pub start: Off,
-    /// As aligned.
+    /// Error after alignment.
     pub end: Off,
-    /// Errors of the pose beside what is claimed of them; none where no pose was applied.
+    /// Errors of the pose with their claimed deviations; `None` if no pose was applied.
     pub pull: Option<Pull>,
 }
 
-/// Disturbs and aligns the first frame so often, each time by as much more.
+/// Disturbs and aligns the first frame that many times, each time by a larger amount.
 ///
 /// # Errors
 /// When the frame cannot be read or aligned.
@@ -84,7 +86,7 @@ pub fn basin(session: &dyn Session, seed: u64, n_draws: u16) -> Result<Vec<Draw>
     draws.collect()
 }
 
-/// The toy moved and turned about its middle, and each light about that, all in directions by chance.
+/// The toy moved and turned about its centre, and each light about that, all in random directions.
 fn disturbed(scene: &Scene, recorded: &FrameInput, part: f64, random: &mut Random) -> FrameInput {
     let place = middle(scene, &recorded.world_from_object);
     let turn = |axis: DVec3, deg: f64| DQuat::from_axis_angle(axis, (part * deg).to_radians());
@@ -129,19 +131,20 @@ fn off(scene: &Scene, recorded: &FrameInput, input: &FrameInput) -> Off {
 }
 
 impl Off {
-    /// In the order of columns and panels; no light is no number.
+    /// In the order of columns and panels; NaN without a light.
     fn numbers(&self) -> [f64; 3] {
         [self.pose_mm, self.pose_deg, self.light_deg.unwrap_or(f64::NAN)]
     }
 }
 
-/// Of a pose that was not applied.
+/// Result for a pose that was not applied.
 const NO_PULL: Pull = Pull {
     errors: [f64::NAN; 3],
     claimed: [f64::NAN; 3],
 };
 
-/// A line for each start, under a header. Without a light its fields are empty, and without a pose that was applied the last six.
+/// A line for each start, under a header. Without a light its fields are empty, and without an
+/// applied pose the last six.
 #[must_use]
 pub fn basin_csv(draws: &[Draw]) -> String {
     let cell = |number: f64| {
@@ -168,7 +171,8 @@ pub fn basin_csv(draws: &[Draw]) -> String {
     csv
 }
 
-/// The median and the worst end of starts up to so far off, and how these are to what is claimed of poses.
+/// The median and the worst result of starts up to a distance, and their ratio to the poses'
+/// claimed deviations.
 #[must_use]
 pub fn basin_table(draws: &[Draw]) -> String {
     let heads = [
@@ -199,10 +203,11 @@ pub fn basin_table(draws: &[Draw]) -> String {
     aligned(&cells) + &claims
 }
 
-/// Ends over starts, beside the line on which nothing is corrected, and errors of poses over what is claimed of them (SVG).
+/// Results over starts, with the line of no correction, and errors of poses over their claimed
+/// deviations (SVG).
 ///
 /// # Errors
-/// What the drawing says.
+/// The error of the drawing.
 pub fn basin_drawing(name: &str, draws: &[Draw]) -> Result<String, String> {
     let mut svg = String::new();
     render(name, draws, &mut svg).map_err(|error| error.to_string())?;
@@ -237,7 +242,7 @@ fn render(name: &str, draws: &[Draw], svg: &mut String) -> Result<(), Box<dyn st
     Ok(())
 }
 
-/// No number stays none.
+/// NaN stays NaN.
 fn drawn(number: f64) -> f64 {
     if number < LEAST_DRAWN { LEAST_DRAWN } else { number }
 }

@@ -1,4 +1,4 @@
-//! A preset with the visibility that rays find in place of its own.
+//! A preset with ray-traced visibility in place of its own.
 
 use std::thread;
 
@@ -29,9 +29,9 @@ use reference::visibility::exact_visibility;
 
 use super::{Options, Row};
 
-/// Positions within a pixel from which rays go to each light.
+/// Number of positions within a pixel from which rays go to each light.
 const N_POSITIONS: usize = 16;
-/// Rays from each of them.
+/// Number of rays from each of them.
 const N_RAYS: usize = 16;
 
 /// Scores a preset with exact visibility.
@@ -135,7 +135,7 @@ impl Rays {
         }
     }
 
-    /// Visibility of each light over the region with the toy in a pose at a place.
+    /// Visibility of each light over the region, with the toy in a pose at a place.
     fn visibility(
         &self,
         scene: &Scene,
@@ -161,7 +161,7 @@ impl Rays {
         let mut texels = vec![[0.0; 4]; (width * height) as usize];
         let n_threads = thread::available_parallelism().map_or(1, usize::from);
         let rows: Vec<_> = (0..height).zip(texels.chunks_exact_mut(width as usize)).collect();
-        // Rows are dealt out in turn: shadows are not spread evenly.
+        // Rows are distributed alternately, since shadows are not evenly spread.
         let mut hands: Vec<Vec<_>> = (0..n_threads).map(|_| Vec::new()).collect();
         for (index, row) in rows.into_iter().enumerate() {
             hands[index % n_threads].push(row);

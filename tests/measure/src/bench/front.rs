@@ -1,4 +1,4 @@
-//! Error against time: presets, and what the governor turns down one step after the other.
+//! Error against time: presets, and the governor's quality steps one after the other.
 
 use plotters::coord::Shift;
 use plotters::prelude::{
@@ -13,13 +13,13 @@ use super::{FRAME_KINDS, FrameKind, Row};
 
 const PANEL_PX: (u32, u32) = (1500, 520);
 const FONT: (&str, i32) = ("sans-serif", 14);
-/// Room around the points, as a part of the axes.
+/// Margin around the points, as a factor of the axes.
 const ROOM: f64 = 1.15;
 
-/// A setting by its mean over sessions.
+/// A setting, averaged over sessions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// Preset, and how many steps are turned down.
+    /// Preset, and number of quality steps off it.
     pub name: String,
     /// Time over that of the published method.
     pub time: f64,
@@ -27,7 +27,7 @@ pub struct Point {
     pub error: f64,
 }
 
-/// What the governor turns down of preset `balanced`, more with each; the rate of frames costs no error.
+/// The governor's quality steps off preset `balanced`, cumulatively; the frame rate costs no error.
 pub(super) fn turned_down() -> impl Iterator<Item = &'static [QualityStep]> {
     let n_steps = BALANCED_QUALITY_LADDER
         .iter()
@@ -44,7 +44,8 @@ pub(super) fn named(preset: Preset, steps: &[QualityStep]) -> String {
     }
 }
 
-/// Every setting that was timed and scored in all sessions, for one kind of frame, fastest first. Times are geometric means of ratios.
+/// Every setting that was timed and scored in all sessions, for one kind of frame, fastest first.
+/// Times are geometric means of ratios.
 #[must_use]
 pub fn points(rows: &[Row], kind: FrameKind) -> Vec<Point> {
     let mut names: Vec<&str> = Vec::new();
@@ -76,7 +77,7 @@ fn point(rows: &[Row], name: &str, kind: FrameKind) -> Option<Point> {
     })
 }
 
-/// Those of points, fastest first, that no faster one is as good as.
+/// The Pareto front, fastest first: points without a faster one of equal or less error.
 #[must_use]
 pub fn front(points: &[Point]) -> Vec<&Point> {
     let mut least = f64::INFINITY;
@@ -91,7 +92,7 @@ pub fn front(points: &[Point]) -> Vec<&Point> {
 /// Error over time, a panel for each kind of frame, with a line along the front (SVG).
 ///
 /// # Errors
-/// What the drawing says.
+/// The error of the drawing.
 pub fn front_drawing(rows: &[Row]) -> Result<String, String> {
     let mut svg = String::new();
     render(rows, &mut svg).map_err(|error| error.to_string())?;
@@ -114,7 +115,7 @@ fn panel_of(
     points: &[Point],
 ) -> Result<(), Box<dyn std::error::Error>> {
     let most = |of: fn(&Point) -> f64| points.iter().map(of).fold(0.1, f64::max) * ROOM;
-    // Labels lie apart where errors are alike.
+    // Labels are spread if errors are similar.
     let least_error = points
         .iter()
         .map(|point| point.error)

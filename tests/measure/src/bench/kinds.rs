@@ -11,33 +11,34 @@ use glam::DMat4;
 
 use crate::count::Counted;
 
-/// Turn of the camera about its own axis to the right that makes a new view, some five pixels, and back.
+/// Turn of the camera about its own axis that makes a new view, some five pixels to the right, and
+/// back.
 const TURN_RAD: f64 = 0.005;
-/// Frames that are timed in turn, of those of a session.
+/// Largest number of a session's frames that are timed in turn.
 pub(super) const MOST_INPUTS: usize = 4;
 
-/// The stage that is timed from outside of the core.
+/// The stage that is timed outside of the core.
 const SCREEN: &str = "screen";
 
-/// Milliseconds of passes or stages by their names.
+/// Milliseconds of passes or stages by name.
 type Named = Vec<(&'static str, f64)>;
 
-/// What is new in a frame.
+/// The kind of change in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameKind {
-    /// The shown pose alone: a paused camera.
+    /// A new shown pose alone: a paused camera.
     Pose,
-    /// The camera's picture, too: a phone on a stand.
+    /// A new camera picture as well: a phone on a stand.
     Picture,
-    /// The camera's place, too: a phone in the hand.
+    /// A new camera pose as well: a hand-held phone.
     View,
 }
 
-/// All of them, from the cheapest on.
+/// All kinds, the cheapest first.
 pub const FRAME_KINDS: [FrameKind; 3] = [FrameKind::Pose, FrameKind::Picture, FrameKind::View];
 
 impl FrameKind {
-    /// As files have it.
+    /// Name in files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -51,30 +52,30 @@ impl FrameKind {
 /// Medians over frames and repeats.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KindTimes {
-    /// Of which frames.
+    /// Kind of the frames.
     pub kind: FrameKind,
-    /// On the processor, until a frame is handed to the device.
+    /// Processor time until the device has a frame.
     pub cpu_ms: Option<f64>,
-    /// On the device; none where it cannot tell.
+    /// Device time; `None` without timestamps.
     pub gpu_ms: Option<f64>,
-    /// Each stage on the processor, in order; together that time.
+    /// Processor time of each stage, in order; their sum is that time.
     pub stages: Vec<(&'static str, f64)>,
-    /// Each pass on the device, all of its runs in a frame together, in order.
+    /// Device time of each pass, all of its runs in a frame together, in order.
     pub passes: Vec<(&'static str, f64)>,
-    /// What it must cost on any device; none where nothing was counted.
+    /// The counted costs on any device; `None` if not counted.
     pub counted: Option<Counted>,
-    /// Objects that the device was asked for in all of these frames together.
+    /// Number of objects created on the device in all of these frames together.
     pub n_made: u64,
-    /// Bytes of them.
+    /// Their size in bytes.
     pub made_bytes: u64,
-    /// Half of the distance between the quartiles of the device's time, or else the processor's.
+    /// Half of the interquartile range of the device's time, or else of the processor's.
     pub spread_ms: Option<f64>,
-    /// Time of such a frame over that of the preset `paper` on this session in this run.
+    /// Time of such a frame over the preset `paper`'s on this session in this run.
     pub ratio_to_paper: Option<f64>,
 }
 
 impl KindTimes {
-    /// On the device, or else on the processor.
+    /// Device time, or else processor time.
     pub(super) fn frame_ms(&self) -> Option<f64> {
         self.gpu_ms.or(self.cpu_ms)
     }
@@ -111,7 +112,7 @@ fn of_kind(
         .and_then(|input| core.hidden_screen(input.image.size_px()));
     for input in inputs.iter().take(MOST_INPUTS) {
         let others = [input.clone(), with_new(input, kind)];
-        // Where either is new, what was learned of the place stays.
+        // With a new picture or view, results of learning about the place stay.
         for known in &others {
             show(core, known, screen.as_ref())?;
         }
@@ -130,7 +131,7 @@ fn of_kind(
             );
         }
         let after = made(core);
-        // Each reading of times takes one buffer, which is none of the frame's.
+        // Each reading of timestamps creates one buffer, which is not the frame's.
         n_made += after.0 - before.0 - n_readings(core, 2 * n_repeats);
         made_bytes += after.1 - before.1;
     }
@@ -149,7 +150,7 @@ fn of_kind(
     })
 }
 
-/// Makes a frame and draws it on a screen of the picture's size; with times of its stages.
+/// Makes a frame and draws it on a screen of the picture's size; returns the times of its stages.
 fn show(core: &mut Core, input: &FrameInput, screen: Option<&wgpu::Texture>) -> Result<Named, CoreError> {
     let report = core.frame(input)?;
     let mut stages: Named = report
@@ -165,19 +166,19 @@ fn show(core: &mut Core, input: &FrameInput, screen: Option<&wgpu::Texture>) -> 
     Ok(stages)
 }
 
-/// Objects and bytes that the device was asked for so far.
+/// Number and bytes of objects created on the device so far.
 fn made(core: &Core) -> (u64, u64) {
     let n_made = core.n_created().iter().map(|(_, n)| n).sum();
     (n_made, core.memory().made_bytes)
 }
 
-/// Buffers that reading the times of so many frames took.
+/// Number of buffers for reading the timestamps of `n_frames` frames.
 fn n_readings(core: &Core, n_frames: usize) -> u64 {
     let has_times = core.read_pass_times().is_ok_and(|times| !times.is_empty());
     if has_times { 2 * n_frames as u64 } else { 0 }
 }
 
-/// Half of the distance between the quartiles.
+/// Half of the interquartile range.
 fn spread(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -200,7 +201,7 @@ pub fn with_new(input: &FrameInput, kind: FrameKind) -> FrameInput {
     }
 }
 
-/// The same picture, which nobody takes for the one that is there.
+/// A copy of the picture, which the core treats as a new one.
 fn copied(image: &CameraImage) -> CameraImage {
     let pixels = |image: &CameraImage| CameraImage::from(Image::clone(image.rgba()));
     let CameraImage::Planes(planes) = image else {

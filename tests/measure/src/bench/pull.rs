@@ -1,23 +1,25 @@
-//! Whether alignment knows how well it knows: errors of a pose over the deviations that are claimed for them.
+//! Calibration of alignment's uncertainty: errors of a pose over their claimed deviations.
 
 use app_core::alignment::PoseDeviation;
 use app_core::frame::FrameInput;
 use glam::DVec3;
 
-/// An error within that number of deviations is as claimed.
+/// Number of deviations within which an error counts as expected.
 const WITHIN: f64 = 2.0;
 
-/// An error of a pose, and the deviation that was claimed for it: along the view and beside it in millimetres, of the turn in degrees.
+/// An error of a pose, and its claimed deviation: along the view and lateral in millimetres, of the
+/// turn in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pull {
-    /// Not below 0.
+    /// Absolute values.
     pub errors: [f64; 3],
-    /// As reported.
+    /// Reported standard deviations.
     pub claimed: [f64; 3],
 }
 
 impl Pull {
-    /// Of the toy's middle in the recorded and in the found pose, and of its turn in degrees, as the recorded camera sees them.
+    /// Errors of the toy's centre in millimetres and of its turn in degrees, as the recorded camera
+    /// sees them.
     pub(super) fn of(
         recorded: &FrameInput,
         [there, here]: [DVec3; 2],
@@ -42,7 +44,8 @@ impl Pull {
     }
 }
 
-/// A sentence: how many errors lie within two deviations, and the median of error over deviation. None where nothing was applied.
+/// A sentence: the fraction of errors within two deviations, and the median of error over
+/// deviation. `None` if nothing was applied.
 pub(super) fn summary(pulls: &[Pull]) -> Option<String> {
     let mut ratios: Vec<f64> = pulls.iter().flat_map(Pull::ratios).collect();
     ratios.sort_by(f64::total_cmp);

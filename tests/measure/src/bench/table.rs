@@ -1,4 +1,4 @@
-//! Rows as a person reads them, and as a program does.
+//! The results as a table for people, and as CSV and JSON.
 
 use app_core::ledger::Ledger;
 use serde_json::Value;
@@ -13,8 +13,8 @@ const CSV_HEADER: &str = "session,preset,width,height,frame_kind,n_frames,gpu_ms
 ratio_to_paper,times_faster_than_paper,triangles,mebibytes_moved,copies_counted,peak_gpu_mib,objects_made,kib_made,shadow_rmse,shadow_ssim,toy_rmse,toy_ssim,edge_rmse,edge_ssim,frame_rmse,frame_ssim,\
 shadow_flicker,toy_flicker,edge_flicker,frame_flicker,taps_per_missing_texel,stage_ms,pass_ms";
 
-/// One line for each row and kind of frame, under a header. What was not measured is empty; stages and passes
-/// are `name=milliseconds`, apart by spaces.
+/// One line per row and kind of frame, under a header. Missing measurements are empty; stages and
+/// passes are `name=milliseconds`, separated by spaces.
 #[must_use]
 pub fn csv(rows: &[Row]) -> String {
     std::iter::once(CSV_HEADER.to_owned())
@@ -26,8 +26,8 @@ pub fn csv(rows: &[Row]) -> String {
         .collect()
 }
 
-/// The same as an array of objects, by the names of the columns; what was not measured is null, stages and passes
-/// are objects.
+/// The same as an array of objects, by the names of the columns; missing measurements are null,
+/// stages and passes are objects.
 #[must_use]
 pub fn json(rows: &[Row]) -> Value {
     let heads: Vec<&str> = CSV_HEADER.split(',').collect();
@@ -41,7 +41,7 @@ pub fn json(rows: &[Row]) -> Value {
     rows.iter().flat_map(of_row).collect()
 }
 
-/// What stands in a column.
+/// The value of a column.
 enum Field {
     Text(String),
     Whole(u64),
@@ -72,7 +72,7 @@ impl Field {
     }
 }
 
-/// The kinds of frame that were timed, or one that was not.
+/// The timed kinds of frame, or one placeholder.
 fn kinds(row: &Row) -> Vec<Option<&KindTimes>> {
     if row.times.is_empty() {
         return vec![None];
@@ -85,7 +85,7 @@ fn csv_line(row: &Row, kind: Option<&KindTimes>) -> String {
     fields.join(",")
 }
 
-/// In the order of the header.
+/// Values in the order of the header.
 fn fields(row: &Row, kind: Option<&KindTimes>) -> Vec<Field> {
     let of_kind = |of: fn(&KindTimes) -> Option<f64>| kind.and_then(of);
     let ratio = of_kind(|times| times.ratio_to_paper);
@@ -120,7 +120,7 @@ fn fields(row: &Row, kind: Option<&KindTimes>) -> Vec<Field> {
     fields
 }
 
-/// Triangles, mebibytes, copies and peak by the ledger, then objects and KiB that the device was asked for.
+/// Triangles, mebibytes, copies and peak by the ledger, then objects and KiB created on the device.
 fn counts(kind: Option<&KindTimes>) -> [Field; 6] {
     let counted = kind.and_then(|kind| kind.counted.as_ref());
     let ledger = counted.map(|counted| &counted.ledger);
@@ -134,7 +134,8 @@ fn counts(kind: Option<&KindTimes>) -> [Field; 6] {
     ]
 }
 
-/// The rows in columns, then their times by kind of frame, and what these are worth on this adapter.
+/// The rows in columns, then their times by kind of frame, and a note on their significance on this
+/// adapter.
 #[must_use]
 pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
     let mut text = aligned(&errors(rows));
@@ -144,7 +145,7 @@ pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
     text.push_str(&aligned(&costs(rows)));
     text.push_str("By the ledger, the same on any device, with showing the picture on a screen of its size: triangles, copies of that screen; most memory of textures and buffers.\n\n");
     text.push_str(
-        "Medians. What is new in a frame: the pose shown; the camera's picture; the camera's place, too.\n",
+        "Medians. New in a frame: the pose shown; the camera's picture as well; the camera's pose as well.\n",
     );
     for row in rows.iter().filter(|row| row.n_taps.is_some()) {
         for kind in &row.times {
@@ -157,7 +158,7 @@ pub fn table(rows: &[Row], adapter: &str, is_software: bool) -> String {
     }
     if is_software {
         text.push_str(&format!(
-            "{adapter} draws on the processor: its times say nothing about a phone.\n"
+            "{adapter} draws on the processor: its times do not apply to a phone.\n"
         ));
     }
     text
@@ -292,7 +293,7 @@ fn number(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| format!("{value:.6}"))
 }
 
-/// A field that may hold anything. Source: RFC 4180.
+/// A field with arbitrary text. Source: RFC 4180.
 fn quoted(text: &str) -> String {
     if text.contains(['"', ',', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

@@ -1,5 +1,6 @@
-//! How well a preset rebuilds the real shadow of photographs that have no truth: the shadow is withheld, the physical pose is
-//! made like any other, and the photograph itself tells the error.
+//! Accuracy of the real shadow as a preset predicts it, on photographs without a truth: the shadow
+//! is withheld, the physical pose is rendered like any other, and the photograph itself is the
+//! truth.
 
 use std::sync::Arc;
 
@@ -19,24 +20,26 @@ use desk::replay::ReplayError;
 
 use super::table::aligned;
 
-/// One photograph, made again by one preset.
+/// One photograph, rendered by one preset.
 #[derive(Clone, Debug)]
 pub struct Rebuilt {
     /// Name of the session.
     pub session: String,
     /// The preset.
     pub preset: Preset,
-    /// The first frame that has this photograph.
+    /// The first frame with this photograph.
     pub frame: usize,
     /// Error over all pixels of receivers in the real shadow.
     pub all: Errors,
-    /// Error over those that are well clear of the toy, where none of its colour bleeds into the photograph.
+    /// Error over those pixels far from the toy, where none of its colour bleeds into the
+    /// photograph.
     pub clear: Errors,
-    /// What was made, through the session's lens. Errors are those without: of the photograph as by a pinhole.
+    /// The rendered picture, with the session's distortion. Errors are measured without distortion.
     pub picture: Image,
 }
 
-/// Makes every photograph of a session again from the shadow of the first, which alone is read, also by alignment. `paper` and `flat` cannot do without.
+/// Renders every photograph of a session from the shadow of the first one, which alone is read,
+/// also by alignment. `paper` and `flat` do not support this.
 ///
 /// # Errors
 /// When a frame cannot be read or made.
@@ -123,15 +126,15 @@ struct Withheld {
 /// Differences from the photograph.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Errors {
-    /// Sum of squares over pixels and channels of what was made.
+    /// Sum of squares over pixels and channels of the rendered picture.
     made: f64,
-    /// The same, were there no shadow at all.
+    /// The same without any shadow.
     unshadowed: f64,
     n_pixels: usize,
 }
 
 impl Withheld {
-    /// Over the pixels that have such an alpha.
+    /// Errors over the pixels with such an alpha.
     fn errors(&self, picture: &Image, photograph: &Image, is_counted: impl Fn(f32) -> bool) -> Errors {
         let mut errors = Errors::default();
         for (index, marks) in self.validity.texels.iter().enumerate() {
@@ -157,7 +160,7 @@ impl Withheld {
 }
 
 impl Errors {
-    /// RMSE of what was made, in 8-bit codes, that of no shadow, and the number of pixels.
+    /// RMSE of the rendered picture, in 8-bit codes, that without shadow, and the number of pixels.
     fn cells(&self) -> [String; 3] {
         let n = 3.0 * self.n_pixels as f64;
         let rmse = |sum: f64| {
@@ -171,7 +174,7 @@ impl Errors {
     }
 }
 
-/// What was made again, in columns.
+/// The results, in columns.
 #[must_use]
 pub fn rebuilt_table(rebuilt: &[Rebuilt]) -> String {
     let heads = [

@@ -25,7 +25,7 @@ use measure::bench::{
 };
 use measure::sized::{SizePx, parse_size};
 
-/// Where the result goes that was given no place, below the top of the repository.
+/// Default folder of the result, below the top of the repository.
 const RESULTS: &str = "target/bench";
 /// File name of the result.
 const CSV_FILE: &str = "bench.csv";
@@ -43,7 +43,7 @@ struct Args {
     /// Folder for bench.csv [default: target/bench]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Presets, apart by commas [default: all]
+    /// Presets, separated by commas [default: all]
     #[arg(
         long = "preset",
         alias = "presets",
@@ -51,13 +51,14 @@ struct Args {
         value_delimiter = ','
     )]
     presets: Vec<Preset>,
-    /// How often each frame is timed
+    /// Number of timings of each frame
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
-    /// Only these frames of each session: 3 is one, A..B goes from A up to, but without, B, 3.. goes to the last, ..2 has the first two
+    /// Only these frames of each session: 3 is one frame, A..B goes from A up to but not including
+    /// B, 3.. goes to the last, ..2 has the first two
     #[arg(long, value_name = "A..B")]
     frames: Option<Frames>,
-    /// The first N, as it was written before
+    /// The first N frames; an older form of --frames
     #[arg(long, hide = true, conflicts_with = "frames", value_parser = clap::value_parser!(u16).range(1..))]
     first: Option<u16>,
     /// Time and count pictures of this size; errors are of the session's own [default: the session's]
@@ -66,28 +67,30 @@ struct Args {
     /// Time and count pictures as a phone's planes of luma and chroma rather than as pixels
     #[arg(long)]
     planes: bool,
-    /// Add rows of what the governor turns down, one step after the other, and draw error against time
+    /// Add rows with the governor's quality steps, one after the other, and draw error against time
     #[arg(long)]
     front: bool,
-    /// Add rows with visibility from rays, which takes minutes
+    /// Add rows with ray-traced visibility, which takes minutes
     #[arg(long)]
     exact: bool,
-    /// Instead, make the photographs again from the shadow of the first alone, for sessions that have no truth
+    /// Instead, render the photographs from the shadow of the first one alone, for sessions without
+    /// a truth
     #[arg(long, conflicts_with_all = ["exact", "front", "repeats", "first", "frames", "lights", "focal_length", "world_scale", "lens"])]
     withheld: bool,
-    /// Instead, disturb pose and lights of the first frame ever more, align them, and draw how far off they end
+    /// Instead, disturb pose and lights of the first frame by growing amounts, align them, and draw
+    /// the remaining errors
     #[arg(long, conflicts_with_all = ["exact", "front", "repeats", "first", "frames", "lights", "focal_length", "world_scale", "lens", "withheld", "as_given", "presets", "adapter"])]
     basin: bool,
-    /// Where the directions of these disturbances are drawn from
+    /// Seed of the directions of these disturbances
     #[arg(long, value_name = "N", default_value_t = 1, requires = "basin")]
     seed: u64,
-    /// How many of them
+    /// Number of disturbances
     #[arg(long, value_name = "N", default_value_t = 24, requires = "basin", value_parser = clap::value_parser!(u16).range(1..))]
     draws: u16,
     /// Take cameras, poses and lights as recorded, without aligning them by the pictures
     #[arg(long, conflicts_with_all = ["focal_length", "world_scale", "lens"])]
     as_given: bool,
-    /// Put the session's list of lights aside, and find them by their shadows
+    /// Ignore the session's list of lights, and estimate them from their shadows
     #[arg(long, value_enum, default_value_t, conflicts_with = "as_given")]
     lights: Lights,
     #[command(flatten)]
@@ -144,7 +147,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     print(&format!("{text}{}\n", result.display()))
 }
 
-/// Prints from how far off alignment comes back, and writes tables and drawings. Needs no device.
+/// Prints the basin of convergence of alignment, and writes tables and drawings. Needs no device.
 fn basins(folders: &[PathBuf], args: &Args, out: &Path) -> anyhow::Result<()> {
     let mut text = String::new();
     for folder in folders {
@@ -162,12 +165,12 @@ fn basins(folders: &[PathBuf], args: &Args, out: &Path) -> anyhow::Result<()> {
         text.push_str(&format!("{name}\n{}", basin_table(&draws)));
     }
     text.push_str(
-        "Median and worst of what is left, against what is recorded; starts are by sixths of the largest.\n",
+        "Median and worst remaining error, relative to the recorded values; starts are in sixths of the largest.\n",
     );
     print(&format!("{text}{}\n", out.display()))
 }
 
-/// Prints how well real shadows are rebuilt, and writes the pictures.
+/// Prints the accuracy of predicted shadows, and writes the pictures.
 fn rebuild_all(folders: &[PathBuf], core: &mut Core, args: &Args, out: &Path) -> anyhow::Result<()> {
     let mut all = Vec::new();
     for folder in folders {

@@ -1,4 +1,4 @@
-//! Prints what frames of a session must cost on any device, pass by pass. Needs no device.
+//! Prints the cost of a session's frames on any device, pass by pass. Needs no device.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -19,14 +19,14 @@ use measure::scaling::{by_area, by_lights, by_picture, by_triangles};
 use measure::sized::{SizePx, parse_size, sized_input, sized_scene};
 use measure::stability::draw;
 
-/// Say what frames of a session must cost on any device, pass by pass: triangles, vertices, bytes that a tiler moves, copies
-/// of the screen; for a new pose, a new picture and a new view.
+/// Print the cost of a session's frames on any device, pass by pass: triangles, vertices, bytes of
+/// a tiler's memory traffic, copies of the screen; for a new pose, a new picture and a new view.
 #[derive(Parser)]
 #[command(name = "ledger", bin_name = "cargo xtask ledger")]
 struct Args {
     /// Folder of the session, or a recording [default: the bundled one]
     session: Option<PathBuf>,
-    /// Presets, apart by commas
+    /// Presets, separated by commas
     #[arg(
         long = "preset",
         alias = "presets",
@@ -35,7 +35,7 @@ struct Args {
         default_value = "balanced"
     )]
     presets: Vec<Preset>,
-    /// In pictures, and on a screen, of this size [default: the session's]
+    /// Size of the pictures, and of the screen [default: the session's]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
     size: Option<SizePx>,
     /// Instead, draw how the cost of a ball grows with picture, region, lights and triangles, into this folder
@@ -83,12 +83,14 @@ fn observed(scene: &Scene, input: &FrameInput) -> anyhow::Result<(Scene, FrameIn
     Ok((observer.scene(scene), observed.with_grain(grain)))
 }
 
-/// What of that is in a picture.
+/// The things in a picture, in words.
 fn in_words(input: &FrameInput) -> String {
     let parts = [
         (input.things.is_some(), "other things"),
         (input.sharpness != Sharpness::SHARP, "softness"),
+        (input.reflection.is_some(), "the toy's reflection"),
         (input.grain.is_some(), "grain"),
+        (!input.gloss.is_none(), "gloss"),
     ];
     let parts = parts.into_iter().filter(|(is_there, _)| *is_there);
     let parts: Vec<&str> = parts.map(|(_, part)| part).collect();
@@ -109,7 +111,7 @@ fn draw_scaling(folder: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The first frame that is worked on.
+/// The first frame that is retargeted.
 fn first_moved(session: &Capture) -> anyhow::Result<Option<FrameInput>> {
     for index in 0..session.n_frames() {
         let input = FrameInput::from(&session.frame(index)?);

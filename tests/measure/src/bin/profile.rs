@@ -1,4 +1,5 @@
-//! Profiles a session, or reads a profile from elsewhere: a trace for Perfetto, and the layout of the paper's Table 1.
+//! Profiles a session, or reads an existing profile: a trace for Perfetto, and the layout of the
+//! paper's Table 1.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,11 +18,12 @@ use desk::program::{exit_code, open_session, print, repository};
 use desk::shaders::ShaderArgs;
 use measure::profiled::{parse, profile, tables};
 
-/// Where the trace goes that was given no place, below the top of the repository.
+/// Default folder of the trace, below the top of the repository.
 const RESULTS: &str = "target/profile";
 
-/// Profile a session: profile.json, which Perfetto opens, and for each kind of frame a table in the layout of the paper's Table 1.
-/// Of a profile.json, such as a phone's, the tables alone.
+/// Profile a session: profile.json, which Perfetto opens, and for each kind of frame a table in the
+/// layout of the paper's Table 1. For an existing profile.json, such as a phone's, print the tables
+/// alone.
 #[derive(Parser)]
 #[command(name = "profile", bin_name = "cargo xtask profile")]
 struct Args {

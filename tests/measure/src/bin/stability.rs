@@ -15,13 +15,13 @@ use desk::program::{exit_code, repository};
 use measure::photographer::{Shot, World, folder};
 use measure::stability::{Case, Lab, Row, Scope, cases, csv, draw, run as run_case, table};
 
-/// Where the result goes that was given no place, below the top of the repository.
+/// Default folder of the result, below the top of the repository.
 const RESULTS: &str = "target/stability";
 /// File name of the result.
 const CSV_FILE: &str = "stability.csv";
 
-/// Vary hard cases and measure what comes of it against bounds: a table, stability.csv, drawings of sweeps.
-/// The exit code is 1 when a bound is broken.
+/// Vary hard cases and compare measurements with bounds: a table, stability.csv, drawings of
+/// sweeps. The exit code is 1 if a bound is broken.
 #[derive(Parser)]
 #[command(name = "stability", bin_name = "cargo xtask stability")]
 struct Args {
@@ -34,10 +34,11 @@ struct Args {
     /// Folder for stability.csv and drawings [default: target/stability]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Plant a fault in what is measured, which each group must find
+    /// Plant a fault in the measurements, which each group must find
     #[arg(long)]
     plant: bool,
-    /// Instead, photograph the box of the truth sweep with its light at 30 degrees of azimuth, as a session to be replayed
+    /// Instead, photograph the box of the truth sweep with its light at 30 degrees of azimuth, as a
+    /// session for replay
     #[arg(long, value_name = "DIR", conflicts_with_all = ["only", "quick", "plant"])]
     photograph: Option<PathBuf>,
     /// Part of a graphics adapter's name [default: the fastest]

@@ -1,4 +1,4 @@
-//! Pictures of a world: linear light a pixel, and what a mask tells, then sRGB codes.
+//! Pictures of a world: linear light per pixel and mask data, then sRGB codes.
 
 use std::thread;
 
@@ -9,14 +9,14 @@ use super::rays::{Place, Thing};
 use super::world::Quality;
 use crate::random::Random;
 
-/// What a camera sees of a world, pixel by pixel, rows from the top.
+/// A camera's view of a world, pixel by pixel, rows from the top.
 #[derive(Clone, Debug)]
 pub struct Film {
     /// Width and height.
     pub size_px: [u32; 2],
     /// Linear radiance.
     pub light: Vec<DVec3>,
-    /// Part of the pixel that the toy covers.
+    /// Covered fraction of the pixel.
     pub toy: Vec<f64>,
     /// One minus the smallest visibility over all lights, on receivers.
     pub shadow: Vec<f64>,
@@ -29,7 +29,7 @@ struct Pixel {
     shadow: f64,
 }
 
-/// Takes a picture. Rows are shared out to as many threads as there are processors.
+/// Takes a picture. Rows are distributed over as many threads as there are processors.
 #[must_use]
 pub fn expose(place: &Place<'_>, camera: &Camera) -> Film {
     let size_px = place.world().size_px;
@@ -37,7 +37,7 @@ pub fn expose(place: &Place<'_>, camera: &Camera) -> Film {
     let mut pixels = vec![Pixel::default(); width * height];
     let n_threads = thread::available_parallelism().map_or(1, usize::from);
     thread::scope(|scope| {
-        // By turns, so that none has all rows with the toy.
+        // Alternately, so that no thread has all rows with the toy.
         let mut shares: Vec<Vec<(usize, &mut [Pixel])>> = (0..n_threads).map(|_| Vec::new()).collect();
         for (y, row) in pixels.chunks_exact_mut(width).enumerate() {
             shares[y % n_threads].push((y, row));
@@ -102,7 +102,7 @@ fn look(place: &Place<'_>, camera: &Camera, [u, v]: [f64; 2], pattern: usize) ->
 }
 
 impl Film {
-    /// The picture in sRGB codes, at a gain a channel and with Gaussian noise of that many codes.
+    /// The picture in sRGB codes, with a gain per channel and with Gaussian noise of `noise_codes`.
     #[must_use]
     pub fn develop(&self, gain: DVec3, noise_codes: f64, seed: u64) -> Image {
         let mut noise = Random::new(seed);
@@ -120,7 +120,7 @@ impl Film {
         self.image(self.light.iter().flat_map(codes).collect())
     }
 
-    /// A mask: `self` is of the moved toy, `real` of the real one.
+    /// A mask: `self` shows the moved toy, `real` the real one.
     #[must_use]
     pub fn mask(&self, real: &Self) -> Image {
         let is_toy = |covered: f64| if covered >= 0.5 { 255 } else { 0 };

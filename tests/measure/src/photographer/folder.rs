@@ -1,4 +1,4 @@
-//! A shot as a session's folder, to be replayed and looked at.
+//! Writes a shot as a session's folder, for replay.
 
 use std::path::Path;
 

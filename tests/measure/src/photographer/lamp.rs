@@ -1,4 +1,4 @@
-//! Lights, and the directions in which a point sees one.
+//! Lights, and the directions of a light as seen from a point.
 
 use app_core::scene::Light;
 use glam::{DVec2, DVec3};
@@ -6,23 +6,23 @@ use glam::{DVec2, DVec3};
 /// A light with its colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lamp {
-    /// Where it is, as a scene lists it.
+    /// The light as a scene lists it.
     pub light: Light,
-    /// Radiance of a white surface that faces it, linear: at a distance of 1 m from a sphere's centre, anywhere under a
-    /// directional light.
+    /// Radiance of a white surface that faces it, linear: at a distance of 1 m from a sphere's
+    /// centre, anywhere under a directional light.
     pub color: DVec3,
 }
 
-/// The cone of directions in which a point sees a light.
+/// The cone of directions to a light from a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cone {
-    /// Unit vector to its middle.
+    /// Unit vector to its centre.
     pub(super) axis: DVec3,
-    /// Of half its angle.
+    /// Sine of half its angle.
     pub(super) sine: f64,
-    /// Distance of the light's middle; without end for a directional one.
+    /// Distance of the light's centre; infinite for a directional one.
     pub(super) distance_m: f64,
-    /// Share of the lamp's colour that a white surface facing it has here.
+    /// Share of the lamp's colour on a white surface that faces it here.
     pub(super) strength: f64,
 }
 
@@ -52,7 +52,7 @@ impl Lamp {
                 radius_m,
             } => {
                 let to_centre = position_in_world - at;
-                // On the surface or in the bulb it fills half of what can be seen.
+                // For a point on the surface or in the bulb it fills half of the view.
                 let distance_m = to_centre.length().max(radius_m).max(f64::MIN_POSITIVE);
                 Cone {
                     axis: to_centre.normalize_or(DVec3::Y),
@@ -73,7 +73,8 @@ impl Lamp {
         }
     }
 
-    /// What its disc sends: a white surface that faces it has that times the squared sine of its half angle.
+    /// Radiance of its disc: a white surface that faces it has that times the squared sine of its
+    /// half angle.
     pub(super) fn radiance(&self) -> DVec3 {
         let sine_at_1_m = match self.light {
             Light::Sphere { radius_m, .. } => radius_m,
@@ -106,8 +107,8 @@ impl Cone {
         })
     }
 
-    /// What a direction's cosine counts: the light's radiance times the solid angle that all directions share, so that a
-    /// small light overhead gives its strength.
+    /// Weight of a direction's cosine: the light's radiance times the solid angle per direction, so
+    /// that a small light overhead gives its strength.
     pub(super) fn weight(&self) -> f64 {
         self.strength * 2.0 / (1.0 + self.cosine())
     }
@@ -123,14 +124,15 @@ impl Cone {
     }
 }
 
-/// `n` points over the unit disc, each for an equal area, turned by a part of the circle. Source: Vogel 1979.
+/// `n` points over the unit disc, each for an equal area, turned by a fraction of the circle.
+/// Source: Vogel 1979.
 pub(super) fn disc(n: u32, turn: f64) -> Vec<DVec2> {
     let golden_angle_rad = std::f64::consts::PI * (3.0 - 5f64.sqrt());
     let point = |i: u32| {
         let radius = ((f64::from(i) + 0.5) / f64::from(n)).sqrt();
         radius * DVec2::from_angle(f64::from(i) * golden_angle_rad + turn * std::f64::consts::TAU)
     };
-    // A single one stands for the middle.
+    // A single point is the centre.
     if n == 1 {
         vec![DVec2::ZERO]
     } else {

@@ -1,4 +1,5 @@
-//! Pictures of light probes by exact rays: a flat Fresnel lens of ring facets with the ghosts of its back walls, and a mirror ball.
+//! Pictures of light probes by exact rays: a flat Fresnel lens of ring facets with the ghosts of
+//! its back walls, and a mirror ball.
 
 use std::sync::Arc;
 
@@ -10,19 +11,19 @@ use super::lamp::Lamp;
 
 /// Rays through a pixel along each side.
 const N_ACROSS: usize = 8;
-/// What lies beside the probe, and what is mirrored from below: linear light at the exposure of a frame.
+/// Linear light beside the probe, and of reflections from below, at the exposure of a frame.
 const TABLE: f64 = 0.3;
 
-/// A probe, where it is, and what is not perfect about it.
+/// A probe with its pose and its imperfections.
 #[derive(Clone, Debug)]
 pub struct Mirror {
-    /// What it is.
+    /// Its shape.
     pub shape: ProbeShape,
-    /// Rigid.
+    /// Pose, rigid.
     pub world_from_probe: DMat4,
-    /// Width of a lens's facets, all of a facet as steep as its middle; 0 for a smooth lens.
+    /// Width of a lens's facets, each with the slope of its centre; 0 for a smooth lens.
     pub pitch_m: f64,
-    /// Light that the back walls of facets throw to the viewer.
+    /// Light from the back walls of facets.
     pub ghosts: Vec<Ghost>,
 }
 
@@ -31,22 +32,22 @@ pub struct Mirror {
 pub struct Ghost {
     /// Its ends on the disc, (x, z) of probe space in metres.
     pub ends_m: [DVec2; 2],
-    /// How wide it is.
+    /// Its width.
     pub width_m: f64,
     /// Linear light at the exposure of a frame.
     pub light: f64,
 }
 
-/// How a picture of a probe is taken.
+/// The exposure of a probe's picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Exposure {
-    /// Over that of a frame.
+    /// Exposure over that of a frame.
     pub ratio: f64,
-    /// Deviation of the spot that the camera's lens makes of a point, in pixels.
+    /// Standard deviation of the camera lens's blur, in pixels.
     pub blur_px: f64,
-    /// Deviation of the noise, in codes.
+    /// Standard deviation of the noise, in codes.
     pub noise_codes: f64,
-    /// What the noise starts from.
+    /// Seed of the noise.
     pub seed: u64,
 }
 
@@ -85,7 +86,7 @@ impl Mirror {
         }
     }
 
-    /// Photographs it under lamps and an even sky.
+    /// Photographs it under lamps and a uniform sky.
     #[must_use]
     pub fn photograph(
         &self,
@@ -131,7 +132,7 @@ impl Mirror {
         }
     }
 
-    /// The pixels that can show it, and some around them; all of them where it is beside the camera.
+    /// The pixels that can show it, and some around them; all of them if it is beside the camera.
     fn window(&self, camera: &Camera, size_px: [u32; 2]) -> Window {
         let size = size_px.map(|side| side as usize);
         let middle = self.world_from_probe.w_axis.truncate();
@@ -168,7 +169,7 @@ impl Mirror {
         around + of_lamps + DVec3::splat(of_ghosts)
     }
 
-    /// Where a ray of probe space meets the probe, and the normal there.
+    /// Intersection of a ray of probe space with the probe, and the normal there.
     fn meets(&self, from: DVec3, along: DVec3) -> Option<(DVec3, DVec3)> {
         match &self.shape {
             ProbeShape::FresnelLens { radius_m, slope } => {
@@ -187,7 +188,7 @@ impl Mirror {
                 Some((at, DVec3::new(outward.x, up, outward.y)))
             }
             ProbeShape::MirrorBall { radius_m } => {
-                // |from + t along| = radius, the nearer one.
+                // |from + t along| = radius, the nearer solution.
                 let (b, c) = (from.dot(along), from.length_squared() - radius_m * radius_m);
                 let root = b * b - c;
                 let at = from + along * (-b - root.max(0.0).sqrt());
@@ -207,12 +208,12 @@ fn steepness(slope: &FacetSlope, out_m: f64, radius_m: f64) -> f64 {
     match slope {
         FacetSlope::Hemisphere => (out_m / radius_m).asin(),
         FacetSlope::Focal { focal_m } => (out_m / focal_m).atan() / 2.0,
-        // What a calibration finds is not what a lens is made by.
+        // A calibration table is no construction of a lens.
         FacetSlope::Table(_) => 0.0,
     }
 }
 
-/// What a lamp's disc sends from a direction.
+/// Radiance of a lamp's disc in a direction.
 fn radiance(lamp: &Lamp, at: DVec3, to: DVec3) -> DVec3 {
     let cone = lamp.cone(at);
     if to.dot(cone.axis) > 0.0 && to.cross(cone.axis).length() < cone.sine {
@@ -235,7 +236,7 @@ impl Ghost {
     }
 }
 
-/// Pixels of fine ones: the mean over the pixel and the spot.
+/// Pixels from subpixels: the mean over pixel and blur.
 fn blurred(fine: &[DVec3], [width, height]: [usize; 2], blur_px: f64) -> Vec<DVec3> {
     let columns = width * N_ACROSS;
     let weights = spot(blur_px);
@@ -253,7 +254,7 @@ fn blurred(fine: &[DVec3], [width, height]: [usize; 2], blur_px: f64) -> Vec<DVe
         .collect()
 }
 
-/// Weights of the fine pixels of a pixel and of as many more on either side as the spot reaches.
+/// Weights of the subpixels of a pixel and of its neighbours within the blur.
 fn spot(blur_px: f64) -> Vec<f64> {
     #[allow(clippy::cast_possible_truncation, reason = "a few pixels")]
     let margin = (4.0 * blur_px).ceil() as usize * N_ACROSS;
@@ -275,7 +276,7 @@ fn spot(blur_px: f64) -> Vec<f64> {
     weights.iter().map(|weight| weight / sum).collect()
 }
 
-/// Beyond the picture's border as on it.
+/// Border pixels are repeated outside of the picture.
 fn weighted(weights: &[f64], pixel: usize, n_pixels: usize, at: impl Fn(usize) -> DVec3) -> DVec3 {
     let margin = (weights.len() - N_ACROSS) / 2;
     let last = (n_pixels * N_ACROSS).saturating_sub(1);

@@ -1,4 +1,4 @@
-//! Where a part stands, and how a clip moves it.
+//! The pose of a part, and its motion in a clip.
 
 use glam::{DMat4, DQuat, DVec3};
 
@@ -53,8 +53,9 @@ impl Stance {
     }
 }
 
-/// The stance at a moment: places are mixed linearly, turns on the shorter arc. Before the first key it is that key's,
-/// after the last one that one's; without keys it is `rest`. Source: glTF 2.0, appendix C.
+/// The stance at a moment: places are interpolated linearly, turns along the shorter arc. Before
+/// the first key it is that key's, after the last one the last's; without keys it is `rest`.
+/// Source: glTF 2.0, appendix C.
 #[must_use]
 pub(super) fn stance_at(rest: Stance, keys: &[Key], time_secs: f64) -> Stance {
     let after = keys.partition_point(|key| key.time_secs <= time_secs);

@@ -5,21 +5,21 @@ use std::f64::consts::TAU;
 use app_core::scene::Surface;
 use glam::{DVec2, DVec3};
 
-/// Part of the light that a receiver throws back, linear, at each of its points.
+/// Reflectance of a receiver, linear, at each of its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Paint {
     /// One colour.
     Even(DVec3),
-    /// A colour that comes and goes smoothly.
+    /// A smoothly varying colour.
     Waves {
         /// Its mean.
         color: DVec3,
-        /// Most that is added or taken, as a fraction.
+        /// Largest relative change.
         amount: f64,
         /// Length of a wave along both axes.
         wave_m: f64,
     },
-    /// Squares of two colours by turns.
+    /// A chessboard of two colours.
     Tiles {
         /// The colours.
         colors: [DVec3; 2],
@@ -50,7 +50,7 @@ impl Paint {
         }
     }
 
-    /// What a scene says of it.
+    /// The surface as a scene describes it.
     #[must_use]
     pub fn surface(&self) -> Surface {
         match self {

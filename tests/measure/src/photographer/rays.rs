@@ -1,4 +1,4 @@
-//! Light that reaches points of a world: what rays meet, what hides a light, what is thrown back.
+//! Light transport to points of a world: intersections, visibility of lights, and reflected light.
 
 use std::array;
 
@@ -9,10 +9,10 @@ use super::motion::stance_at;
 use super::shape::Shape;
 use super::world::{Ground, Shown, World};
 
-/// Fixed patterns, by turns, so that the rays of one pixel do not repeat each other.
+/// Number of fixed patterns that alternate, so that the rays of one pixel do not repeat each other.
 const N_PATTERNS: usize = 4;
 
-/// A world at a moment, ready for rays: the toy in a pose, or nowhere.
+/// A world at a moment, ready for rays: the toy in a pose, or absent.
 #[derive(Debug)]
 pub struct Place<'a> {
     world: &'a World,
@@ -32,7 +32,7 @@ struct Body<'a> {
     radius_m: f64,
 }
 
-/// What a ray meets.
+/// The target of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Thing {
     /// A part of the toy.
@@ -45,7 +45,7 @@ pub(super) enum Thing {
 pub(super) struct Hit {
     pub(super) thing: Thing,
     pub(super) at: DVec3,
-    /// Unit, to the ray's side.
+    /// Unit normal, on the ray's side.
     pub(super) normal: DVec3,
     pub(super) albedo: DVec3,
     distance: f64,
@@ -92,7 +92,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Part of a lamp's light that reaches (x, z) of a receiver, 0 to 1.
+    /// Fraction of a lamp's light that reaches (x, z) of a receiver, 0 to 1.
     #[must_use]
     pub fn visibility_on(&self, ground: usize, in_plane: DVec2, lamp: usize) -> f64 {
         let hit = self.point_on(ground, in_plane);
@@ -114,7 +114,8 @@ impl<'a> Place<'a> {
         self.mean(|pattern| self.look(&hit, pattern).0)
     }
 
-    /// Distance of a point from the surface of the part that it is nearest to, along rays through that part's middle.
+    /// Distance of a point from the surface of the nearest part, along rays through that part's
+    /// centre.
     #[must_use]
     pub fn distance_to_surface(&self, at: DVec3) -> f64 {
         let distances = self.bodies.iter().filter_map(|body| {
@@ -143,7 +144,7 @@ impl<'a> Place<'a> {
         (0..N_PATTERNS).map(of_pattern).sum::<DVec3>() / n_patterns
     }
 
-    /// The nearest thing that a ray meets.
+    /// The nearest intersection of a ray.
     pub(super) fn nearest(&self, origin: DVec3, direction: DVec3, skipped: Option<Thing>) -> Option<Hit> {
         let bodies = self.bodies.iter().enumerate().filter_map(|(index, body)| {
             let thing = Thing::Body(index);
@@ -183,26 +184,36 @@ impl<'a> Place<'a> {
             .min_by(|a, b| a.distance.total_cmp(&b.distance))
     }
 
-    /// Linear radiance that leaves a point towards the camera, and the smallest visibility over all lights, with the pattern
-    /// of that number.
+    /// Linear radiance from a point towards the camera, and the smallest visibility over all
+    /// lights, with the pattern of that number.
     pub(super) fn look(&self, hit: &Hit, pattern: usize) -> (DVec3, f64) {
         let mut light = self.indirect(hit, pattern);
         let mut smallest = 1.0_f64;
+        let is_toy = matches!(hit.thing, Thing::Body(_));
+        let sheen = self.world.sheen.as_ref().filter(|_| is_toy);
+        let to_camera = (self.world.camera.world_from_camera.w_axis.truncate() - hit.at).normalize();
+        let mut reflected = DVec3::ZERO;
         for lamp in &self.world.lamps {
             let [reached, total] = self.cosines(hit, lamp, pattern);
             light += lamp.color * reached;
+            if let Some(sheen) = sheen {
+                reflected += lamp.color * reached * sheen.of_lamp(hit, to_camera, lamp);
+            }
             smallest = smallest.min(visibility(reached, total));
         }
-        (hit.albedo * light, smallest)
+        if let Some(sheen) = sheen {
+            reflected += sheen.of_place((self, hit), to_camera, pattern);
+        }
+        (hit.albedo * light + reflected, smallest)
     }
 
-    /// Light of a lamp at a point, with what hides it and without.
+    /// Light of a lamp at a point, with and without occlusion.
     fn cosines(&self, hit: &Hit, lamp: &Lamp, pattern: usize) -> [f64; 2] {
         let cone = lamp.cone(hit.at);
         let suspects = self.suspects(hit, &cone);
         let above = hit.normal.dot(cone.axis);
         if suspects.is_empty() && above >= cone.sine {
-            // A sphere that is wholly above the horizon lights as if from its middle.
+            // A sphere fully above the horizon has the irradiance of its centre.
             return [cone.strength * above; 2];
         }
         let centre = [DVec2::ZERO];
@@ -223,7 +234,7 @@ impl<'a> Place<'a> {
         [reached, total].map(|sum| weight * sum)
     }
 
-    /// What may stand between a point and a light.
+    /// Possible occluders between a point and a light.
     fn suspects(&self, hit: &Hit, cone: &Cone) -> Vec<Thing> {
         let bodies = self.bodies.iter().enumerate();
         let bodies = bodies
@@ -239,7 +250,7 @@ impl<'a> Place<'a> {
                 !is_left
             })
             .map(|(index, _)| Thing::Ground(index));
-        // A convex part does not hide anything from its own surface that the surface faces, nor does a plane.
+        // A convex part does not occlude front-facing points of its own surface, nor does a plane.
         bodies.chain(planes).filter(|thing| *thing != hit.thing).collect()
     }
 
@@ -259,7 +270,7 @@ impl<'a> Place<'a> {
         })
     }
 
-    /// Light of the sky and of what other things throw back, on a white surface at a point.
+    /// Light of the sky and from other surfaces, on a white surface at a point.
     fn indirect(&self, hit: &Hit, pattern: usize) -> DVec3 {
         if self.bodies.is_empty() && self.planes.len() < 2 {
             return self.world.sky;
@@ -267,20 +278,31 @@ impl<'a> Place<'a> {
         let (across, along) = hit.normal.any_orthonormal_pair();
         let pattern = &self.sky_pattern[pattern];
         let light = pattern.iter().map(|at| {
-            // Even over the disc below a hemisphere is by the cosine over the hemisphere. Source: Malley 1988.
+            // Uniform over the disc below a hemisphere is cosine-weighted over the hemisphere.
+            // Source: Malley 1988.
             let up = (1.0 - at.length_squared()).max(0.0).sqrt();
             let direction = up * hit.normal + at.x * across + at.y * along;
-            match self.nearest(hit.at, direction, Some(hit.thing)) {
-                None => self.world.sky,
-                Some(other) if self.world.bounces => self.thrown_back(&other),
-                Some(_) => DVec3::ZERO,
-            }
+            self.light_along(hit, direction)
         });
         let n_rays = pattern.len() as f64;
         light.sum::<DVec3>() / n_rays
     }
 
-    /// What a surface throws back of the sky and of light from the middles of the lamps.
+    /// Light of the sky, or of what another thing throws back, from a direction.
+    pub(super) fn light_along(&self, hit: &Hit, direction: DVec3) -> DVec3 {
+        match self.nearest(hit.at, direction, Some(hit.thing)) {
+            None => self.world.sky,
+            Some(other) if self.world.bounces => self.thrown_back(&other),
+            Some(_) => DVec3::ZERO,
+        }
+    }
+
+    /// One of the patterns of rays into the hemisphere.
+    pub(super) fn sky_pattern(&self, pattern: usize) -> &[DVec2] {
+        &self.sky_pattern[pattern]
+    }
+
+    /// Light that a surface reflects of the sky and of the lamps' centres.
     fn thrown_back(&self, hit: &Hit) -> DVec3 {
         let lamps = self.world.lamps.iter().map(|lamp| {
             let cone = lamp.cone(hit.at);
@@ -294,7 +316,7 @@ impl<'a> Place<'a> {
         hit.albedo * (self.world.sky + lamps.sum::<DVec3>())
     }
 
-    /// Radiance of what is behind everything.
+    /// Radiance of the background.
     pub(super) fn backdrop(&self) -> DVec3 {
         self.world.sky
     }
@@ -304,13 +326,13 @@ impl<'a> Place<'a> {
     }
 }
 
-/// Part of a light that reaches a point, 0 to 1; 1 of one that is behind it.
+/// Fraction of a light that reaches a point, 0 to 1; 1 for a light behind it.
 fn visibility(reached: f64, total: f64) -> f64 {
     if total > 0.0 { reached / total } else { 1.0 }
 }
 
 impl Body<'_> {
-    /// Whether a ray meets not even the ball around the part.
+    /// Whether a ray misses even the sphere around the part.
     fn is_passed_by(&self, origin: DVec3, direction: DVec3) -> bool {
         let to_centre = self.centre - origin;
         let along = to_centre.dot(direction);
@@ -322,7 +344,8 @@ impl Body<'_> {
     }
 }
 
-/// Where a ray meets a rectangle, from either side: multiples of its direction, and (x, z).
+/// Intersection of a ray with a rectangle, from either side: multiples of its direction, and (x,
+/// z).
 fn meets(plane_from_world: &DMat4, ground: &Ground, origin: DVec3, direction: DVec3) -> Option<(f64, DVec2)> {
     let start = plane_from_world.transform_point3(origin);
     let along = plane_from_world.transform_vector3(direction);

@@ -1,10 +1,10 @@
-//! Convex shapes: where rays cross them exactly, and the meshes that stand for them in a toy's file.
+//! Convex shapes: their exact intersections with rays, and their meshes in a toy's file.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
 
-/// Facets of a sphere's mesh round its equator; half as many from pole to pole.
+/// Facets of a sphere's mesh around its equator; half as many from pole to pole.
 const N_SPHERE_FACETS: u32 = 48;
 
 /// All points with `normal` · p at most `offset_m`.
@@ -24,18 +24,18 @@ pub enum Shape {
         /// Its radius.
         radius_m: f64,
     },
-    /// What lies in all half-spaces; they enclose it on all sides.
+    /// The intersection of half-spaces, which must be bounded.
     Convex(Vec<HalfSpace>),
 }
 
-/// The part of a ray that is inside of a shape, in multiples of the ray's direction.
+/// The part of a ray inside of a shape, in multiples of the ray's direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// Where it comes in; negative if that is behind the ray's origin.
+    /// Entry; negative if it is behind the ray's origin.
     pub enter: f64,
-    /// Where it goes out.
+    /// Exit.
     pub leave: f64,
-    /// Unit normal where it comes in.
+    /// Unit normal at the entry.
     pub normal: DVec3,
 }
 
@@ -44,9 +44,9 @@ pub struct Crossing {
 pub struct Mesh {
     /// Corners.
     pub positions: Vec<DVec3>,
-    /// A unit normal a corner.
+    /// One unit normal per corner.
     pub normals: Vec<DVec3>,
-    /// Three corners a triangle.
+    /// Three corners per triangle.
     pub indices: Vec<u32>,
 }
 
@@ -80,7 +80,7 @@ impl Shape {
         Self::Convex(sides.chain(ends).collect())
     }
 
-    /// The part of the ray's whole line that is inside, or `None` where it passes by.
+    /// The part of the ray's whole line that is inside, or `None` if it misses.
     #[must_use]
     pub fn crossing(&self, origin: DVec3, direction: DVec3) -> Option<Crossing> {
         match self {
@@ -101,7 +101,7 @@ impl Shape {
         }
     }
 
-    /// The shape as triangles: exact for a convex one, of many facets for a sphere.
+    /// The shape as triangles: exact for a convex one, with many facets for a sphere.
     #[must_use]
     pub fn mesh(&self) -> Mesh {
         match self {
@@ -131,7 +131,7 @@ impl Shape {
 fn cross_sphere(radius_m: f64, origin: DVec3, direction: DVec3) -> Option<Crossing> {
     let squared_length = direction.length_squared();
     let middle = -origin.dot(direction) / squared_length;
-    // Of the point next to the centre, so that nothing cancels for a ray from afar.
+    // From the point nearest to the centre, so that nothing cancels for a distant ray.
     let squared_half = radius_m * radius_m - (origin + middle * direction).length_squared();
     if squared_half <= 0.0 {
         return None;
@@ -170,7 +170,7 @@ fn cross_convex(half_spaces: &[HalfSpace], origin: DVec3, direction: DVec3) -> O
     (inside.enter < inside.leave).then_some(inside)
 }
 
-/// Each face is a square on its plane, far larger than the shape, cut by all other half-spaces.
+/// Each face is a square on its plane, far larger than the shape, clipped by all other half-spaces.
 ///
 /// Source: Sutherland and Hodgman 1974.
 fn convex_mesh(half_spaces: &[HalfSpace]) -> Mesh {

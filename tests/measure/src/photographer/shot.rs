@@ -1,4 +1,4 @@
-//! What the core is told of a world: scene and frame, and the truth to score with.
+//! The core's inputs of a world, scene and frame, and the truth for scoring.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use super::rays::Place;
 use super::toy::{CLIP, ToyFile, toy_glb};
 use super::world::{Sensor, Shown, World};
 
-/// What the camera sees of a world, before it is made codes.
+/// A camera's views of a world, before they become codes.
 #[derive(Clone, Debug)]
 pub struct Films {
     /// The place without the toy.
@@ -38,18 +38,18 @@ pub struct Photos {
 /// A session of one frame, in memory.
 #[derive(Clone, Debug)]
 pub struct Shot {
-    /// All that stays.
+    /// The scene.
     pub scene: Scene,
     /// The frame.
     pub input: FrameInput,
-    /// What the core is not told.
+    /// The truth, which the core does not receive.
     pub truth: Truth,
     /// The toy's file.
     pub glb: Vec<u8>,
 }
 
 impl Films {
-    /// Looks at a world: its place, its toy as it stands, its toy in the shown pose.
+    /// Renders a world: its place, its toy as it stands, its toy in the shown pose.
     #[must_use]
     pub fn of(world: &World) -> Self {
         Self {
@@ -59,10 +59,10 @@ impl Films {
         }
     }
 
-    /// The pictures that a sensor makes of it.
+    /// The pictures of a sensor.
     #[must_use]
     pub fn develop(&self, sensor: &Sensor) -> Photos {
-        // Plate and frame have noise of their own.
+        // Plate and frame have independent noise.
         let picture =
             |film: &Film, gain: DVec3, seed: u64| Arc::new(film.develop(gain, sensor.noise_codes, seed));
         Photos {
@@ -85,18 +85,18 @@ impl Photos {
 }
 
 impl Shot {
-    /// Photographs a world and tells of it.
+    /// Photographs a world and describes it as a session.
     ///
     /// # Errors
-    /// When the core does not take the toy's file.
+    /// When the core refuses the toy's file.
     pub fn of(world: &World) -> Result<Self, ToyError> {
         Self::told(world, &Photos::of(world), &ToyFile::default())
     }
 
-    /// Tells of a world with pictures that were taken before, and with the toy's file written in some way.
+    /// Describes a world with existing pictures, and with the toy's file written in a variant.
     ///
     /// # Errors
-    /// When the core does not take the toy's file.
+    /// When the core refuses the toy's file.
     pub fn told(world: &World, photos: &Photos, file: &ToyFile) -> Result<Self, ToyError> {
         let glb = toy_glb(world, file);
         let toy = Toy::from_glb("toy.glb", &glb)?;

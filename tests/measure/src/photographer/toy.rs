@@ -1,4 +1,4 @@
-//! The toy of a world as a glTF binary: each part is a node with a mesh and a material of its own.
+//! The toy of a world as a glTF binary: each part is a node with its own mesh and material.
 
 use glam::{DQuat, DVec3};
 use serde_json::json;
@@ -10,21 +10,21 @@ use crate::glb::Glb;
 
 /// Name of the clip that moves the parts.
 pub const CLIP: &str = "move";
-/// Name of the clip that holds them still.
+/// Name of the clip that keeps them still.
 pub const STILL_CLIP: &str = "still";
-/// End of the clip that holds them still.
+/// End of that clip.
 const STILL_SECS: f64 = 10.0;
 
-/// How a toy's file is written; none of it changes what it shows.
+/// Variants of a toy's file; none of them changes the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ToyFile {
-    /// Whether a second clip holds each part in its rest.
+    /// Whether a second clip keeps each part at rest.
     pub has_still_clip: bool,
-    /// Whether there are a material, a mesh and a node that nothing shows.
+    /// Whether there are an unused material, mesh and node.
     pub has_unused: bool,
-    /// Triangles and corners in another order, from this seed.
+    /// Seed of another order of triangles and corners.
     pub order: Option<u64>,
-    /// Parts follow joints in place of nodes, with weights of this sum.
+    /// Sum of the weights with which parts follow joints instead of nodes.
     pub skin_weight: Option<f32>,
 }
 
@@ -84,7 +84,8 @@ fn add_mesh(glb: &mut Glb, mesh: &Mesh, material: usize) -> usize {
     glb.mesh(json!({ "attributes": attributes, "indices": indices, "material": material }))
 }
 
-/// Moves each part's mesh to a node of its own, which follows the part's node as a joint, by two weights.
+/// Moves each part's mesh to its own node, which follows the part's node as a joint, by two
+/// weights.
 fn add_skin(glb: &mut Glb, first: usize, world: &World, weight: f32) {
     let joints: Vec<usize> = (first..first + world.parts.len()).collect();
     let skin = glb.push("skins", json!({ "joints": joints }));

@@ -1,4 +1,5 @@
-//! The same world elsewhere, in another size, and in a mirror: its pictures stay, but for the mirror's being flipped.
+//! The same world at another place, in another size, and mirrored: its pictures stay the same, or
+//! are flipped by the mirror.
 
 use app_core::scene::{Camera, Image, Intrinsics, Light};
 use glam::{DMat4, DVec3};
@@ -49,7 +50,7 @@ impl World {
         self
     }
 
-    /// The world in a mirror; its pictures are those of this one, [`flipped`].
+    /// The mirrored world; its pictures are [`flipped`].
     #[must_use]
     pub fn mirrored(self) -> Self {
         let [width, _] = self.size_px.map(f64::from);
@@ -71,7 +72,7 @@ impl World {
     }
 }
 
-/// A picture with its columns the other way round.
+/// A picture with its columns reversed.
 #[must_use]
 pub fn flipped(image: &Image) -> Image {
     let rows = image.rgba8.chunks_exact(4 * image.width_px as usize);

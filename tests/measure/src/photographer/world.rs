@@ -1,4 +1,4 @@
-//! What is photographed: toy, receivers, lights, camera, sensor.
+//! The subject of the photographs: toy, receivers, lights, camera, sensor.
 
 use app_core::scene::{Camera, Intrinsics, Light};
 use glam::{DMat4, DQuat, DVec2, DVec3};
@@ -7,6 +7,7 @@ use super::lamp::Lamp;
 use super::motion::{Key, Stance};
 use super::paint::Paint;
 use super::shape::Shape;
+use super::sheen::Sheen;
 
 /// A toy on its receivers under lights, and the camera that looks at it.
 #[derive(Clone, Debug)]
@@ -21,26 +22,28 @@ pub struct World {
     pub grounds: Vec<Ground>,
     /// Lights, all of which the scene lists.
     pub lamps: Vec<Lamp>,
-    /// Radiance of the sky, the same from everywhere, linear: a white surface that sees nothing else has it.
+    /// Radiance of the uniform sky, linear: that of a white surface that sees nothing else.
     pub sky: DVec3,
-    /// Whether light that one surface throws back lights others, once.
+    /// Whether surfaces illuminate each other, with one bounce.
     pub bounces: bool,
     /// The toy.
     pub parts: Vec<Part>,
+    /// How glossy it is, if it is.
+    pub sheen: Option<Sheen>,
     /// Object space to world: a rotation, a translation and one positive scale.
     pub world_from_object: DMat4,
-    /// What the truth shows.
+    /// The pose in the truth.
     pub shown: Shown,
-    /// How the camera takes its pictures.
+    /// Properties of the camera's pictures.
     pub sensor: Sensor,
-    /// How many rays are spent.
+    /// Numbers of rays.
     pub quality: Quality,
 }
 
 /// A rectangle, local y = 0, that catches shadows.
 #[derive(Clone, Debug)]
 pub struct Ground {
-    /// Rigid.
+    /// Pose, rigid.
     pub world_from_plane: DMat4,
     /// Half its sides along x and z.
     pub half_extent_m: DVec2,
@@ -53,11 +56,11 @@ pub struct Ground {
 pub struct Part {
     /// Its shape.
     pub shape: Shape,
-    /// Part of the light that it throws back, linear.
+    /// Reflectance, linear.
     pub color: DVec3,
-    /// Where it stands in the physical pose.
+    /// Its stance in the physical pose.
     pub rest: Stance,
-    /// How the clip moves it, in order of time; a part without keys stands still.
+    /// Its motion in the clip, in order of time; a part without keys stands still.
     pub keys: Vec<Key>,
 }
 
@@ -73,7 +76,7 @@ pub enum Shown {
     },
 }
 
-/// How the camera takes its pictures.
+/// Properties of the camera's pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
     /// Exposure and white balance of the plate.
@@ -82,16 +85,16 @@ pub struct Sensor {
     pub frame_gain: DVec3,
     /// Standard deviation of the noise of plate and frame, in codes.
     pub noise_codes: f64,
-    /// What the noise starts from.
+    /// Seed of the noise.
     pub seed: u64,
 }
 
-/// How many rays are spent.
+/// Numbers of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quality {
     /// Rays through a pixel along each side.
     pub n_across: u32,
-    /// Rays to each light from what one of them meets.
+    /// Number of rays to each light from each intersection.
     pub n_light_rays: u32,
     /// Rays into the hemisphere.
     pub n_sky_rays: u32,
@@ -137,6 +140,7 @@ impl World {
             sky: DVec3::splat(0.35),
             bounces: true,
             parts: vec![body(), arm()],
+            sheen: None,
             world_from_object: DMat4::IDENTITY,
             shown: Shown::At { time_secs: 1.0 },
             sensor: Sensor::default(),
@@ -193,11 +197,12 @@ pub fn toward(elevation_deg: f64, azimuth_deg: f64) -> DVec3 {
     DVec3::new(level * x, up, level * z)
 }
 
-/// A camera at `eye` that looks at `target`, upright, with a field of view of 58 degrees from side to side.
+/// A camera at `eye` that looks at `target`, upright, with a horizontal field of view of 58
+/// degrees.
 #[must_use]
 pub fn camera(size_px: [u32; 2], eye: DVec3, target: DVec3) -> Camera {
     let backward = (eye - target).normalize();
-    // One that looks straight down has world's -Z on top.
+    // A camera that looks straight down has the world's -Z on top.
     let right = DVec3::Y.cross(backward).try_normalize().unwrap_or(DVec3::X);
     let up = backward.cross(right);
     let [width, height] = size_px.map(f64::from);

@@ -1,4 +1,4 @@
-//! What may change the picture by rounding alone, or its errors by a little.
+//! Variations that may change the picture by rounding alone, or its errors slightly.
 
 use app_core::scene::Plate;
 use app_core::session::Truth;
@@ -70,7 +70,7 @@ fn uniform_scale(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     within_a_code(lab, label, &told(&world)?, scaled)
 }
 
-/// The receiver's rectangle is 6 km long, so that its border is nowhere near.
+/// The receiver's rectangle is 6 km long, so that its border is far away.
 fn receiver_origin(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let mut world = small();
     world.grounds[0].half_extent_m *= 2e3;
@@ -99,7 +99,7 @@ fn triangles_permuted(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     within_a_code(lab, label, &told(None)?, others)
 }
 
-/// Three lights of unlike size and colour.
+/// Three lights of different sizes and colours.
 fn three_lights() -> World {
     let mut lamps = vec![
         Lamp::bulb(toward(50.0, 30.0), 0.02, 0.4),
@@ -153,7 +153,7 @@ fn plates_permuted(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     within_a_code(lab, label, &shot, others)
 }
 
-/// By errors against the truth: the places in a pixel from which passes look are no mirror images of each other.
+/// By errors against the truth: the sample positions in a pixel are not symmetric.
 fn mirrored(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let mut findings = Findings::default();
     for (name, world) in lab.some_of([("table and wall", walled(small())), ("table", small())], 1) {
@@ -174,8 +174,8 @@ fn mirrored(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     Ok(findings)
 }
 
-/// Rows of the change of both errors from those of the first shot. With each of the others goes how much brighter its frame
-/// is: a code stands for more light then, by the power of sRGB.
+/// Rows of the change of both errors from the first shot's. Each of the other shots has the
+/// brightness ratio of its frame: a code stands for more light then, by the power of sRGB.
 fn same_errors(
     lab: &mut Lab,
     label: Label,
@@ -206,7 +206,7 @@ fn same_errors(
     Ok(rows.into())
 }
 
-/// Told of nothing: the pixels must say it.
+/// The exposure is not stated: it must be estimated from the pixels.
 fn exposure(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let world = small();
     let films = Films::of(&world);
@@ -255,7 +255,7 @@ fn light_twice(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     Ok(findings)
 }
 
-/// The photographs are of a directional light; what is told is a sphere of its angle.
+/// The photographs have a directional light; the scene lists a sphere of its angle.
 fn far_sphere(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let angular_radius_rad = 0.01;
     let direction = toward(50.0, 35.0);

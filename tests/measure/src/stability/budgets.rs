@@ -1,4 +1,4 @@
-//! What large scenes cost: seconds of processors, memory.
+//! The cost of large scenes: processor seconds, memory.
 
 use app_core::scene::Plate;
 use glam::{DQuat, DVec3};
@@ -11,13 +11,13 @@ use crate::photographer::world::{camera, toward};
 use crate::photographer::{Key, Part, Photos, Shape, Shot, Stance, ToyFile, World};
 use crate::process::{cpu_secs, held_mib, peak_mib, reset_peak};
 
-/// Of scene and first frame together, on a processor that also plays the graphics card.
+/// For scene and first frame together, on a software renderer.
 const CPU_SECS: Bound = Bound {
     limit: 60.0,
     unit: "s",
     meaning: "seconds on processors for scene and first frame",
 };
-/// What the largest of the scenes here may take on top of what was held before.
+/// Largest additional memory of a scene.
 const PEAK_MIB: Bound = Bound {
     limit: 1024.0,
     unit: "MiB",
@@ -70,7 +70,8 @@ fn plates(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
                 let eye = target + 0.44 * toward(30.0, 10.0 + turn);
                 Plate {
                     camera: camera(world.size_px, eye, target),
-                    // A plain table looks the same from everywhere, and each plate has its own copy.
+                    // A plain table looks the same from everywhere, and each plate has its own
+                    // copy.
                     image: std::sync::Arc::new((*photos.plate).clone()),
                 }
             })
@@ -79,7 +80,7 @@ fn plates(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     }))
 }
 
-/// A heap of boxes around the middle, each with a material of its own.
+/// A heap of boxes around the centre, each with its own material.
 fn heap(n_parts: u16, half_m: f64) -> World {
     let mut world = small();
     world.parts = (0..n_parts)
@@ -109,7 +110,7 @@ fn heap(n_parts: u16, half_m: f64) -> World {
     world
 }
 
-/// The photographs are of other boxes: only the cost is looked at.
+/// The photographs show other boxes: only the cost matters.
 fn materials(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let photos = small_photos();
     join([1u16, 100, 1000].map(|n_parts| {
@@ -129,7 +130,7 @@ fn large_triangles(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     }))
 }
 
-/// Pictures enlarged from a small one: only the cost is looked at.
+/// Pictures enlarged from a small one: only the cost matters.
 fn large_pictures(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     join([[640u32, 360], [1280, 720], [1920, 1080]].map(|size_px| {
         let mut world = World::boxes().resized(size_px);

@@ -3,7 +3,7 @@
 use super::lab::{Lab, Label};
 use super::row::Findings;
 
-/// How a case is run.
+/// The function of a case.
 pub type Run = fn(&mut Lab, Label) -> anyhow::Result<Findings>;
 
 /// A case.
@@ -11,7 +11,7 @@ pub type Run = fn(&mut Lab, Label) -> anyhow::Result<Findings>;
 pub struct Case {
     /// Its group and name.
     pub label: Label,
-    /// When it is run.
+    /// The scope in which it runs.
     pub scope: Scope,
     /// Runs it.
     pub run: Run,
@@ -29,13 +29,13 @@ impl Case {
     }
 }
 
-/// When a case is run.
+/// The scope in which a case runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
     /// With the tests, too: it takes seconds.
     Quick,
     /// Only by the command.
     Whole,
-    /// Only by the command, and only when it is named: it takes as long as all others together.
+    /// Only by the command, and only by name: it takes as long as all others together.
     Named,
 }

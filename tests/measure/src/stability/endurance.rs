@@ -1,8 +1,9 @@
 //! Many frames: errors and memory do not grow.
 //!
-//! What the process holds is judged with `paper`, and with the model only on a graphics card: lavapipe of Mesa 22.3 writes
-//! values of uniforms into a shader whose loops end by them, compiles that for each frame, and keeps all of these until the
-//! pipeline goes. `toy` is such a shader; those of `paper` are none.
+//! The process's memory is judged with `paper`, and with the model only on a graphics card:
+//! lavapipe of Mesa 22.3 compiles uniform values that bound loops into a shader, for each frame,
+//! and keeps all of these shaders until the pipeline is dropped. `toy` is such a shader; `paper`
+//! has none.
 
 use std::f64::consts::TAU;
 
@@ -61,9 +62,9 @@ pub(super) const CASES: &[Case] = &[
     }),
 ];
 
-/// Rounds of a camera that goes to and fro.
+/// Rounds of a camera that moves back and forth.
 struct Rounds {
-    /// Frames of each.
+    /// Number of frames of each.
     n_places: usize,
     n: usize,
 }
@@ -72,14 +73,14 @@ struct Rounds {
 struct Round {
     /// Mean RMSE of the toy, and of the shadow.
     errors: [f64; 2],
-    /// At its end, objects made on the device so far, less one a picture that was read.
+    /// Number of objects created on the device up to its end, minus one per picture that was read.
     n_made: f64,
     heap_mib: f64,
     process_mib: f64,
 }
 
 impl Rounds {
-    /// What is seen at a place of each round.
+    /// The world at a place of each round.
     fn world_at(&self, place: usize) -> World {
         let phase = TAU * place as f64 / self.n_places as f64;
         let world = small();
@@ -108,7 +109,7 @@ impl Rounds {
             .collect()
     }
 
-    /// What the camera takes at a place of a round.
+    /// The camera's picture at a place of a round.
     fn shot(&self, (world, films): &(World, Films), frame: usize, noise_codes: f64) -> anyhow::Result<Shot> {
         let sensor = Sensor {
             frame_gain: DVec3::splat(self.exposure_of(frame)),
@@ -150,8 +151,8 @@ impl Rounds {
     }
 }
 
-/// Away from the camera of the only plate and down; neither exposure nor light changes. What the plate does not show is
-/// estimated, each time from the estimate before.
+/// Away from the camera of the only plate and down; neither exposure nor light changes. Parts that
+/// the plate does not show are estimated, each time from the estimate before.
 fn one_plate(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let round = Rounds { n_places: 12, n: 1 };
     let (mut gains, mut intensities) = (Vec::new(), Vec::new());
@@ -169,14 +170,14 @@ fn one_plate(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     }
     let row = |what: &str, numbers: &[f32]| {
         let deviations = numbers.iter().map(|number| (f64::from(*number) - 1.0).abs());
-        // What is not a number is the largest.
+        // NaN counts as the largest.
         let worst = deviations.max_by(f64::total_cmp).unwrap_or(f64::NAN);
         label.row(what, SAME_LIGHT, worst)
     };
     Ok(vec![row("gain", &gains), row("intensity", &intensities)].into())
 }
 
-/// By how much a number of the last round is larger than that of the second.
+/// Growth of a number from the second round to the last.
 fn growth(rounds: &[Round], number_of: fn(&Round) -> f64) -> f64 {
     rounds.last().map_or(f64::NAN, number_of) - rounds.get(1).map_or(f64::NAN, number_of)
 }

@@ -1,4 +1,4 @@
-//! What must not change a byte of the picture.
+//! Variations that must not change a byte of the picture.
 
 use std::sync::OnceLock;
 

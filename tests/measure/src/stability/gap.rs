@@ -1,4 +1,4 @@
-//! How far two pictures are apart, in sRGB codes over the three colours.
+//! The difference of two pictures, in sRGB codes over the three colours.
 
 use app_core::scene::Image;
 
@@ -7,7 +7,7 @@ use app_core::scene::Image;
 pub struct Gap {
     /// Root of the mean square.
     pub rms: f64,
-    /// What only one in a thousand pixels exceeds, by its worst colour.
+    /// The difference that one in a thousand pixels exceeds, by its worst colour.
     pub p999: f64,
     /// The largest.
     pub max: f64,
@@ -16,7 +16,7 @@ pub struct Gap {
 }
 
 impl Gap {
-    /// Compares pictures of one size; others are apart without limit.
+    /// Compares pictures of one size; the difference of other pictures is infinite.
     #[must_use]
     pub fn between(a: &Image, b: &Image) -> Self {
         if a.rgba8.len() != b.rgba8.len() || a.width_px != b.width_px {

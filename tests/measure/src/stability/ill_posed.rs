@@ -1,4 +1,4 @@
-//! Fits that the photographs do not determine: what comes out is finite, and a warning says so.
+//! Fits that the photographs do not constrain: the result is finite, and a warning reports it.
 
 use app_core::frame::Warning;
 use bytemuck::cast_slice;
@@ -54,7 +54,7 @@ pub(super) const CASES: &[Case] = &[
     }),
 ];
 
-/// Whether a warning says that the fit is not determined by what is seen.
+/// Whether a warning says that the visible pixels do not constrain the fit.
 fn is_of_the_fit(warning: &Warning) -> bool {
     !matches!(warning, Warning::Outlier(_) | Warning::PlatePartial { .. })
 }
@@ -113,7 +113,7 @@ fn two_at_one_place(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     judge(lab, label, &small().lit_by(vec![lamp; 2]), true)
 }
 
-/// A point light where the camera is: what is in shadow is behind the toy.
+/// A point light at the camera: the shadow is hidden behind the toy.
 fn shadow_hidden(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let world = small();
     let eye = world.camera.world_from_camera.w_axis.truncate();
@@ -121,7 +121,7 @@ fn shadow_hidden(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     judge(lab, label, &world.lit_by(vec![lamp]), true)
 }
 
-/// The camera sees the toy's upper part and the table beyond; the shadow falls towards the camera.
+/// The camera shows the toy's upper part and the table beyond; the shadow falls towards the camera.
 fn shadow_out_of_frame(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let world = small();
     let eye = DVec3::new(0.06, 0.24, 0.36);

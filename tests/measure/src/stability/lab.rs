@@ -1,4 +1,4 @@
-//! Where cases are run: one core on one device for all of them.
+//! The environment of cases: one core on one device for all of them.
 
 use std::sync::Arc;
 
@@ -16,10 +16,10 @@ use super::gap::Gap;
 use super::row::{Bound, Findings, Measured, Row};
 use crate::photographer::Shot;
 
-/// What a planted fault leaks for each picture, in sizes of it.
+/// Memory that a planted fault leaks per picture, in pictures.
 const LEAKED_PICTURES: usize = 4;
 
-/// One core, how much is asked of it, and the fault that is planted in what it makes, if any.
+/// One core, the scope, and the planted fault, if any.
 pub struct Lab {
     core: Core,
     scope: Scope,
@@ -31,13 +31,13 @@ pub struct Lab {
     leaked: Vec<Vec<u8>>,
 }
 
-/// A picture, or why the core refused to make it.
+/// A picture, or the core's error.
 pub type Made = Result<Image, CoreError>;
 
 impl Lab {
-    /// A lab on a core. With a planted fault pictures of a case have a wrong part, all but the second of each eight; no warning
-    /// is given, and what is learned is no number; each picture is read twice and leaks memory. Each group must then find a
-    /// broken bound.
+    /// A lab with a core. With a planted fault, pictures of a case have a wrong part, except every
+    /// second of eight; no warning is given, and learned numbers are NaN; each picture is read
+    /// twice and leaks memory. Each group must then find a broken bound.
     #[must_use]
     pub fn new(core: Core, scope: Scope, is_planted: bool) -> Self {
         Self {
@@ -52,7 +52,7 @@ impl Lab {
         }
     }
 
-    /// What is gone through of a list: all of it, or in a quick run the last few.
+    /// The used part of a list: all of it, or in a quick run the last few.
     #[must_use]
     pub fn some_of<T>(&self, all: impl IntoIterator<Item = T>, n_quick: usize) -> Vec<T> {
         let mut all: Vec<T> = all.into_iter().collect();
@@ -62,8 +62,8 @@ impl Lab {
         }
     }
 
-    /// The picture that others are compared with; no fault is planted in it. Many cases start from the same one, which is then
-    /// made once.
+    /// The reference picture of comparisons, without a planted fault. Many cases start from the
+    /// same one, which is then made once.
     ///
     /// # Errors
     /// As for [`Lab::picture`].
@@ -80,10 +80,11 @@ impl Lab {
         Ok(picture)
     }
 
-    /// Rows of variations of a shot, of how far each one's picture is from that of the shot: a bound, and what it is on.
+    /// Rows of variations of a shot, with the difference of each picture from the shot's: a bound,
+    /// and its measure.
     ///
     /// # Errors
-    /// When the core fails otherwise than by refusing a variation.
+    /// When the core fails, except by refusing a variation.
     pub fn compare(
         &mut self,
         label: Label,
@@ -112,19 +113,19 @@ impl Lab {
         self.core.adapter_name()
     }
 
-    /// Whether the device is a processor.
+    /// Whether the device is a software renderer.
     #[must_use]
     pub fn is_software(&self) -> bool {
         self.core.is_software()
     }
 
-    /// Objects made on the device so far.
+    /// Number of objects created on the device so far.
     #[must_use]
     pub fn n_made(&self) -> u64 {
         self.core.n_created().iter().map(|(_, n)| n).sum()
     }
 
-    /// Whether the latest picture is not the camera frame as it was.
+    /// Whether the latest picture differs from the camera frame.
     #[must_use]
     pub fn is_retargeted(&self) -> bool {
         self.is_retargeted
@@ -136,7 +137,7 @@ impl Lab {
         self.is_planted
     }
 
-    /// The picture of a shot's frame, with all learned from it.
+    /// The picture of a shot's frame, after all learning from it.
     ///
     /// # Errors
     /// When the core refuses the shot, or the device is lost.
@@ -144,7 +145,7 @@ impl Lab {
         self.picture_by(Preset::Balanced, shot)
     }
 
-    /// The same of another preset.
+    /// The same with another preset.
     ///
     /// # Errors
     /// As for [`Lab::picture`].
@@ -173,7 +174,7 @@ impl Lab {
         Ok(picture)
     }
 
-    /// Warnings of the latest picture's frame and of what was learned up to it.
+    /// Warnings of the latest picture's frame and of the learning up to it.
     ///
     /// # Errors
     /// When the device is lost.
@@ -185,8 +186,8 @@ impl Lab {
         Ok(self.latest_warnings.iter().cloned().chain(learned).collect())
     }
 
-    /// The work region of a shot's frame and the visibility of its lights with the real toy there, or `None` where the frame
-    /// passes through.
+    /// The work region of a shot's frame and the visibility of its lights with the real toy there,
+    /// or `None` if the frame passes through.
     ///
     /// # Errors
     /// As for [`Lab::next`].
@@ -200,7 +201,7 @@ impl Lab {
         Ok(region.zip(map))
     }
 
-    /// What the fits found in the latest frame.
+    /// The fits' results in the latest frame.
     ///
     /// # Errors
     /// When the device is lost.
@@ -213,7 +214,7 @@ impl Lab {
     }
 }
 
-/// Whether two shots tell the same: photographs are the same ones, not only equal.
+/// Whether two shots are identical: they share their photographs.
 fn is_same(a: &Shot, b: &Shot) -> bool {
     let plates = |shot: &Shot| -> Vec<_> {
         let plates = shot.scene.plates.iter();
@@ -233,7 +234,7 @@ fn is_same(a: &Shot, b: &Shot) -> bool {
         && a.input.exposure == b.input.exposure
 }
 
-/// Flips a bit of the colours in the middle of a picture, where the toy is.
+/// Flips a bit of the colours in the centre of a picture, where the toy is.
 fn spoil(picture: &mut Image) {
     let (width, height) = (picture.width_px as usize, picture.height_px as usize);
     for y in 2 * height / 5..3 * height / 5 {
@@ -271,10 +272,10 @@ impl Label {
         }
     }
 
-    /// A row of a picture against another, or of why it was refused.
+    /// A row of a picture's difference from another, or of its refusal.
     ///
     /// # Errors
-    /// When the core failed otherwise than by refusing an input.
+    /// When the core failed, except by refusing an input.
     pub fn against(
         self,
         parameter: impl Into<String>,
@@ -298,7 +299,7 @@ impl Label {
         }
     }
 
-    /// A row of an input that was refused.
+    /// A row of a refused input.
     ///
     /// # Errors
     /// The error itself when the core failed otherwise.

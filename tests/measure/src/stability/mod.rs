@@ -1,4 +1,5 @@
-//! Numerical stability on hard cases: each case varies something and measures what comes of it against a bound.
+//! Numerical stability on hard cases: each case varies a parameter and compares a measurement with
+//! a bound.
 
 mod bounded;
 mod budgets;
@@ -40,7 +41,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
 /// Runs one case.
 ///
 /// # Errors
-/// When the core fails otherwise than by refusing an input.
+/// When the core fails, except by refusing an input.
 pub fn run(lab: &mut Lab, case: &Case) -> anyhow::Result<Findings> {
     lab.begin();
     (case.run)(lab, case.label)

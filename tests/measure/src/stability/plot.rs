@@ -63,7 +63,7 @@ fn render(sweep: &Sweep, svg: &mut String) -> Result<(), Box<dyn std::error::Err
     Ok(())
 }
 
-/// Smallest and largest finite number, a little apart.
+/// Smallest and largest finite number, with a gap between them.
 fn range(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     let finite = numbers.filter(|number| number.is_finite());
     let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], number| {

@@ -1,13 +1,13 @@
-//! What a case measures: a number beside the bound that it must keep.
+//! The result of a case: a measurement and its bound.
 
-/// What a measured number must not exceed.
+/// The bound of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound {
-    /// Largest number that is good.
+    /// Largest good number.
     pub limit: f64,
     /// Unit of limit and measure.
     pub unit: &'static str,
-    /// What is measured, in a few words.
+    /// The measured quantity, in a few words.
     pub meaning: &'static str,
 }
 
@@ -18,38 +18,38 @@ pub struct Row {
     pub group: &'static str,
     /// Name of the case.
     pub case: &'static str,
-    /// What was varied, and how far.
+    /// The varied parameter, and its value.
     pub parameter: String,
     /// The bound.
     pub bound: Bound,
-    /// What the core on its device has.
+    /// The result of the core on its device.
     pub measured: Measured,
-    /// What the CPU reference has in 32 bits, where there is one.
+    /// The result of the CPU reference in 32 bits, if there is one.
     pub cpu_f32: Option<f64>,
     /// The same in 64 bits.
     pub cpu_f64: Option<f64>,
-    /// What else there is to say.
+    /// Further remarks.
     pub note: String,
 }
 
-/// What came of a measurement.
+/// The outcome of a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Measured {
     /// A number.
     Number(f64),
-    /// The core took the input for one that cannot be.
+    /// The core refused the input.
     Refused(String),
 }
 
 impl Row {
-    /// The row, with a note of a number before a change and after it.
+    /// The row, with a note of a number before and after a change.
     #[must_use]
     pub fn noting(mut self, before: f64, after: f64) -> Self {
         self.note = format!("{after:.2} after {before:.2}");
         self
     }
 
-    /// Whether the bound is not kept. A refused input keeps none, and neither does what is not a number.
+    /// Whether the bound is broken, as by a refused input and by NaN.
     #[must_use]
     pub fn is_broken(&self) -> bool {
         match self.measured {
@@ -59,25 +59,25 @@ impl Row {
     }
 }
 
-/// A parameter in small steps and what was measured along them, to be drawn.
+/// A parameter in small steps with measurements along them, to be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// Name of the file, without its end.
+    /// Name of the file, without its extension.
     pub name: String,
     /// The parameter and its unit.
     pub along: &'static str,
-    /// What is measured and its unit.
+    /// The measured quantity and its unit.
     pub measure: &'static str,
     /// Lines, each with its name and its points.
     pub lines: Vec<(&'static str, Vec<[f64; 2]>)>,
 }
 
-/// All that a case found.
+/// The results of a case.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Findings {
     /// Lines of the table.
     pub rows: Vec<Row>,
-    /// Sweeps to be drawn.
+    /// Sweeps to draw.
     pub sweeps: Vec<Sweep>,
 }
 

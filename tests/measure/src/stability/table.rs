@@ -1,4 +1,4 @@
-//! Rows as a person reads them, and as a program does.
+//! The rows as a table for people, and as CSV.
 
 use super::row::{Measured, Row};
 use crate::bench::aligned;
@@ -17,7 +17,7 @@ const HEADS: [&str; 11] = [
     "note",
 ];
 
-/// One line a row under a header. What was not measured is empty.
+/// One line per row under a header. Missing measurements are empty.
 #[must_use]
 pub fn csv(rows: &[Row]) -> String {
     let lines = rows.iter().map(|row| {
@@ -27,7 +27,7 @@ pub fn csv(rows: &[Row]) -> String {
     std::iter::once(HEADS.join(",") + "\n").chain(lines).collect()
 }
 
-/// The rows in columns, and how many bounds are broken.
+/// The rows in columns, and the number of broken bounds.
 #[must_use]
 pub fn table(rows: &[Row], adapter: &str) -> String {
     let lines = rows.iter().map(|row| cells(row).to_vec());
@@ -68,7 +68,7 @@ fn cells(row: &Row) -> [String; 11] {
     ]
 }
 
-/// A field that may hold anything. Source: RFC 4180.
+/// A field with arbitrary text. Source: RFC 4180.
 fn quoted(text: &str) -> String {
     if text.contains(['"', ',', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

@@ -1,4 +1,4 @@
-//! Lights all round a box, against the truth.
+//! Lights all around a box, compared with the truth.
 
 use glam::DVec3;
 
@@ -29,9 +29,9 @@ const SPIKE: Bound = Bound {
     unit: "%",
     meaning: "change of RMSE by a long clip around the motion",
 };
-/// How far the toy jumps in the long clip.
+/// Distance of the toy's jump in the long clip.
 const ASIDE_M: DVec3 = DVec3::new(0.18, 0.0, 0.0);
-/// Codes up to this one are black.
+/// Largest code of a black pixel.
 const BLACK_CODE: u8 = 2;
 const ELEVATIONS_DEG: [f64; 4] = [20.0, 40.0, 60.0, 80.0];
 const GROUP: &str = "truth";
@@ -92,7 +92,7 @@ fn n_black(picture: &app_core::scene::Image, shot: &Shot) -> f64 {
     black.count() as f64
 }
 
-/// A toy that is aside at one moment of a clip, at the key of that number.
+/// A toy that jumps aside at one moment of a clip, at the key of that number.
 fn aside(key_secs: &[f64], aside_at: usize) -> World {
     let mut world = World::boxes();
     for part in &mut world.parts {
@@ -111,7 +111,8 @@ fn aside(key_secs: &[f64], aside_at: usize) -> World {
     world
 }
 
-/// Shown where it is farthest aside: at the end of a clip of a second, and in the middle of a long clip that moves for 0.8 s.
+/// Shown at its largest distance: at the end of a clip of a second, and in the middle of a long
+/// clip that moves for 0.8 s.
 fn long_clip(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let plain = aside(&[0.0, 1.0], 1);
     let photos = Photos::of(&plain);

@@ -1,4 +1,5 @@
-//! How much of a light is seen past the real toy: the core's map against exact rays, and what 32 bits cost these.
+//! Visibility of a light past the real toy: the core's map compared with exact rays, and the
+//! rounding error of 32 bits.
 
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::readback::FloatMap;
@@ -14,17 +15,17 @@ use reference::occlusion::{Occluder, sample_position};
 use reference::real::Real;
 use reference::visibility::exact_visibility;
 
-/// Of 255, the mean over a grid of pixels: one light point of 64 more or less in every second pixel.
+/// Mean error over a grid of pixels, of 255: one light point of 64 in every second pixel.
 const MEAN_ERROR: Bound = Bound {
     limit: 2.0,
     unit: "1/255",
     meaning: "mean error of the real shadow's visibility",
 };
-/// Pixels that are compared along each side of the region.
+/// Number of compared pixels along each side of the region.
 const N_ACROSS: u32 = 24;
-/// Positions in a pixel that rays start from.
+/// Number of ray origins in a pixel.
 const N_POSITIONS: usize = 16;
-/// Rays of each position in a pixel.
+/// Number of rays from each of them.
 const N_RAYS: usize = 64;
 const GROUP: &str = "visibility";
 
@@ -75,7 +76,7 @@ fn compare(
     label: Label,
     worlds: impl IntoIterator<Item = (String, World)>,
 ) -> anyhow::Result<Findings> {
-    // What is seen does not matter to visibility.
+    // The content of the pictures does not affect visibility.
     let photos = small_photos();
     let mut rows = Vec::new();
     for (parameter, world) in worlds {
@@ -113,7 +114,7 @@ fn compare(
 /// A pixel that shows the table.
 struct Pixel {
     of_core: f64,
-    /// Points of the table that it shows, (x, z).
+    /// Its points of the table, (x, z).
     in_plane: Vec<DVec2>,
 }
 
@@ -193,7 +194,7 @@ fn mean_error(a: &[f64], b: &[f64]) -> f64 {
     255.0 * mean(a.iter().zip(b).map(|(a, b)| (a - b).abs()))
 }
 
-/// No number where there are none.
+/// NaN for an empty list.
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let n = values.len() as f64;
     values.sum::<f64>() / n

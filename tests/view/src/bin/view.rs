@@ -1,4 +1,5 @@
-//! The app on a desktop, fed by a session: in a window, or on a tour through all of its screens.
+//! The app on a desktop with a session as its camera: in a window, or on a tour through all of its
+//! screens.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -21,15 +22,16 @@ use desk::shaders::ShaderArgs;
 use view::desktop::{Desk, Keeping};
 use view::fault::Fault;
 use view::feed::Feed;
-use view::tour::Tour;
+use view::tour::{Tour, Way};
 use view::window;
 use view::window::Options;
 
-/// Where photos and the tour's pictures go that were given no place, below the top of the repository.
+/// Default folder of photos and the tour's pictures, below the top of the repository.
 const RESULTS: &str = "target/view";
 
-/// Run the app on a desktop: a session is its camera, the mouse a finger, the wheel turns the toy's outline; I writes a page of the
-/// moment that is shown, with all presets side by side, maps, lights and times.
+/// Run the app on a desktop: a session is its camera, the mouse a finger, the wheel turns the toy's
+/// outline; I writes a page of the present moment, with all presets side by side, maps, lights and
+/// times.
 #[derive(Parser)]
 #[command(name = "view", bin_name = "cargo xtask view")]
 struct Args {
@@ -38,22 +40,25 @@ struct Args {
     /// Preset
     #[arg(long, value_name = "NAME", default_value = "balanced")]
     preset: Preset,
-    /// What goes wrong, and after how many seconds, such as too-fast@20; lasts 5 seconds
+    /// Fault to simulate, and its time in seconds, such as too-fast@20; it lasts 5 seconds
     #[arg(long, value_name = "FAULT@SECONDS", value_parser = fault_at)]
     fault: Vec<(Fault, f64)>,
-    /// Without a window: a simulated person goes through every screen, each written as a picture
+    /// Without a window: a simulated person visits every screen, and each is written as a picture
     #[arg(long)]
     tour: bool,
+    /// On the tour: straight to the toy that moves, with touches and seconds counted
+    #[arg(long, requires = "tour")]
+    straight: bool,
     /// Width and height of the window or of the tour's screen, in points
     #[arg(long, value_name = "WxH", default_value = "844x390", value_parser = size)]
     size: [u32; 2],
-    /// Physical pixels a point of the tour's screen
+    /// Physical pixels per point of the tour's screen
     #[arg(long, value_name = "N", default_value_t = 1.5, requires = "tour")]
     scale: f64,
-    /// Hold so many frames a second by turning settings down
+    /// Keep this many frames per second by reducing quality
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=240))]
     hold: Option<u32>,
-    /// How large letters are
+    /// Scale of the letters
     #[arg(long, value_name = "N", default_value_t = 1.0)]
     text_scale: f64,
     /// Folder for photos and the tour's pictures [default: target/view]
@@ -62,12 +67,13 @@ struct Args {
     /// Quality of a recording's pictures, 1 to 100 [default: lossless]
     #[arg(long, value_name = "QUALITY", value_parser = clap::value_parser!(u8).range(1..=100))]
     jpeg: Option<u8>,
-    /// What "Another toy" chooses: a binary glTF file, or a folder of them to choose from; one can be dropped on the window, too
+    /// Toy for "Another toy": a binary glTF file, or a folder of them to choose from; a file can
+    /// also be dropped on the window
     #[arg(long, value_name = "PATH")]
     toy: Option<PathBuf>,
     #[command(flatten)]
     shaders: ShaderArgs,
-    /// Close the window after so many seconds
+    /// Close the window after this many seconds
     #[arg(long, value_name = "N", conflicts_with = "tour")]
     seconds: Option<f64>,
 }
@@ -101,7 +107,7 @@ fn run(args: Args) -> Result<()> {
             },
         );
     }
-    // A tour begins as the first start does.
+    // A tour begins like the first launch.
     let mut history = LaunchHistory::default();
     history.begin();
     let mut core = pollster::block_on(Core::headless(
@@ -124,6 +130,17 @@ fn run(args: Args) -> Result<()> {
         insets: Insets::default(),
         text_scale: args.text_scale,
     };
+    if args.straight {
+        let Way {
+            n_touches,
+            camera_s,
+            machine_s: [ghost, searched, moves],
+        } = Tour::new(&mut desk, screen, &out)?.straight()?;
+        println!(
+            "{n_touches} touches, {camera_s:.1} s of the camera; computed: the first ghost after {ghost:.1} s, the search ended {searched:.1} s later, the toy moved {moves:.1} s later"
+        );
+        return Ok(());
+    }
     let pictures = Tour::new(&mut desk, screen, &out)?.go()?;
     println!("{} screens: {}", pictures.len(), out.display());
     Ok(())

@@ -1,4 +1,4 @@
-//! Packages, of a stand-in for ARCore's archive that has what a real one has.
+//! Tests of packages, with a fake ARCore archive of the real one's structure.
 
 use super::super::classes::class_file;
 use super::*;
@@ -66,7 +66,8 @@ fn temporary(name: &str) -> PathBuf {
     folder
 }
 
-/// An archive as ARCore's is: an activity that uses R classes which are not in it, their resources, and `<queries>`.
+/// An archive like ARCore's: an activity that uses R classes which are not in it, their resources,
+/// and `<queries>`.
 fn stand_in(folder: &Path, also_names: &[&str]) -> Arcore {
     let r = ["R", "R$id", "R$layout", "R$string"].map(|name| format!("com/google/ar/core/{name}"));
     let mut names: Vec<&str> = r.iter().map(String::as_str).collect();
@@ -100,7 +101,8 @@ fn stand_in(folder: &Path, also_names: &[&str]) -> Arcore {
     }
 }
 
-/// Debian's tools, with a script in the place of the SDK's compiler: its program is the list of what it was given.
+/// Debian's tools, with a script in place of the SDK's compiler, whose program is the list of its
+/// inputs.
 fn tools_with_d8(folder: &Path) -> Option<Tools> {
     let programs = TOOLS.iter().map(|tool| tool.program).chain(["javac"]);
     let has_all = programs
@@ -164,7 +166,7 @@ fn a_package_has_the_classes_of_its_archives_resources_or_is_refused() {
         error.contains("com/google/other/Gone, which com/google/ar/core/InstallActivity names"),
         "{error}"
     );
-    // As a package was made before: without R classes.
+    // An older form of packages, without R classes.
     fs::write(
         folder.join("core.aar"),
         zip::write(&without_resources(&folder)).expect("an archive"),

@@ -1,4 +1,4 @@
-//! Alpha over a material: its factor, its texture between texels, and the colours of vertices.
+//! Alpha of a material: its factor, its interpolated texture, and the colours of vertices.
 
 #![expect(
     clippy::cast_possible_truncation,
@@ -13,7 +13,7 @@ use glam::{DVec2, Vec2};
 use crate::toy::material::{Material, Wrap};
 use crate::toy::texture::Texture;
 
-/// What a vertex has of it: texture coordinates, and the alpha of its colour.
+/// The inputs of a vertex: texture coordinates, and the alpha of its colour.
 #[derive(Clone, Copy)]
 pub(super) struct Corner {
     pub(super) uv: Vec2,
@@ -29,11 +29,11 @@ pub(super) struct Field<'a> {
 struct Picture<'a> {
     texture: &'a Texture,
     wraps: [Wrap; 2],
-    /// Least and greatest alpha of 1, 2 x 2, 4 x 4, … texels.
+    /// Smallest and largest alpha of 1, 2 x 2, 4 x 4, … texels.
     levels: Rc<[Level]>,
 }
 
-/// Textures, and levels of those that were asked for, each made once.
+/// Textures, and their levels, each computed on demand once.
 pub(super) struct Pyramids<'a> {
     textures: &'a [Texture],
     known: HashMap<usize, Rc<[Level]>>,
@@ -77,7 +77,7 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// Alpha less the cutoff: what is not negative is there.
+    /// Alpha minus the cutoff: not negative means opaque.
     pub(super) fn margin(&self, corner: Corner) -> f32 {
         let picture = self
             .picture
@@ -107,9 +107,9 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// Whether something of a triangle is clear, if only a little.
+    /// Whether any part of a triangle is transparent, even slightly.
     pub(super) fn is_clear(&self, corners: [Corner; 3]) -> bool {
-        /// What 8 bits can hold apart from 1.
+        /// The largest alpha below 1 in 8 bits, with a margin.
         const OPAQUE: f32 = 1.0 - 0.5 / 255.0;
         let range = self
             .picture
@@ -118,7 +118,7 @@ impl<'a> Field<'a> {
         self.bounds(range, corners)[0] < OPAQUE
     }
 
-    /// Bounds on alpha over a triangle on which the picture has this range.
+    /// Bounds on alpha over a triangle whose texture has this range.
     fn bounds(&self, [least, most]: [f32; 2], corners: [Corner; 3]) -> [f32; 2] {
         let alphas = corners.map(|corner| corner.alpha);
         [
@@ -133,7 +133,7 @@ impl Picture<'_> {
         DVec2::new(self.texture.width_px.into(), self.texture.height_px.into())
     }
 
-    /// Between the four texels around.
+    /// Bilinear alpha.
     fn alpha(&self, uv: Vec2) -> f32 {
         let at = uv.as_dvec2() * self.size() - 0.5;
         let (first, part) = (at.floor(), (at - at.floor()).as_vec2());
@@ -147,14 +147,14 @@ impl Picture<'_> {
         upper * (1.0 - part.y) + lower * part.y
     }
 
-    /// The column and row of a texel, whole numbers beyond the picture's border, too.
+    /// The column and row of a texel, integers outside of the picture included.
     fn wrapped(&self, texel: DVec2) -> [usize; 2] {
         let [u, v] = self.wraps;
         let size = self.size();
         [wrapped(texel.x, size.x, u), wrapped(texel.y, size.y, v)]
     }
 
-    /// Least and greatest alpha around a triangle; at least those on it.
+    /// Smallest and largest alpha around a triangle; at least those inside.
     fn range(&self, uvs: [Vec2; 3]) -> [f32; 2] {
         /// Cells of a level along each side of the box around it.
         const CELLS: f64 = 6.0;
@@ -180,7 +180,7 @@ impl Picture<'_> {
         let is_fine = level == 0;
         for y in steps(from.y, to.y, step) {
             for x in steps(from.x, to.x, step) {
-                // Of single texels only those count that touch the triangle.
+                // Single texels count only if they touch the triangle.
                 if is_fine && !is_near(DVec2::new(x, y), &places) {
                     continue;
                 }
@@ -194,9 +194,9 @@ impl Picture<'_> {
     }
 }
 
-/// Texels from one to another such that each cell of `step` texels has one, cells at the border being smaller.
+/// One texel in each cell of `step` texels between two, cells at the border being smaller.
 fn steps(from: f64, to: f64, step: f64) -> impl Iterator<Item = f64> {
-    /// Far more than the boxes around triangles have at their levels.
+    /// Far above the size of triangles' boxes at their levels.
     const MOST: usize = 4096;
     let half = (step / 2.0).floor().max(1.0);
     let inner = (0..MOST).map(move |i| from + half * i as f64);

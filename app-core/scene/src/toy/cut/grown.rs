@@ -1,4 +1,5 @@
-//! A geometry with vertices between its own: everything that a vertex has is on the line between two.
+//! A geometry with additional vertices: all attributes of a new vertex are interpolated between
+//! two.
 
 use std::ops::{Add, Mul};
 
@@ -7,11 +8,11 @@ use crate::toy::geometry::Geometry;
 use crate::toy::skin::Influences;
 use crate::toy::topology::{compacted, unwelded};
 
-/// The geometry that has a mesh's triangles.
+/// The geometry with a mesh's triangles.
 pub(super) fn geometry(own: &Geometry, mesh: &Mesh) -> Geometry {
     let triangles = mesh.triangles.as_flattened();
     let n_vertices = own.positions.len() + mesh.made.len();
-    // Without normals every triangle has three vertices of its own.
+    // Without normals, every triangle has three vertices of its own.
     let corners = match own.normals {
         Some(_) => compacted(triangles, n_vertices),
         None => unwelded(triangles.to_vec()),
@@ -57,7 +58,7 @@ impl Maker<'_> {
         self.sources.iter().map(|&source| all[source as usize]).collect()
     }
 
-    /// The joints of both ends; of more than a vertex can have, those with the most weight.
+    /// The joints of both ends; the ones of largest weight if there are too many for a vertex.
     fn influences(&self, own: &Influences) -> Influences {
         let n = own.n_per_vertex;
         let mut all = own.clone();

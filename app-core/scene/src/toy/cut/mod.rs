@@ -1,9 +1,9 @@
-//! What materials cut out by alpha, cut out of the triangles: leaves, feathers and hair on cards.
+//! Cuts triangles along alpha cut-outs of materials: leaves, feathers and hair on cards.
 //!
-//! Shadows, coverage, outline and colour need the same shape, in few passes that know nothing of textures. So a cut-out is
-//! made once, when the file is read: triangles are divided along their edges until none is longer than a texel where alpha
-//! crosses the cutoff, or than what any picture of the toy shows, and are then cut along the crossing. Toys without cut-outs
-//! are not touched.
+//! Shadows, coverage, outline and colour need the same shape, and most passes have no textures. So
+//! the cut is made once, when the file is read: triangles are divided along their edges until none
+//! is longer than a texel at the crossing of the cutoff, or than any visible detail, and are then
+//! cut along the crossing. Toys without cut-outs do not change.
 
 mod field;
 mod grown;
@@ -24,11 +24,11 @@ use crate::geometry::bounds::Bounds;
 use field::{Field, Pyramids};
 use refine::{Finest, is_clear, refined};
 
-/// What is left of BLEND; blending needs what is behind.
+/// Cutoff for BLEND, since blending would need the background.
 const BLEND_CUTOFF: f32 = 0.5;
-/// Triangles of all cut parts together.
+/// Limit for the triangles of all cut parts together.
 const MAX_TRIANGLES: usize = 100_000;
-/// The finest edge over the size of the toy: no picture shows it.
+/// The finest edge over the size of the toy: below the detail of any picture.
 const FINEST: f64 = 1.0 / 1024.0;
 /// Texels of the coarsest cut.
 const COARSEST: u32 = 1 << 12;
@@ -41,7 +41,7 @@ pub(super) struct Shape<'a> {
     pub(super) surfaces: &'a mut Vec<Surface>,
 }
 
-/// Materials and pictures, by which it is cut.
+/// Materials and pictures that define the cut.
 pub(super) struct Looks<'a> {
     pub(super) materials: &'a [Material],
     pub(super) textures: &'a [Texture],
@@ -50,10 +50,10 @@ pub(super) struct Looks<'a> {
 /// A geometry to cut.
 struct Part<'a> {
     geometry: usize,
-    /// How often it is drawn.
+    /// Number of surfaces that draw it.
     n_surfaces: usize,
     field: Field<'a>,
-    /// Lengths at rest, over those in the file; the largest of all surfaces.
+    /// Scale at rest relative to the file; the largest of all surfaces.
     scale: f64,
     /// Size in the file.
     own_size: f64,
@@ -61,7 +61,7 @@ struct Part<'a> {
     is_blend: bool,
 }
 
-/// Cuts all that is to be cut, and drops what nothing is left of.
+/// Makes all cuts, and drops empty parts.
 pub(super) fn apply(shape: &mut Shape, looks: &Looks, warnings: &mut Vec<ToyWarning>) {
     let is_solid = |surface: &Surface| looks.materials[surface.material].alpha == Alpha::Opaque;
     if shape.surfaces.iter().all(is_solid) {
@@ -90,8 +90,8 @@ pub(super) fn apply(shape: &mut Shape, looks: &Looks, warnings: &mut Vec<ToyWarn
     lay_anew(shape);
 }
 
-/// What is left of each part that loses something, and the texels that it is cut to; none where even the coarsest cut has too
-/// many triangles.
+/// The rest of each part that loses something, and the texel size of the cut; `None` if even the
+/// coarsest cut has too many triangles.
 fn finest_cut(geometries: &[Geometry], parts: &[Part], size: f64) -> (Option<u32>, Vec<Option<Geometry>>) {
     let mut texels = 1;
     while texels <= COARSEST {
@@ -107,7 +107,7 @@ fn finest_cut(geometries: &[Geometry], parts: &[Part], size: f64) -> (Option<u32
     (None, parts.iter().map(|_| None).collect())
 }
 
-/// Leaves a toy of glass alone whole.
+/// Keeps a toy made only of glass whole.
 fn keep_glass(surfaces: &[Surface], parts: &[Part], cut: &mut [Option<Geometry>]) {
     let emptied: HashSet<usize> = parts
         .iter()
@@ -126,10 +126,10 @@ fn keep_glass(surfaces: &[Surface], parts: &[Part], cut: &mut [Option<Geometry>]
 }
 
 impl Part<'_> {
-    /// Size of the toy in units of the file, as this part is enlarged at rest; its own where it is as good as hidden there, since a
-    /// clip enlarges it.
+    /// Size of the toy in units of the file, at this part's scale at rest; the part's own size if
+    /// it is practically hidden at rest, since a clip enlarges it.
     fn toy_size(&self, size: f64) -> f64 {
-        /// Parts that are this small beside the toy are hidden.
+        /// Parts smaller than this relative to the toy are hidden.
         const HIDDEN: f64 = 1e-6;
         let here = self.scale * self.own_size;
         match here > HIDDEN * size {
@@ -138,7 +138,7 @@ impl Part<'_> {
         }
     }
 
-    /// What is said of its material, if alpha is below 1 somewhere in it.
+    /// Warnings about its material, if alpha is below 1 somewhere.
     fn warnings(&self, is_cut: bool, texels: Option<u32>) -> Vec<ToyWarning> {
         let field = || format!("materials[{}]", self.material);
         let Some(texels) = texels else {
@@ -195,7 +195,7 @@ fn parts<'a>(shape: &Shape, looks: &Looks<'a>) -> (Vec<Part<'a>>, f64) {
     (parts, all.as_ref().map_or(0.0, size))
 }
 
-/// Of a surface at rest.
+/// Bounds of a surface at rest.
 fn bounds(shape: &Shape, surface: &Surface) -> Bounds {
     let geometry = &shape.geometries[surface.geometry];
     let active = geometry.active_targets(shape.rig.morph_weights(shape.rest, surface.node));
@@ -210,7 +210,7 @@ fn size(bounds: &Bounds) -> f64 {
     (bounds.max - bounds.min).max(DVec3::ZERO).length()
 }
 
-/// For each part, what is left of it if it loses something; `None` if these are too many triangles.
+/// For each part, its rest if it loses something; `None` if there would be too many triangles.
 fn all_cut(
     geometries: &[Geometry],
     parts: &[Part],
@@ -232,7 +232,7 @@ fn all_cut(
     Some(cut)
 }
 
-/// Drops surfaces without triangles, and counts vertices anew.
+/// Drops surfaces without triangles, and renumbers vertices.
 fn lay_anew(shape: &mut Shape) {
     let geometries = &*shape.geometries;
     shape

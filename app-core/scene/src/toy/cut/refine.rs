@@ -1,8 +1,8 @@
-//! Triangles divided where alpha crosses the cutoff, and cut there.
+//! Divides triangles at the crossing of alpha and cutoff, and cuts them there.
 //!
-//! Edges are what is divided: whatever shares one is divided with it, so that no gap opens. The longest edge of a triangle
-//! goes first, which keeps angles from getting ever sharper.
-//! Source: Rivara, Algorithms for refinement of triangular grids, 1984 (longest-edge bisection).
+//! Edges are divided: all triangles at an edge are divided with it, so that no gap opens. The
+//! longest edge of a triangle goes first, which keeps angles from becoming ever sharper. Source:
+//! Rivara, Algorithms for refinement of triangular grids, 1984 (longest-edge bisection).
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
@@ -13,27 +13,27 @@ use super::field::{Corner, Field};
 use super::welded::welded;
 use crate::toy::geometry::Geometry;
 
-/// The shortest edges that are divided.
+/// The shortest edges to divide.
 pub(super) struct Finest {
     pub(super) texels: f32,
-    /// In units of the file.
+    /// Length in units of the file.
     pub(super) length: f64,
 }
 
-/// A vertex on the line between two before it.
+/// A new vertex on the line between two earlier ones.
 #[derive(Clone, Copy)]
 pub(super) struct Made {
     pub(super) from: u32,
     pub(super) to: u32,
-    /// From 0 at `from` to 1 at `to`.
+    /// Position from 0 at `from` to 1 at `to`.
     pub(super) part: f32,
 }
 
-/// Triangles of a geometry, and the vertices that they need beyond its own.
+/// Triangles of a geometry, and their vertices in addition to its own.
 pub(super) struct Mesh {
     places: Vec<Vec3>,
     corners: Vec<Corner>,
-    /// Each vertex behind the geometry's own.
+    /// The vertices after the geometry's own.
     pub(super) made: Vec<Made>,
     pub(super) triangles: Vec<[u32; 3]>,
 }
@@ -58,14 +58,14 @@ fn corners(geometry: &Geometry) -> Vec<Corner> {
     (0..geometry.positions.len()).map(corner).collect()
 }
 
-/// Whether something of a geometry is clear, if only a little.
+/// Whether any part of a geometry is transparent, even slightly.
 pub(super) fn is_clear(geometry: &Geometry, field: &Field) -> bool {
     let corners = corners(geometry);
     let mut triangles = geometry.triangles().iter();
     triangles.any(|triangle| field.is_clear(triangle.map(|vertex| corners[vertex as usize])))
 }
 
-/// Divides all triangles that may be cut; `None` if they become more than `most`.
+/// Divides all triangles that may be cut; `None` if there would be more than `most`.
 pub(super) fn refined(geometry: &Geometry, field: &Field, finest: &Finest, most: usize) -> Option<Mesh> {
     let mut mesh = Mesh {
         corners: corners(geometry),
@@ -73,7 +73,7 @@ pub(super) fn refined(geometry: &Geometry, field: &Field, finest: &Finest, most:
         made: Vec::new(),
         triangles: welded(geometry),
     };
-    // Those before have been found whole, or as fine as they get.
+    // Earlier ones are known to be whole, or fine enough.
     let mut is_open = vec![true; mesh.triangles.len()];
     loop {
         let marked = mesh.marked(field, finest, &is_open);
@@ -106,7 +106,8 @@ impl Mesh {
         longest
     }
 
-    /// Edges to divide: those of triangles that may be cut, and the longest of each triangle that has one of these.
+    /// Edges to divide: those of triangles that may be cut, and the longest edge of each triangle
+    /// with one of these.
     fn marked(&self, field: &Field, finest: &Finest, is_open: &[bool]) -> HashMap<Edge, u32> {
         let is_long = |edge: &Edge| {
             let [a, b] = edge.map(|vertex| self.places[vertex as usize]);
@@ -134,14 +135,14 @@ impl Mesh {
             }
         }
         let mut sorted: Vec<Edge> = marked.into_iter().collect();
-        // The same file gives the same vertices.
+        // Sorted, so that the same file gives the same vertices.
         sorted.sort_unstable();
         let first = self.corners.len();
         let numbers = (first..).filter_map(|number| u32::try_from(number).ok());
         sorted.into_iter().zip(numbers).collect()
     }
 
-    /// Divides edges, and all triangles that have them; returns which triangles are new.
+    /// Divides edges, and all triangles at them; returns which triangles are new.
     fn divide(&mut self, marked: HashMap<Edge, u32>) -> Vec<bool> {
         let mut sorted: Vec<(Edge, u32)> = marked.iter().map(|(edge, number)| (*edge, *number)).collect();
         sorted.sort_unstable_by_key(|(_, number)| *number);
@@ -168,11 +169,11 @@ impl Mesh {
         let [from, to] = [made.from, made.to].map(|vertex| self.places[vertex as usize]);
         self.places.push(from.lerp(to, made.part));
         self.made.push(made);
-        // Triangles are counted, and vertices are fewer than three times these.
+        // Triangles are limited, and vertices are fewer than three times their number.
         u32::try_from(self.places.len() - 1).unwrap_or(u32::MAX)
     }
 
-    /// Cuts triangles along the crossing; `None` if nothing is lost.
+    /// Cuts triangles along the crossing; `None` if nothing is removed.
     pub(super) fn cut(mut self, field: &Field) -> Option<Self> {
         let margins: Vec<f32> = self.corners.iter().map(|corner| field.margin(*corner)).collect();
         let margin = |vertex: u32| margins[vertex as usize];
@@ -187,7 +188,7 @@ impl Mesh {
         let mut crossings = HashMap::new();
         let mut left = Vec::with_capacity(self.triangles.len());
         for [a, b, c] in std::mem::take(&mut self.triangles) {
-            // So that the corners that are there come first.
+            // Rotated, so that opaque corners come first.
             let turned = [[a, b, c], [b, c, a], [c, a, b]];
             let is_in = |vertex: u32| margin(vertex) >= 0.0;
             let n_in = [a, b, c].into_iter().filter(|vertex| is_in(*vertex)).count();
@@ -215,7 +216,7 @@ impl Mesh {
     }
 }
 
-/// Divides a triangle at the middles of its marked edges, of which the longest is one.
+/// Divides a triangle at the midpoints of its marked edges, of which the longest is one.
 fn halve(triangle: [u32; 3], marked: &HashMap<Edge, u32>, corners: &[Corner], out: &mut Vec<[u32; 3]>) {
     let length = |[a, b]: Edge| {
         let [a, b]: [Vec2; 2] = [a, b].map(|vertex| corners[vertex as usize].uv);

@@ -1,10 +1,11 @@
-//! Faceted triangles have vertices of their own; here they share those that are alike, so that they are divided together.
+//! Welds equal vertices of faceted triangles, which have their own otherwise, so that triangles are
+//! divided together.
 
 use std::collections::HashMap;
 
 use crate::toy::geometry::{Geometry, place_bits};
 
-/// Corners of triangles, those of faceted triangles shared as far as they are alike.
+/// Corners of triangles, with equal vertices of faceted triangles welded.
 pub(super) fn welded(geometry: &Geometry) -> Vec<[u32; 3]> {
     if geometry.normals.is_some() || geometry.targets.iter().any(|target| target.moves()) {
         return geometry.triangles().to_vec();

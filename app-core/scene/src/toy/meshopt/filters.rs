@@ -1,4 +1,4 @@
-//! Filters: numbers that were written so that they compress, turned into what accessors read.
+//! Filters: convert numbers in meshopt's compressible forms to those of accessors.
 
 #![expect(
     clippy::cast_possible_truncation,
@@ -41,7 +41,7 @@ pub(super) fn apply(filter: Filter, bytes: &mut [u8], stride: usize) {
     }
 }
 
-/// A unit vector in the octahedron's two coordinates, over the length that stands for one.
+/// Decodes a unit vector in octahedral coordinates, relative to the length that stands for one.
 fn unfolded([x, y, one]: [f32; 3], most: f32) -> [f32; 3] {
     let z = one - x.abs() - y.abs();
     let fold = z.min(0.0);
@@ -81,7 +81,8 @@ fn octahedral16(bytes: &mut [u8]) {
     }
 }
 
-/// The three smaller parts of a unit quaternion; the last number says which is the largest, and how they are scaled.
+/// Decodes the three smaller components of a unit quaternion; the last number holds the index of
+/// the largest, and the scale.
 fn quaternion(bytes: &mut [u8]) {
     for element in bytes.as_chunks_mut::<8>().0 {
         let [a, b, c, code] = shorts(element);
@@ -100,18 +101,18 @@ fn quaternion(bytes: &mut [u8]) {
     }
 }
 
-/// 24 bits of a number and 8 of its exponent.
+/// Decodes 24 bits of a mantissa and 8 of its exponent.
 fn exponential(bytes: &mut [u8]) {
     for element in bytes.as_chunks_mut::<4>().0 {
         let code = i32::from_le_bytes(*element);
         let (mantissa, exponent) = (code << 8 >> 8, code >> 24);
-        // Exact in 64 bits, and rounded once.
+        // Exact in 64 bits, with one rounding.
         let value = (f64::from(mantissa) * 2.0_f64.powi(exponent)) as f32;
         *element = value.to_le_bytes();
     }
 }
 
-/// Luma, two differences of colour and alpha, whose highest bit says how they are scaled.
+/// Decodes luma, two colour differences and alpha, whose highest bit defines the scale.
 fn rgba([luma, orange, green, alpha]: [i32; 4], most: i32) -> [i32; 4] {
     let mut scale = alpha;
     for shift in [1, 2, 4, 8] {

@@ -1,6 +1,6 @@
-//! The index codecs: triangles by edges and corners that were seen lately, and plain sequences by differences.
+//! The index codecs: triangles by recent edges and corners, and plain sequences by differences.
 
-/// Numbers of different lengths, one after the other.
+/// A reader of numbers of variable length.
 struct Numbers<'a> {
     rest: std::slice::Iter<'a, u8>,
 }
@@ -10,7 +10,7 @@ impl Numbers<'_> {
         self.rest.next().copied()
     }
 
-    /// Seven bits a byte, the low ones first.
+    /// Seven bits per byte, the low ones first.
     fn number(&mut self) -> Option<u32> {
         let mut number = 0;
         for shift in [0, 7, 14, 21, 28] {
@@ -32,14 +32,14 @@ fn unzigzag(code: u32) -> u32 {
     (code >> 1) ^ (code & 1).wrapping_neg()
 }
 
-/// The last sixteen of something.
+/// The last sixteen items.
 struct Recent<T> {
     all: [T; 16],
     next: usize,
 }
 
 impl<T: Copy> Recent<T> {
-    /// The newest is 0.
+    /// An item by its age; the newest is 0.
     fn get(&self, age: usize) -> T {
         self.all[self.next.wrapping_sub(1 + age) & 15]
     }
@@ -50,16 +50,16 @@ impl<T: Copy> Recent<T> {
     }
 }
 
-/// All that triangles are told by.
+/// The decoder's state.
 struct Triangles<'a> {
     numbers: Numbers<'a>,
     /// Frequent pairs of corners.
     pairs: &'a [u8],
     edges: Recent<[u32; 2]>,
     corners: Recent<u32>,
-    /// The lowest index that no triangle had yet.
+    /// The lowest index that no triangle has used yet.
     next: u32,
-    /// The last that was written out.
+    /// The last index that was written explicitly.
     last: u32,
 }
 
@@ -69,7 +69,7 @@ pub(super) fn triangles(stream: &[u8], count: usize) -> Option<Vec<u32>> {
     let (&header, rest) = stream.split_first()?;
     let (codes, rest) = rest.split_at_checked(count / 3)?;
     let (data, pairs) = rest.split_at_checked(rest.len().checked_sub(PAIRS)?)?;
-    // Version 0 is none of glTF's.
+    // glTF does not allow version 0.
     if header != 0xe1 {
         return None;
     }
@@ -116,7 +116,7 @@ impl Triangles<'_> {
         Some([a, b, c])
     }
 
-    /// A triangle that shares no recent edge.
+    /// A triangle without a recent edge.
     fn without_edge(&mut self, code: u8) -> Option<[u32; 3]> {
         let pair = match code {
             0xfe | 0xff => self.numbers.byte()?,
@@ -126,7 +126,7 @@ impl Triangles<'_> {
             self.next = 0;
         }
         let of = [if code == 0xff { 15 } else { 0 }, pair >> 4, pair & 15];
-        // All that are new are counted before any is written out.
+        // All new corners are counted before the first explicit one is read.
         let mut corners = [0; 3];
         for (corner, &which) in corners.iter_mut().zip(&of) {
             *corner = match which {
@@ -169,12 +169,12 @@ impl Triangles<'_> {
     }
 }
 
-/// Indices of any kind.
+/// Indices of any topology.
 pub(super) fn sequence(stream: &[u8], count: usize) -> Option<Vec<u32>> {
     const TAIL: usize = 4;
     let (&header, rest) = stream.split_first()?;
     let data = rest.get(..rest.len().checked_sub(TAIL)?)?;
-    // Each takes a byte at least.
+    // Each index takes at least one byte.
     if header != 0xd1 || data.len() < count {
         return None;
     }

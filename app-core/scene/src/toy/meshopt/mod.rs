@@ -1,7 +1,8 @@
-//! Buffer views that are compressed by meshopt: vertices, indices, and the filters over vertices.
+//! Buffer views compressed by meshopt: vertices, indices, and the filters over vertices.
 //!
-//! Source: the glTF extensions `EXT_meshopt_compression` and `KHR_meshopt_compression` (appendices A and B). Decoders are
-//! of this project; streams of the format's own encoder are what its tests read.
+//! Source: the glTF extensions `EXT_meshopt_compression` and `KHR_meshopt_compression` (appendices
+//! A and B). The decoders belong to this project; their tests read streams of the format's own
+//! encoder.
 
 mod filters;
 mod indices;
@@ -9,14 +10,14 @@ mod vertices;
 
 pub(super) use filters::Filter;
 
-/// How a view is compressed.
+/// The compression of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Compressed {
     pub(super) mode: Mode,
     pub(super) filter: Filter,
-    /// Elements.
+    /// Number of elements.
     pub(super) count: usize,
-    /// Bytes of an element.
+    /// Bytes per element.
     pub(super) stride: usize,
 }
 
@@ -39,7 +40,7 @@ impl Mode {
 }
 
 impl Compressed {
-    /// Whether the format allows these numbers together.
+    /// Whether the format allows this combination.
     pub(super) fn is_allowed(&self) -> bool {
         let is_index = self.stride == 2 || self.stride == 4;
         let of_mode = match self.mode {
@@ -56,7 +57,7 @@ impl Compressed {
         of_mode && of_filter && (self.filter == Filter::None || self.mode == Mode::Attributes)
     }
 
-    /// The bytes that a stream stands for; `None` where it is broken. [`Self::is_allowed`] has been asked.
+    /// Decompresses a stream; `None` if it is broken. The caller has checked [`Self::is_allowed`].
     pub(super) fn decode(&self, stream: &[u8]) -> Option<Vec<u8>> {
         match self.mode {
             Mode::Attributes => {
@@ -69,7 +70,7 @@ impl Compressed {
         }
     }
 
-    /// Indices in two or four bytes each.
+    /// Indices of two or four bytes each.
     fn packed(&self, indices: &[u32]) -> Vec<u8> {
         let kept = self.stride;
         indices

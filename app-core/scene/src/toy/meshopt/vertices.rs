@@ -1,12 +1,13 @@
-//! The vertex codec, versions 0 and 1: bytes of one place in each element together, as differences, in few bits.
+//! The vertex codec, versions 0 and 1: bytes at the same position of each element together, as
+//! differences, in few bits.
 
-/// Most bytes of a block, and most of its elements.
+/// Largest number of a block's bytes, and of its elements.
 const BLOCK_BYTES: usize = 8192;
 const MAX_BLOCK: usize = 256;
-/// Bytes that share a number of bits.
+/// Number of bytes with a common bit width.
 const GROUP: usize = 16;
 
-/// Where a stream has been read to.
+/// A stream and the position in it.
 struct Reader<'a> {
     rest: &'a [u8],
 }
@@ -29,15 +30,15 @@ enum Version {
     One,
 }
 
-/// What stands for one block beside its data.
+/// The parameters of a block.
 struct Shape<'a> {
     version: Version,
     n_elements: usize,
-    /// Of version 1: for each four bytes of an element, how their differences were taken.
+    /// In version 1: for each four bytes of an element, the kind of their differences.
     channels: &'a [u8],
 }
 
-/// `count` elements of `stride` bytes, which is a multiple of four up to 256.
+/// Decodes `count` elements of `stride` bytes, a multiple of four up to 256.
 pub(super) fn decode(stream: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     let (&header, rest) = stream.split_first()?;
     let version = match header {
@@ -67,7 +68,7 @@ pub(super) fn decode(stream: &[u8], count: usize, stride: usize) -> Option<Vec<u
     reader.rest.is_empty().then_some(bytes)
 }
 
-/// `last` is the element before the block, then the last of it.
+/// Decodes a block. `last` is the element before the block, and then its last one.
 fn decode_block(reader: &mut Reader, shape: &Shape, block: &mut [u8], last: &mut [u8]) -> Option<()> {
     let stride = last.len();
     let control = match shape.version {
@@ -88,7 +89,7 @@ fn decode_block(reader: &mut Reader, shape: &Shape, block: &mut [u8], last: &mut
     Some(())
 }
 
-/// The bytes of one place, still differences. `mode` is that of version 1.
+/// Decodes the differences of the bytes at one position. `mode` exists in version 1.
 fn decode_lane(reader: &mut Reader, mode: Option<u8>, lane: &mut [u8]) -> Option<()> {
     let bits: [u32; 4] = match mode {
         None => [0, 2, 4, 8],
@@ -110,7 +111,7 @@ fn decode_lane(reader: &mut Reader, mode: Option<u8>, lane: &mut [u8]) -> Option
     Some(())
 }
 
-/// Sixteen bytes in few bits each; those of all ones stand for a byte of their own behind.
+/// Sixteen bytes of few bits each; a value of all ones stands for an additional byte after them.
 fn decode_group(reader: &mut Reader, bits: u32) -> Option<[u8; GROUP]> {
     let mut group = [0; GROUP];
     match bits {
@@ -126,7 +127,7 @@ fn decode_group(reader: &mut Reader, bits: u32) -> Option<[u8; GROUP]> {
     let all_ones = u8::MAX >> (8 - bits);
     for (index, byte) in group.iter_mut().enumerate() {
         let place = index % per_byte;
-        // Single bits stand in their bytes the other way round.
+        // Single bits are in reverse order.
         let from_end = if bits == 1 { place } else { per_byte - 1 - place };
         let code = packed[index / per_byte] >> (bits as usize * from_end) & all_ones;
         *byte = if code == all_ones { reader.byte()? } else { code };
@@ -134,7 +135,8 @@ fn decode_group(reader: &mut Reader, bits: u32) -> Option<[u8; GROUP]> {
     Some(group)
 }
 
-/// Adds the differences of four bytes of each element up, from the element before the block on.
+/// Integrates the differences of four bytes of each element, starting from the element before the
+/// block.
 fn add_up(
     lanes: &[[u8; MAX_BLOCK]; 4],
     channel: u8,

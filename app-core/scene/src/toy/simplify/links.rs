@@ -1,20 +1,21 @@
-//! Which triangles are around which vertex, while edges are collapsed.
+//! Adjacency of triangles and vertices during edge collapses.
 
 use std::collections::HashSet;
 
 use crate::geometry::edges::edges;
 
-/// Vertices with more triangles around them stay: a fan of a whole file's triangles would take hours.
+/// Vertices with more triangles around them stay: a fan of a whole file's triangles would take
+/// hours.
 const MOST_AROUND: usize = 128;
 
-/// Triangles and what they share. A collapsed one has no corners in any list.
+/// Triangles and their adjacency. A collapsed triangle has no corners in any list.
 pub(super) struct Links {
     triangles: Vec<[u32; 3]>,
-    /// Of each vertex, those that it is a corner of.
+    /// The triangles at each vertex.
     around: Vec<Vec<u32>>,
-    /// Edges at one side of which there is a surface alone, lower index first.
+    /// Edges with a surface on one side only, lower index first.
     borders: HashSet<[u32; 2]>,
-    /// Whether a vertex was an end of a border at first.
+    /// Whether a vertex was on a border initially.
     is_on_border: Vec<bool>,
     n_triangles: usize,
 }
@@ -47,7 +48,7 @@ impl Links {
         self.n_triangles
     }
 
-    /// Whether an edge was one at first with a surface at one side alone.
+    /// Whether an edge had a surface on one side only initially.
     pub(super) fn is_border(&self, [a, b]: [u32; 2]) -> bool {
         self.borders.contains(&[a.min(b), a.max(b)])
     }
@@ -58,7 +59,7 @@ impl Links {
         around.map(|index| self.triangles[*index as usize])
     }
 
-    /// Other corners of the triangles around a vertex, in order.
+    /// Other corners of the triangles around a vertex, sorted.
     pub(super) fn neighbours(&self, vertex: u32) -> Vec<u32> {
         let corners = self.triangles_of(vertex).flatten();
         let mut neighbours: Vec<u32> = corners.filter(|corner| *corner != vertex).collect();
@@ -67,8 +68,9 @@ impl Links {
         neighbours
     }
 
-    /// Whether a vertex may be moved onto another: both see no vertices together but those of the triangles that go, of which there
-    /// are one at a border and else two. A border's vertex is only moved along it.
+    /// Whether a vertex may be moved onto another: their common neighbours are only those of the
+    /// removed triangles, of which there is one at a border and two elsewhere. A border's vertex is
+    /// only moved along it.
     pub(super) fn may_collapse(&self, from: u32, to: u32) -> bool {
         let n_around = |vertex: u32| self.around[vertex as usize].len();
         if n_around(from).max(n_around(to)) > MOST_AROUND {
@@ -88,8 +90,8 @@ impl Links {
         is_edge && is_along && self.leaves_all(from, to)
     }
 
-    /// Whether a piece of the shape is left, and no two of its triangles have the same corners: a leaf of two triangles becomes one, and
-    /// a pyramid stays.
+    /// Whether a piece of the shape is left, and no two of its triangles have the same corners: a
+    /// leaf of two triangles becomes one, and a pyramid stays.
     fn leaves_all(&self, from: u32, to: u32) -> bool {
         let sorted = |mut corners: [u32; 3]| {
             corners.sort_unstable();

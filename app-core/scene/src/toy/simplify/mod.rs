@@ -1,12 +1,14 @@
-//! Fewer triangles of the same vertices: edges are collapsed onto one of their ends, in the order of the error that this makes.
+//! Mesh simplification on the same vertices: edges are collapsed onto one of their ends, in the
+//! order of the resulting error.
 //!
-//! A vertex that is left out is moved onto a neighbour: so those that are left keep their joints, weights and targets, and whatever
-//! pose the toy takes, its simplified shape takes as well. Faces of closed pieces stay closed: where two corners become one, an edge
-//! and its opposite go together.
+//! A removed vertex is moved onto a neighbour: so the remaining ones keep their joints, weights and
+//! targets, and the simplified shape follows every pose. Faces of closed pieces stay closed: an
+//! edge and its opposite collapse together.
 //!
-//! Source: quadrics of Garland and Heckbert 1997, with their planes along borders. In place of one shape there are several, those of
-//! some poses, and a collapse costs what it costs in the worst of them (as DeCoro and Rusinkiewicz 2005 do by a sum). The link condition is
-//! that of Dey et al. 1999. The order is told by errors, and by indices where those are equal.
+//! Source: quadrics of Garland and Heckbert 1997, with their planes along borders. Instead of one
+//! shape there are several, one per pose, and the cost of a collapse is its largest cost over them
+//! (DeCoro and Rusinkiewicz 2005 use the sum). The link condition is that of Dey et al. 1999.
+//! Collapses are ordered by error, and by indices for equal errors.
 
 mod links;
 mod quadric;
@@ -24,20 +26,21 @@ use quadric::Quadric;
 pub(super) struct Collapse {
     pub(super) from: u32,
     pub(super) to: u32,
-    /// How far the shape with this and all collapses before it is from the first one, in units of the positions.
+    /// Distance of the shape after this and all earlier collapses from the first one, in units of
+    /// the positions.
     pub(super) error: f64,
-    /// Triangles that are left.
+    /// Number of remaining triangles.
     pub(super) n_left: usize,
 }
 
-/// A collapse that turns a triangle by more than this angle's cosine is not made.
+/// Collapses that rotate a triangle by more than this angle's cosine are refused.
 const LEAST_COSINE: f64 = 0.25;
-/// The mean distance of planes from a vertex is this part of the largest distance between the surfaces, or more: .45 to 1.1 on a torus
-/// and on a jointed toy.
+/// The root mean squared distance of planes from a vertex is at least this fraction of the largest
+/// distance between the surfaces: .45 to 1.1 on a torus and on a jointed toy.
 const MEAN_OF_LARGEST: f64 = 0.33;
 
-/// Collapses of triangles, one after the other, until an error or a number of triangles is reached. `poses` are the positions of all
-/// vertices in some poses, at least one.
+/// Collapses edges, one after the other, until an error or a number of triangles is reached.
+/// `poses` are the positions of all vertices in some poses, at least one.
 pub(super) fn collapses(
     triangles: &[[u32; 3]],
     poses: &[Vec<Vec3>],
@@ -65,23 +68,23 @@ pub(super) fn collapses(
     made
 }
 
-/// A collapse that may be made.
+/// A possible collapse.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     error: f64,
-    /// Of the vertex that is left out, and of the one that it is moved onto.
+    /// The removed vertex, and its target.
     edge: [u32; 2],
 }
 
-/// What the heap is ordered by: the error's bits, which are ordered as errors are, the edge, and the ends' versions.
+/// The heap's order: the error's bits, which sort like errors, the edge, and the ends' versions.
 type Key = Reverse<(u64, [u32; 2], [u32; 2])>;
 
 struct State<'a> {
     links: Links,
     poses: &'a [Vec<Vec3>],
-    /// Of each pose those of all vertices.
+    /// For each pose the quadrics of all vertices.
     quadrics: Vec<Vec<Quadric>>,
-    /// Of each vertex, how often it or what is around it changed.
+    /// For each vertex, the number of changes at it or around it.
     versions: Vec<u32>,
     heap: BinaryHeap<Key>,
 }
@@ -106,7 +109,7 @@ impl<'a> State<'a> {
         state
     }
 
-    /// The collapse of least error that keeps the shape's links and turns no face over.
+    /// The collapse of least error that keeps the link condition and flips no face.
     fn next(&mut self) -> Option<Candidate> {
         while let Some(Reverse((bits, edge, versions))) = self.heap.pop() {
             let [from, to] = edge;
@@ -129,7 +132,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// The largest over the poses.
+    /// The largest error over the poses.
     fn error(&self, [from, to]: [u32; 2]) -> f64 {
         let poses = self.poses.iter().zip(&self.quadrics);
         let errors = poses.map(|(places, quadrics)| {
@@ -153,7 +156,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Whether a face would look elsewhere in one of the poses.
+    /// Whether a face would flip in one of the poses.
     fn turns_over(&self, from: u32, to: u32) -> bool {
         let mut moved = self
             .links
@@ -165,7 +168,7 @@ impl<'a> State<'a> {
                 let before = normal(corners.map(place));
                 let after = normal(corners.map(|corner| place(if corner == from { to } else { corner })));
                 let is_turned = before.dot(after) < LEAST_COSINE * before.length() * after.length();
-                // One without area before may look anywhere.
+                // A face without area before may have any direction.
                 before != DVec3::ZERO && (after == DVec3::ZERO || is_turned)
             })
         })
@@ -177,7 +180,7 @@ fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Planes of the triangles around each vertex, and those along borders, which stand on them.
+/// Planes of the triangles around each vertex, and perpendicular planes along borders.
 fn quadrics(links: &Links, triangles: &[[u32; 3]], places: &[Vec3]) -> Vec<Quadric> {
     let mut quadrics = vec![Quadric::NONE; places.len()];
     for corners in triangles {

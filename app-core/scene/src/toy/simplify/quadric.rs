@@ -12,7 +12,7 @@ pub(super) struct Quadric {
 }
 
 impl Quadric {
-    /// Of no plane.
+    /// A quadric of no plane.
     pub(super) const NONE: Self = Self {
         squares: DMat3::ZERO,
         linear: DVec3::ZERO,
@@ -20,7 +20,7 @@ impl Quadric {
         weight: 0.0,
     };
 
-    /// Of the plane through a point, with a normal of unit length.
+    /// The quadric of a plane through a point, with a normal of unit length.
     pub(super) fn of_plane(normal: DVec3, through: DVec3, weight: f64) -> Self {
         let distance = -normal.dot(through);
         let scaled = weight * normal;
@@ -39,13 +39,13 @@ impl Quadric {
         self.weight += other.weight;
     }
 
-    /// Root of the mean squared distance; none from no plane.
+    /// Root of the mean squared distance; 0 without planes.
     pub(super) fn distance(&self, point: DVec3) -> f64 {
         if self.weight == 0.0 {
             return 0.0;
         }
         let sum = point.dot(self.squares * point) + 2.0 * self.linear.dot(point) + self.constant;
-        // Rounding may take a sum of squares below nothing.
+        // Rounding may make a sum of squares negative.
         (sum.max(0.0) / self.weight).sqrt()
     }
 }

@@ -11,7 +11,8 @@ use crate::stability::row::Findings;
 
 const TARGET: DVec3 = DVec3::new(0.02, 0.04, 0.01);
 
-/// Over the table the toy is shown moved; from below it the frame passes through. The world is photographed for each step.
+/// Above the table the toy is shown moved; from below it the frame passes through. The world is
+/// photographed for each step.
 pub(super) fn edge_on(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let worlds = evenly(40, 20.0, -9.25).map(|elevation_deg| {
         let world = small();

@@ -1,4 +1,4 @@
-//! Lights that go round, near, far, and grow.
+//! Lights that move around, nearer and farther, and grow.
 
 use glam::DVec3;
 
@@ -14,9 +14,9 @@ const TWO_CODES: Bound = Bound {
     unit: "codes",
     meaning: "largest difference of a colour in a step of 0.2 mm",
 };
-/// Middle of the toy, from which a light's distance counts.
+/// Centre of the toy, from which a light's distance is measured.
 const MIDDLE: DVec3 = DVec3::new(0.0, 0.05, 0.0);
-/// Radius of a ball that holds the toy in all its poses.
+/// Radius of a sphere around the toy in all its poses.
 const REACH_M: f64 = 0.11;
 const AZIMUTH_DEG: f64 = 35.0;
 
@@ -55,7 +55,7 @@ fn bulb_at_a_metre(radius_m: f64) -> Lamp {
     Lamp::bulb(toward(50.0, AZIMUTH_DEG), radius_m, 0.75)
 }
 
-/// From a point on, in steps of 0.2 mm; the world is photographed for each step.
+/// From a point light on, in steps of 0.2 mm; the world is photographed for each step.
 pub(super) fn small_radius(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let from_a_point =
         evenly(16, 3.0, 0.0).map(|radius_mm| (radius_mm, lit(bulb_at_a_metre(1e-3 * radius_mm))));
@@ -64,7 +64,7 @@ pub(super) fn small_radius(lab: &mut Lab, label: Label) -> anyhow::Result<Findin
     findings(label, "radius, mm", moments, Some(TWO_CODES))
 }
 
-/// Up to half an angle of 30 degrees; the world is photographed for each step.
+/// Up to an angular radius of 30 degrees; the world is photographed for each step.
 pub(super) fn large_radius(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let worlds = evenly(31, 0.0, 30.0).map(|half_deg| {
         let sine = half_deg.to_radians().sin();
@@ -74,7 +74,7 @@ pub(super) fn large_radius(lab: &mut Lab, label: Label) -> anyhow::Result<Findin
     findings(label, "half angle, degrees", moments, None)
 }
 
-/// The photographs are of a bulb of 1 mm; what is told grows from a point on.
+/// The photographs have a bulb of 1 mm; the listed radius grows from 0.
 pub(super) fn told_radius(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let world = lit(bulb_at_a_metre(1e-3));
     let photos = Photos::of(&world);

@@ -1,7 +1,8 @@
-//! What must change by little when a parameter changes by little.
+//! Small changes of a parameter must cause small changes of the picture.
 //!
-//! Where the real world changes, it is photographed for each step, and a step of the picture is measured against that of the
-//! truth. Where only what the core is told changes, the photographs stay, and a step is measured against the median one.
+//! If the real world changes, it is photographed for each step, and a step of the picture is
+//! compared with the truth's. If only the core's input changes, the photographs stay, and a step is
+//! compared with the median one.
 
 mod camera;
 mod light;
@@ -18,19 +19,19 @@ use super::row::{Bound, Findings, Row, Sweep};
 use crate::photographer::{Shot, World};
 use desk::metrics::score;
 
-/// Against the truth's step of the same place, or against the median one of the sweep where that is larger.
+/// Ratio to the truth's step at the same place, or to the sweep's median if that is larger.
 const JUMP: Bound = Bound {
     limit: 4.0,
     unit: "times",
     meaning: "largest step (RMS) over that of the truth",
 };
-/// The same where the truth does not change, or is not photographed.
+/// The same for an unchanged or missing truth.
 const UNEVEN: Bound = Bound {
     limit: 4.0,
     unit: "times",
     meaning: "largest step (RMS) over the median step",
 };
-/// Codes of RMS up to which a step is what rounding to codes makes of it.
+/// RMS in codes up to which a step is rounding.
 const ROUNDING_CODES: f64 = 0.1;
 const GROUP: &str = "continuous";
 
@@ -58,14 +59,14 @@ struct Moment {
     errors: Option<[f64; 2]>,
 }
 
-/// Two neighbours of a sweep.
+/// Two neighbouring moments of a sweep.
 struct Step {
     at: f64,
     made: Gap,
     truth: Option<Gap>,
 }
 
-/// Photographs and makes each world of a sweep.
+/// Photographs and renders each world of a sweep.
 fn photographed(
     lab: &mut Lab,
     worlds: impl IntoIterator<Item = (f64, World)>,
@@ -95,7 +96,8 @@ fn moment(lab: &mut Lab, at: f64, shot: &Shot) -> anyhow::Result<Moment> {
     })
 }
 
-/// Rows and drawings of a sweep. `also` is a bound of the largest difference of a colour in one step, where there is one.
+/// Rows and drawings of a sweep. `also` is an optional bound of the largest difference of a colour
+/// in one step.
 fn findings(
     label: Label,
     along: &'static str,
@@ -207,7 +209,7 @@ fn largest_difference(label: Label, along: &str, steps: &[Step], bound: Bound) -
     Some(row)
 }
 
-/// Numbers from `from` to `to`, ends included, evenly.
+/// Numbers from `from` to `to`, ends included, evenly spaced.
 fn evenly(n: u32, from: f64, to: f64) -> impl Iterator<Item = f64> {
     (0..n).map(move |i| from + (to - from) * f64::from(i) / f64::from(n - 1))
 }

@@ -24,7 +24,7 @@ fn sensed(
     findings(label, along, moments, None)
 }
 
-/// Plate and frame at one gain; the same world is photographed for each step.
+/// Plate and frame with one gain; the same world is photographed for each step.
 pub(super) fn brightness(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let sensors = evenly(41, 0.005f64.log10(), 8f64.log10()).map(|power| {
         let gain = DVec3::splat(10f64.powf(power));
@@ -38,7 +38,7 @@ pub(super) fn brightness(lab: &mut Lab, label: Label) -> anyhow::Result<Findings
     sensed(lab, label, "decimal logarithm of the gain", sensors)
 }
 
-/// The same noise, more and more of it; the truth has none.
+/// The same noise with growing amplitude; the truth has none.
 pub(super) fn noise(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let sensors = evenly(25, 0.0, 12.0).map(|noise_codes| {
         let sensor = Sensor {

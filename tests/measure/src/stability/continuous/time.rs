@@ -1,4 +1,4 @@
-//! Time through a clip: the photographs stay, the shown moment changes.
+//! Time in a clip: the photographs stay, the shown moment changes.
 
 use app_core::scene::Pose;
 use glam::{DQuat, DVec3};
@@ -14,11 +14,12 @@ const ONE_CODE: Bound = Bound {
     unit: "codes",
     meaning: "largest difference of a colour from that at a key",
 };
-/// Moments after a key: in the longest of them the toy's fastest point moves by less than a ten-thousandth of a pixel.
+/// Moments after a key: in the longest of them the toy's fastest point moves by less than a
+/// ten-thousandth of a pixel.
 const AFTER_SECS: [f64; 3] = [1e-9, 1e-7, 1e-6];
 const N_STEPS: u32 = 64;
 
-/// A clip that turns back at half its time.
+/// A clip that returns after half its time.
 fn there_and_back() -> World {
     let mut world = small();
     for part in &mut world.parts {
@@ -59,7 +60,8 @@ pub(super) fn through_a_clip(lab: &mut Lab, label: Label) -> anyhow::Result<Find
     findings(label, "time, s", moments, None)
 }
 
-/// A clip in which a part stands still, then moves: nothing must tell a moment that is just after a key.
+/// A clip in which a part stands still, then moves: a moment just after a key must not differ
+/// visibly.
 fn starts_late() -> World {
     let mut world = small();
     let rest = world.parts[1].rest;
