@@ -9,7 +9,7 @@ use super::photograph::Photograph;
 use super::report::PlaneAlignment;
 use app_scene::frame::FrameInput;
 use app_scene::gloss::Gloss;
-use app_scene::scene::{Light, Scene};
+use app_scene::scene::Scene;
 use app_scene::sharpness::Spread;
 
 /// Observes frames of one scene that are shown as given.
@@ -72,7 +72,6 @@ impl Observer {
             .reflection(&known, input, &lights)?;
         let look = Look {
             input,
-            lights: &lights,
             plate_spread: sharpness.plate_spread,
             reflection: reflection.as_ref(),
         };
@@ -103,7 +102,6 @@ impl Observer {
 /// The conditions in which a frame is looked at.
 struct Look<'a> {
     input: &'a FrameInput,
-    lights: &'a [Light],
     plate_spread: Spread,
     reflection: Option<&'a FoundReflection>,
 }

@@ -30,7 +30,7 @@ const N_EYES: usize = 32;
 static RUN: LazyLock<Run> = LazyLock::new(|| {
     let stand = Stand::new(SETUPS[0]);
     let pictures = photograph(&stand);
-    Run::glossy(REFLECTION, stand, pictures, &Device::shared().decoded()).unwrap()
+    Run::reflecting(REFLECTION, stand, pictures, &Device::shared().decoded()).unwrap()
 });
 
 /// Where the eye's images are behind the table: across it from points of a lobe, one for each of its slopes, of which all are equally
@@ -132,7 +132,7 @@ fn four_lights_leave_no_reflection() {
         let stand = Stand::new(FOUR_LIGHTS);
         let pictures = photograph(&Stand::new(two_lights));
         match reflection {
-            Some(reflection) => Run::glossy(reflection, stand, pictures, &decoded),
+            Some(reflection) => Run::reflecting(reflection, stand, pictures, &decoded),
             None => Run::new(stand, pictures, &decoded),
         }
     };

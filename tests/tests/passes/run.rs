@@ -129,7 +129,7 @@ impl Run {
     }
 
     /// The same on a table that reflects.
-    pub(crate) fn glossy(
+    pub(crate) fn reflecting(
         reflection: Reflection,
         stand: Stand,
         [plate, frame]: [Arc<Image>; 2],
