@@ -1,18 +1,18 @@
-//! Planes of things that were found at a place, which the scene has as receivers from then on.
+//! Keeps the found planes of things, which become receivers of the scene.
 
 use std::sync::Arc;
 
 use super::report::PlaneAlignment;
 use app_scene::scene::{Receiver, Scene};
 
-/// They are looked for in one of the first views that show things, or never: each search takes some seconds.
+/// Most searches, in the first views that show things: each takes some seconds.
 const MOST_SEARCHES: usize = 2;
 
 /// A thing's plane as a receiver.
 #[derive(Debug)]
 pub(super) struct FoundReceiver {
     pub(super) receiver: Receiver,
-    /// Index of the scene's receiver that it is in place of.
+    /// Index of the scene's receiver that it replaces.
     pub(super) instead_of: Option<usize>,
     pub(super) report: PlaneAlignment,
 }
@@ -26,12 +26,12 @@ pub(super) struct FoundPlanes {
 }
 
 impl FoundPlanes {
-    /// Whether they are to be looked for.
+    /// Whether a search is due.
     pub(super) fn are_wanted(&self) -> bool {
         self.found.is_empty() && self.n_searches < MOST_SEARCHES
     }
 
-    /// Takes note of a search in a view that shows things; whether it found any.
+    /// Stores the result of a search in a view that shows things; whether it found any.
     pub(super) fn take(&mut self, planes: Vec<FoundReceiver>) -> bool {
         self.n_searches += 1;
         self.report = planes.iter().map(|found| found.report).collect();

@@ -1,4 +1,4 @@
-//! How far a thing's plane reaches: the smallest rectangle around what the picture shows of it.
+//! Estimates the extent of a thing's plane: the smallest rectangle around its visible part.
 
 use glam::{DMat4, DVec2, DVec3};
 
@@ -6,15 +6,16 @@ use super::grown::Grown;
 use crate::picture::{Level, places};
 use crate::receivers::SeenReceiver;
 
-/// Turns of the rectangle that are tried, over a quarter turn.
+/// Number of trial angles of the rectangle, over a quarter turn.
 const N_TURNS: usize = 45;
 /// The part of the points that may lie beyond each side.
 const BEYOND: f64 = 0.005;
-/// At least that part of the pixels that a rectangle is seen in shows the thing.
+/// Least part of the rectangle's pixels that show the thing.
 const FILLED: f64 = 0.6;
-/// Fewer pixels tell no rectangle.
+/// Least pixels for a rectangle.
 const LEAST_PIXELS: usize = 100;
-/// A tilted plane whose lowest side is no higher than this part of its highest one goes down to the receiver.
+/// If the lowest side of a tilted plane is at most this part as high as the highest one, the plane
+/// continues down to the receiver.
 const LOW: f64 = 0.4;
 
 /// A thing in a level, on a receiver.
@@ -33,8 +34,8 @@ pub(super) struct Extent {
 }
 
 impl Outline<'_> {
-    /// Places on a plane that show the thing's upper side, in metres. Of a level one that are those below which the thing stands on its
-    /// receiver: its sides are seen below its near edge, and show none.
+    /// Places of the thing's upper side on a plane, in metres. For a level plane these are the places
+    /// directly above the thing's footprint, which excludes its visible sides.
     fn places(&self, plane_from_camera: &DMat4, is_level: bool) -> Vec<DVec2> {
         let endless = SeenReceiver::of_size(*plane_from_camera, DVec2::INFINITY);
         let k = &self.level.intrinsics;
@@ -57,7 +58,7 @@ impl Outline<'_> {
             .collect()
     }
 
-    /// The part of the pixels that a plane is seen in that shows the thing.
+    /// The part of a plane's visible pixels that shows the thing.
     fn filled(&self, plane: &SeenReceiver) -> f64 {
         let pixels = places(self.level.frame.size_px);
         let seen = pixels.filter(|at| plane.point_at(&self.level.intrinsics, *at).is_some());
@@ -71,7 +72,7 @@ impl Outline<'_> {
 }
 
 impl Extent {
-    /// None where too little is seen, or the thing is no rectangle.
+    /// `None` if too little is visible, or the thing is no rectangle.
     pub(super) fn of(outline: &Outline<'_>, plane_from_camera: &DMat4, is_level: bool) -> Option<Self> {
         let places = outline.places(plane_from_camera, is_level);
         if places.len() < LEAST_PIXELS {
@@ -102,7 +103,7 @@ impl Extent {
         }
     }
 
-    /// With a plane's low side on the receiver, where it comes near to it: what lies beneath that is not seen.
+    /// Extends the low side of a plane to the receiver, if it comes close to it.
     fn down_to(self, table: &SeenReceiver, plane_from_camera: &DMat4) -> Self {
         let axis = DVec2::from_angle(self.turn_rad);
         let table_from_plane = table.plane_from_camera * plane_from_camera.inverse();
@@ -147,7 +148,7 @@ impl Extent {
     }
 }
 
-/// The first and the last of some values, but for those beyond.
+/// The least and the largest of some values, without outliers.
 fn ends(mut values: Vec<f64>) -> [f64; 2] {
     values.sort_unstable_by(f64::total_cmp);
     #[allow(

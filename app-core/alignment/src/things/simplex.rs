@@ -1,8 +1,9 @@
-//! The least of a loss of three numbers, of which the first ones are free, by a simplex that walks downhill.
+//! Minimises a loss of three numbers, of which the first ones are free, by the downhill simplex.
 //!
 //! Source: Nelder and Mead 1965.
 
-/// The best of some tries: its loss, and where. The simplex begins at a start, with steps of a length along each free number.
+/// Loss and place of the best try. The simplex begins at a start, with one step along each free
+/// number.
 pub(super) fn descend(
     (start, step): ([f64; 3], f64),
     n_free: usize,
