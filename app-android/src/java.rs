@@ -6,8 +6,8 @@ use std::thread;
 
 use android_activity::{AndroidApp, WindowManagerFlags};
 use android_media::heat::Thermometer;
-use android_media::{display, media_store};
-use app_core::app::Permission;
+use android_media::{display, media_store, person, settings};
+use app_core::app::{Language, Permission};
 use arcore::java::{Java, JavaHost};
 use jni::errors::Result;
 use jni::objects::{JObject, JValue};
@@ -18,7 +18,6 @@ use crate::phone::{Phone, permission};
 use app_shell::guard::guarded;
 
 const CAMERA: &str = "android.permission.CAMERA";
-const DETAILS: &str = "android.settings.APPLICATION_DETAILS_SETTINGS";
 /// `PackageManager.PERMISSION_GRANTED`.
 const GRANTED: i32 = 0;
 /// Comes back with an answer that a native activity never hears; the permission is looked at when it resumes.
@@ -61,7 +60,7 @@ impl Activity {
     }
 
     /// Lets `act` call Java on the thread that activities live on, and writes to the log where it fails.
-    fn on_java_thread(&self, act: fn(&mut Env<'_>, &JObject<'_>) -> Result<()>) {
+    fn on_java_thread(&self, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -> Result<()> + Send + 'static) {
         let app = self.app.clone();
         self.app.run_on_java_main_thread(Box::new(move || {
             if let Some(Err(error)) = guarded("a call of Java", || with_java(&app, act)) {
@@ -148,44 +147,6 @@ fn ask(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<()> {
     Ok(())
 }
 
-/// `startActivity(new Intent(DETAILS, Uri.parse("package:" + getPackageName())))`.
-fn show_settings(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<()> {
-    let scheme = env.new_string("package")?;
-    let details = env.new_string(DETAILS)?;
-    let package = env
-        .call_method(
-            activity,
-            jni_str!("getPackageName"),
-            jni_sig!("()Ljava/lang/String;"),
-            &[],
-        )?
-        .l()?;
-    let of_app = env
-        .call_static_method(
-            jni_str!("android/net/Uri"),
-            jni_str!("fromParts"),
-            jni_sig!("(Ljava/lang/String;Ljava/lang/String;Ljava/lang/String;)Landroid/net/Uri;"),
-            &[
-                JValue::Object(&scheme),
-                JValue::Object(&package),
-                JValue::Object(&JObject::null()),
-            ],
-        )?
-        .l()?;
-    let intent = env.new_object(
-        jni_str!("android/content/Intent"),
-        jni_sig!("(Ljava/lang/String;Landroid/net/Uri;)V"),
-        &[JValue::Object(&details), JValue::Object(&of_app)],
-    )?;
-    env.call_method(
-        activity,
-        jni_str!("startActivity"),
-        jni_sig!("(Landroid/content/Intent;)V"),
-        &[JValue::Object(&intent)],
-    )?;
-    Ok(())
-}
-
 fn finish(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<()> {
     env.call_method(activity, jni_str!("finish"), jni_sig!("()V"), &[])?;
     Ok(())
@@ -214,11 +175,26 @@ impl Phone for Activity {
     }
 
     fn open_settings(&mut self) {
-        self.on_java_thread(show_settings);
+        self.on_java_thread(settings::show);
     }
 
     fn leave(&mut self) {
         self.on_java_thread(finish);
+    }
+
+    fn language(&self) -> Language {
+        let language = self.app.config().language();
+        language
+            .as_deref()
+            .map_or_else(Language::default, Language::of_tag)
+    }
+
+    fn say(&mut self, words: String) {
+        self.on_java_thread(move |env, activity| person::say(env, activity, &words));
+    }
+
+    fn knock(&mut self) {
+        self.on_java_thread(person::knock);
     }
 
     fn keep_awake(&mut self, is_awake: bool) {

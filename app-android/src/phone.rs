@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use app_core::app::{Permission, Thermal};
+use app_core::app::{Language, Permission, Thermal};
 use arcore::java::JavaHost;
 
 /// A phone: Android's own, or a test's.
@@ -15,6 +15,12 @@ pub trait Phone: JavaHost {
     fn open_settings(&mut self);
     /// Finishes the activity, as Android does where an app knows of no way back.
     fn leave(&mut self);
+    /// What the person reads.
+    fn language(&self) -> Language;
+    /// Says it to those who do not see the screen.
+    fn say(&mut self, words: String);
+    /// One short knock.
+    fn knock(&mut self);
     /// Keeps the screen on, or lets it go off.
     fn keep_awake(&mut self, is_awake: bool);
     /// How hot the phone is, as an `AThermalStatus`; none where Android does not tell.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use app_core::app::{GraphicsState, Obstacle, PlatformCommand, ShellCommand, ShellEvent};
-use app_core::interface::Screen;
+use app_core::interface::{Screen, announced};
 use app_core::live::Live;
 use app_core::recording::PictureCodec;
 use app_core::toy::{Toy, ToyError};
@@ -99,6 +99,8 @@ impl<P: Phone> Shell<P> {
             looked: None,
             turned: None,
         };
+        let language = shell.phone.language();
+        shell.tell(ShellEvent::Language(language));
         let event = shell.feed.come_back();
         shell.tell_some(event);
         shell
@@ -231,6 +233,8 @@ impl<P: Phone> Shell<P> {
             Outcome::Tell(event) => self.tell(event),
             Outcome::Written(file) => self.phone.show_in_gallery(file),
             Outcome::Share(files) => self.phone.share(files),
+            Outcome::Scan(Some(_)) => eprintln!("app-android: ARCore recognises no objects by a scan"),
+            Outcome::Scan(None) => {}
         }
     }
 
@@ -268,7 +272,8 @@ impl<P: Phone> Shell<P> {
             } => self.feed.hold(id, &world_from_anchor),
             PlatformCommand::KeepAwake(is_awake) => self.phone.keep_awake(is_awake),
             PlatformCommand::ReopenDevice => self.wants_device = true,
-            PlatformCommand::Announce(step) => eprintln!("app-android: {step:?}"),
+            PlatformCommand::Announce(_) => self.phone.say(announced(self.live.app())),
+            PlatformCommand::Knock => self.phone.knock(),
             PlatformCommand::FrameRate(frames_per_s) => self.pace.set_rate(frames_per_s),
             // ARCore keeps exposure to itself.
             PlatformCommand::LockExposure(_) | PlatformCommand::Underexpose(_) => {}

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use app_core::Core;
 use app_core::app::{
-    Notice, Permission, Saved, ShellCommand, ShellEvent, Step, Thermal, UserAction, WorkCommand,
+    Language, Notice, Permission, Saved, ShellCommand, ShellEvent, Step, Thermal, UserAction, WorkCommand,
 };
 use app_core::interface::{Insets, TouchPhase};
 use app_core::live::Live;
@@ -33,6 +33,9 @@ struct Desk {
     /// Names of files that were shown in the gallery, and handed on.
     shown: Vec<String>,
     shared: Vec<String>,
+    /// For those who do not see the screen.
+    said: Vec<String>,
+    n_knocks: u32,
 }
 
 impl JavaHost for Desk {
@@ -58,6 +61,18 @@ impl Phone for Desk {
 
     fn leave(&mut self) {
         self.is_left = true;
+    }
+
+    fn language(&self) -> Language {
+        Language::German
+    }
+
+    fn say(&mut self, words: String) {
+        self.said.push(words);
+    }
+
+    fn knock(&mut self) {
+        self.n_knocks += 1;
     }
 
     fn keep_awake(&mut self, _: bool) {}
@@ -136,7 +151,11 @@ fn from_the_first_button_to_a_table() {
     shell.set_foreground(true);
     assert_eq!(shell.live().app().step(), Step::FindTable);
     assert!(calls().contains("display=3,2400,1080 resume"));
+    let said = shell.phone().said.last().cloned().unwrap_or_default();
+    assert!(said.starts_with("Zeig den Tisch. "), "{said}");
+    assert_eq!(shell.phone().n_knocks, 0);
     shell.tick();
+    assert_eq!(shell.phone().n_knocks, 1, "a table was found");
     shell.tell(ShellEvent::User(UserAction::Tap(DVec2::new(2.0, 1.0))));
     assert_eq!(shell.live().app().step(), Step::TakePlate);
     assert!(calls().contains("planes=0"), "planes are looked for no longer");

@@ -22,6 +22,8 @@ pub mod inbox;
 #[cfg(target_os = "ios")]
 mod hand_on;
 #[cfg(target_os = "ios")]
+mod person;
+#[cfg(target_os = "ios")]
 mod scene;
 #[cfg(target_os = "ios")]
 mod shell;

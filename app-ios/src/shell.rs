@@ -9,7 +9,7 @@ use app_core::app::{
     ArSession, GraphicsState, LaunchHistory, Panics, Permission, PlatformCommand, ShellCommand, ShellEvent,
     Thermal,
 };
-use app_core::interface::Screen;
+use app_core::interface::{Screen, announced};
 use app_shell::folders::Folders;
 use app_shell::losses::Losses;
 use app_shell::starts;
@@ -22,11 +22,12 @@ use ios_media::video::H264;
 use objc2::MainThreadMarker;
 use objc2_foundation::{NSDictionary, NSHomeDirectory, NSProcessInfo, NSURL};
 use objc2_quartz_core::CALayer;
-use objc2_ui_kit::{UIApplication, UIApplicationOpenSettingsURLString};
+use objc2_ui_kit::{UIApplication, UIApplicationOpenSettingsURLString, UIView};
 
 use crate::convert;
 use crate::hand_on::{self, into_photos};
 use crate::inbox::{Inbox, Told};
+use crate::person;
 use crate::stage::{Fitted, Stage, StageError};
 
 /// The app's hands.
@@ -97,6 +98,7 @@ impl Shell {
                 self.inbox.tell(ShellEvent::Started(history));
             }
             self.begins_anew = false;
+            self.inbox.tell(ShellEvent::Language(person::language()));
             self.inbox.tell(ShellEvent::Foreground(true));
             if !Session::is_supported() {
                 self.inbox.tell(ShellEvent::ArSession(ArSession::Unsupported));
@@ -167,6 +169,11 @@ impl Shell {
         self.session.set_orientation(orientation);
     }
 
+    /// Has ARKit's own guidance shown over the view.
+    pub(crate) fn coach_over(&self, view: &UIView) {
+        self.session.coach_over(view);
+    }
+
     /// Files that wait for the share sheet.
     pub(crate) fn take_shared(&mut self) -> Vec<PathBuf> {
         std::mem::take(&mut self.shared)
@@ -212,6 +219,7 @@ impl Shell {
                 Outcome::Tell(event) => self.inbox.tell(event),
                 Outcome::Written(file) => into_photos(&file),
                 Outcome::Share(files) => self.shared = files,
+                Outcome::Scan(scan) => self.session.recognise(scan.as_deref()),
             }
         }
     }
@@ -280,7 +288,12 @@ impl Shell {
             }
             PlatformCommand::FrameRate(frames_per_s) => self.frames_per_s = frames_per_s,
             PlatformCommand::ReopenDevice => self.wants_device = true,
-            PlatformCommand::Announce(_) => {}
+            PlatformCommand::Announce(_) => {
+                if let Some(live) = self.stage.live() {
+                    person::say(&announced(live.app()));
+                }
+            }
+            PlatformCommand::Knock => person::knock(self.main_thread),
         }
     }
 

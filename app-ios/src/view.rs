@@ -112,6 +112,7 @@ impl MetalView {
         // SAFETY: initWithFrame: is UIView's designated initialiser and takes a CGRect.
         let this: Retained<Self> = unsafe { msg_send![super(this), initWithFrame: frame] };
         this.setMultipleTouchEnabled(true);
+        this.ivars().shell.borrow().coach_over(&this);
         // SAFETY: the view answers memoryIsLow:, which takes the notification as its only argument; the centre keeps no
         // reference to it and forgets it when it goes.
         unsafe {

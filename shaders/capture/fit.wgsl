@@ -2,7 +2,8 @@
 //
 // Receiver: frame / gain = plate c (A + bounce A (1 - A)
 //   + sum_i fraction_i falloff_i (intensity_i V_i - A) / plate_falloff)
-// is linear in (c, c bounce, c fraction_i), with plate_falloff and gain of the previous step; c corrects the gain.
+// is linear in (c, c bounce, c fraction_i), with plate_falloff and gain of the previous step; c corrects the gain. What the receiver
+// reflects, over the gain, is taken from the left, and is a part of the gain's column in the fit of intensities.
 // Without any light the first two columns add up to the plate, and a third holds what the frame shows beside it.
 // Toy: frame / gain = base (toy_0 (1 + n.y) / 2 + toy_1 (1 - n.y) / 2 + sum_i toy_i intensity_i max(n.l_i, 0) V_i), V_i
 // with self-shadowing; a glossy toy adds, over its base, what it reflects of each.
@@ -20,6 +21,7 @@
 //#import common/model
 //#import common/toy_radiance
 //#import common/pixel
+//#import common/reflection
 //#import common/marks
 //#import common/completed
 //#import common/fit_sums
@@ -63,6 +65,8 @@ struct Observation {
   plate: vec3f,
   ambient: f32,
   visibility: vec4f,
+  // What the receiver reflects, over the gain.
+  reflected: vec3f,
   // 0 where the pixel is masked out or unusable.
   weight: vec3f,
   // 1 where frame and plate may both be clipped.
@@ -93,6 +97,7 @@ fn observe(texel: vec2u, plate_texel: vec4f) -> Observation {
   seen.plate = plate_texel.rgb;
   seen.ambient = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
   seen.visibility = textureLoad(visibility, texel, 0);
+  seen.reflected = reflected(seen.point, seen.visibility);
   seen.is_estimated = plate_texel.a < 1.0;
   seen.clipped = is_clipped(seen.frame, seen.plate);
   seen.weight = evident * plate_texel.a * evidence_of(seen.frame, seen.plate);
@@ -104,7 +109,7 @@ fn receiver_equation(seen: Observation) -> Equation {
   if all(seen.weight == vec3f(0.0)) || receiver_of(seen.point) != step.receiver { return eq; }
   let b = seen.plate;
   let total = plate_falloff(seen.point);
-  eq.value = seen.frame / fit.gain.rgb;
+  eq.value = seen.frame / fit.gain.rgb - seen.reflected;
   eq.columns[0] = b * seen.ambient;
   eq.columns[1] = b * bounced(seen.ambient);
   var predicted = eq.columns[0] + fit.receivers[step.receiver].bounce.rgb * eq.columns[1];
@@ -130,7 +135,7 @@ fn intensity_equation(seen: Observation) -> Equation {
   let b = seen.plate;
   let total = plate_falloff(seen.point);
   eq.value = seen.frame;
-  eq.columns[0] = b * ambient_part(seen.point, seen.ambient, total);
+  eq.columns[0] = b * ambient_part(seen.point, seen.ambient, total) + seen.reflected;
   var predicted = eq.columns[0];
   for (var i = 0u; i < MAX_LIGHTS; i++) {
     if i >= globals.n_lights { continue; }

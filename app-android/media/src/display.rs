@@ -13,9 +13,8 @@ fn number(env: &mut Env<'_>, of: &JObject<'_>, method: &JNIStr) -> Result<i32> {
     env.call_method(of, method, jni_sig!("()I"), &[])?.i()
 }
 
-/// `getWindow().getDecorView().getRootWindowInsets()` and its `getDisplayCutout()`: what bars and cut-outs cover, none while the window
-/// is not shown. Both are there since Android 9.
-pub fn covered(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<Option<[i32; 4]>> {
+/// `getWindow().getDecorView()`.
+pub(crate) fn decor_view<'local>(env: &mut Env<'local>, activity: &JObject<'_>) -> Result<JObject<'local>> {
     let window = env
         .call_method(
             activity,
@@ -24,14 +23,19 @@ pub fn covered(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<Option<[i32;
             &[],
         )?
         .l()?;
-    let view = env
-        .call_method(
-            &window,
-            jni_str!("getDecorView"),
-            jni_sig!("()Landroid/view/View;"),
-            &[],
-        )?
-        .l()?;
+    env.call_method(
+        &window,
+        jni_str!("getDecorView"),
+        jni_sig!("()Landroid/view/View;"),
+        &[],
+    )?
+    .l()
+}
+
+/// `getWindow().getDecorView().getRootWindowInsets()` and its `getDisplayCutout()`: what bars and cut-outs cover, none while the window
+/// is not shown. Both are there since Android 9.
+pub fn covered(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<Option<[i32; 4]>> {
+    let view = decor_view(env, activity)?;
     let insets = env
         .call_method(
             &view,

@@ -1,7 +1,8 @@
-//! Videos by Android's own encoder, copies of files where other apps find them, what the display reports, and how hot the phone is.
+//! Videos by Android's own encoder, copies of files where other apps find them, what the display reports, how hot the phone is, and what
+//! reaches a person beside the screen.
 //!
 //! `yuv`, the layout of samples that encoders take, and `stored`, where a file belongs, run in desktop tests; `video`, `media_store`,
-//! `display` and `heat` are compiled for Android alone.
+//! `display`, `heat`, `person` and `settings` are compiled for Android alone.
 
 pub mod stored;
 pub mod yuv;
@@ -12,5 +13,9 @@ pub mod display;
 pub mod heat;
 #[cfg(target_os = "android")]
 pub mod media_store;
+#[cfg(target_os = "android")]
+pub mod person;
+#[cfg(target_os = "android")]
+pub mod settings;
 #[cfg(target_os = "android")]
 pub mod video;

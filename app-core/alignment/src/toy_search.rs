@@ -5,6 +5,8 @@
 //! with the model's own colours: two similar sides of a toy are distinguished by their paint, or
 //! reported as ambiguous.
 
+use std::sync::Arc;
+
 use glam::{DMat4, DVec3, IVec2};
 
 use crate::camera::{Finder, corrected};
@@ -52,8 +54,6 @@ const DARK: f64 = 0.004;
 const COMPARED_PIXELS: i32 = 60_000;
 /// Largest number of pixels of the level in which hand-held plates are registered.
 const REGISTERED_PIXELS: i32 = 120_000;
-/// Largest number of pixels of the tiny level.
-const TINY_PIXELS: i32 = 7000;
 /// Largest distance of a hand-held plate's camera from the photograph's.
 const HAND_M: f64 = 0.1;
 const HAND_RAD: f64 = 0.11;
@@ -93,7 +93,8 @@ pub struct ToySearch {
 /// Plates may be hand-held: up to 10 cm and 6 degrees from the photograph. The first receiver is an
 /// approximate table.
 ///
-/// # Errors As [`Aligner::align`](crate::Aligner::align).
+/// # Errors
+/// As [`Aligner::align`](crate::Aligner::align).
 pub fn find_toy(
     scene: &Scene,
     input: &FrameInput,
@@ -103,7 +104,7 @@ pub fn find_toy(
     let mut scene = Scene::clone(scene);
     scene.uncertainty.are_receivers_guessed = true;
     register_plates(&mut scene, input);
-    let search = Search::new(&scene, input)?;
+    let search = Search::new(Arc::new(scene.clone()), input.clone())?;
     let followed = search.followed(directions)?;
     let nearest_px = followed.first().map(|pose| pose.outline_px);
     let mut found = told_apart(search.refined(&followed)?);
@@ -116,7 +117,8 @@ pub fn find_toy(
         }
         let before = scene.plates.clone();
         if register_plates(&mut scene, input) {
-            match Search::new(&scene, input)?.refine(&one.world_from_object)? {
+            let search = Search::new(Arc::new(scene.clone()), input.clone())?;
+            match search.refine(&one.world_from_object)? {
                 Some(refined) => *one = refined,
                 None => scene.plates = before,
             }
@@ -198,49 +200,62 @@ fn level_with(plate: &Plate, input: &FrameInput) -> Level {
     pyramid.at_most(REGISTERED_PIXELS)
 }
 
-struct Search<'a> {
-    scene: &'a Scene,
-    input: &'a FrameInput,
+/// A toy in a photograph whose pose is searched for.
+pub(crate) struct Search {
+    scene: Arc<Scene>,
+    input: FrameInput,
     photograph: Photograph,
     /// In world space.
     upright: Shape,
 }
 
 /// A followed pose.
-#[derive(Clone, Copy)]
-struct Followed {
-    world_from_object: DMat4,
-    outline_px: f64,
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Followed {
+    pub(crate) world_from_object: DMat4,
+    pub(crate) outline_px: f64,
 }
 
-impl<'a> Search<'a> {
-    fn new(scene: &'a Scene, input: &'a FrameInput) -> Result<Self, AlignError> {
+impl Search {
+    pub(crate) fn new(scene: Arc<Scene>, input: FrameInput) -> Result<Self, AlignError> {
         Ok(Self {
-            photograph: Photograph::new(scene, input, None),
-            upright: Shape::new(scene, &input.world_from_object)?,
+            photograph: Photograph::new(&scene, &input, None),
+            upright: Shape::new(&scene, &input.world_from_object)?,
             scene,
             input,
         })
     }
 
+    /// The toy as it is given, as coarse as guesses need it, and the tiny picture that they are made in.
+    pub(crate) fn tiny(&self) -> (Shape, Level) {
+        (
+            self.upright.merged(CELL * self.upright.radius_m),
+            self.photograph.pyramid().at_most(pose::TINY_PIXELS),
+        )
+    }
+
     /// The best guesses, followed by coarse and fine rounds, the nearest outline first.
     fn followed(&self, directions: &[ViewDirection]) -> Result<Vec<Followed>, AlignError> {
-        let silhouette = self.upright.merged(CELL * self.upright.radius_m);
-        let tiny = self.photograph.pyramid().at_most(TINY_PIXELS);
+        let (silhouette, tiny) = self.tiny();
         let mut followed = Vec::new();
         for guess in pose::guesses(&silhouette, &tiny, directions)
             .iter()
             .take(N_FOLLOWED)
         {
             let start = self.world_from_upright(&guess.camera_from_upright) * self.input.world_from_object;
-            let tried = self.photograph.tried_pose(self.scene, (&start, Start::Given))?;
-            followed.extend(tried.map(|(world_from_object, outline_px)| Followed {
-                world_from_object,
-                outline_px,
-            }));
+            followed.extend(self.follow(&start)?);
         }
         followed.sort_by(|a, b| a.outline_px.total_cmp(&b.outline_px));
         Ok(followed)
+    }
+
+    /// A pose, followed to the outline; none if too little of that is seen.
+    pub(crate) fn follow(&self, start: &DMat4) -> Result<Option<Followed>, AlignError> {
+        let tried = self.photograph.tried_pose(&self.scene, (start, Start::Given))?;
+        Ok(tried.map(|(world_from_object, outline_px)| Followed {
+            world_from_object,
+            outline_px,
+        }))
     }
 
     fn world_from_upright(&self, camera_from_upright: &DMat4) -> DMat4 {
@@ -294,9 +309,9 @@ impl<'a> Search<'a> {
     }
 
     /// The pose near the given one, if its outline matches.
-    fn refine(&self, world_from_object: &DMat4) -> Result<Option<FoundToy>, AlignError> {
+    pub(crate) fn refine(&self, world_from_object: &DMat4) -> Result<Option<FoundToy>, AlignError> {
         let given = self.input.clone().with_world_from_object(*world_from_object);
-        let pose = self.photograph.pose(self.scene, &given, None)?;
+        let pose = self.photograph.pose(&self.scene, &given, None)?;
         let Some(report) = pose.report.filter(|report| report.shown_px() <= MOST_OUTLINE_PX) else {
             return Ok(None);
         };
@@ -308,11 +323,11 @@ impl<'a> Search<'a> {
             outline_px: report.shown_px(),
             color_difference: self.color_difference(&pose.world_from_object)?,
             deviation: report.deviation,
-            world_from_tables: planes_under(self.scene, &pose.world_from_object, up)?,
+            world_from_tables: planes_under(&self.scene, &pose.world_from_object, up)?,
         }))
     }
 
-    fn are_one(&self, a: &DMat4, b: &DMat4) -> bool {
+    pub(crate) fn are_one(&self, a: &DMat4, b: &DMat4) -> bool {
         let middle = self
             .input
             .world_from_object
@@ -327,9 +342,9 @@ impl<'a> Search<'a> {
     /// Difference between the toy in the photograph and its model in the best light; the largest if
     /// too little of it is visible.
     fn color_difference(&self, world_from_object: &DMat4) -> Result<f64, AlignError> {
-        let shape = self.photograph.shape(self.scene, world_from_object)?;
+        let shape = self.photograph.shape(&self.scene, world_from_object)?;
         let camera_from_object = self.photograph.camera_from_object(world_from_object);
-        let paint = Paint::new(self.scene, &camera_from_object)?;
+        let paint = Paint::new(&self.scene, &camera_from_object)?;
         let level = self
             .photograph
             .pyramid()
@@ -358,7 +373,7 @@ impl<'a> Search<'a> {
 
 /// The possible poses among those sorted by their outlines: the best one by its colours among
 /// similar outlines, and those that are ambiguous with it.
-fn told_apart(found: Vec<FoundToy>) -> Vec<FoundToy> {
+pub(crate) fn told_apart(found: Vec<FoundToy>) -> Vec<FoundToy> {
     let Some(most_px) = found.first().map(|best| RIVAL * best.outline_px + RIVAL_PX) else {
         return found;
     };

@@ -11,6 +11,7 @@ pub mod gloss;
 pub mod grain;
 pub mod lens;
 pub mod picture;
+pub mod reflection;
 pub mod scene;
 pub mod shadow_style;
 pub mod sharpness;

@@ -2,7 +2,7 @@
 
 use std::fs::{self, File};
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use app_core::app::ShellEvent;
@@ -63,7 +63,16 @@ pub fn list(folder: &Path) -> Vec<String> {
 
 fn is_toy(name: &str) -> bool {
     let extension = Path::new(name).extension();
-    extension.is_some_and(|extension| extension.eq_ignore_ascii_case("glb"))
+    // USDZ is refused with the way from there to a toy.
+    let known = ["glb", "usdz"];
+    extension.is_some_and(|extension| known.iter().any(|known| extension.eq_ignore_ascii_case(known)))
+}
+
+/// The scan beside a toy's file, by which a platform recognises the toy itself: of the same name, `.arobject`.
+#[must_use]
+pub fn scan_beside(folder: &Path, name: &str) -> Option<PathBuf> {
+    let scan = folder.join(name).with_extension("arobject");
+    (is_toy(name) && scan.is_file()).then_some(scan)
 }
 
 fn bytes_of(folder: &Path, name: &str) -> Result<Arc<[u8]>, String> {
@@ -101,6 +110,15 @@ mod tests {
         glb
     }
 
+    /// The beginning of a USDZ file. Source: PKWARE, APPNOTE, section 4.3.7.
+    fn usdz() -> Vec<u8> {
+        let mut bytes = vec![0; 30];
+        bytes[..4].copy_from_slice(b"PK\x03\x04");
+        bytes[26] = 8;
+        bytes.extend(b"toy.usdc");
+        bytes
+    }
+
     #[test]
     fn toys_of_the_folder_are_listed_read_and_kept_for_recordings() {
         let folder = std::env::temp_dir().join(format!("app-shell-toys-{}", std::process::id()));
@@ -110,6 +128,17 @@ mod tests {
             fs::write(folder.join(name), bytes).expect("a file");
         }
         assert_eq!(list(&folder), ["Llama", "a.GLB", "b.glb"]);
+        assert_eq!(scan_beside(&folder, "b.glb"), None);
+        fs::write(folder.join("b.arobject"), b"scan").expect("a file");
+        assert_eq!(scan_beside(&folder, "b.glb"), Some(folder.join("b.arobject")));
+        assert_eq!(scan_beside(&folder, BUNDLED_NAME), None);
+        fs::write(folder.join("c.usdz"), usdz()).expect("a file");
+        assert!(list(&folder).contains(&"c.usdz".to_owned()));
+        let usdz = ToyFile::default().read(&folder, "c.usdz");
+        assert!(
+            matches!(&usdz, ShellEvent::Toy(Err(reason)) if reason.contains("USDZ") && reason.contains("Blender")),
+            "{usdz:?}"
+        );
         let file = ToyFile::default();
         let refused = file.read(&folder, "a.GLB");
         assert!(

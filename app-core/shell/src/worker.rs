@@ -2,6 +2,8 @@
 //!
 //! | command | what is done | what comes of it |
 //! | --- | --- | --- |
+//! | `Plate` | on a thread | `Plated` |
+//! | `Search` | on a thread | `Searched` |
 //! | `Align` | on a thread | `Aligned` |
 //! | `SavePhoto` | the picture is read, and written on a thread | `Saved`, and the file for the gallery |
 //! | `Video` | each picture that is drawn goes to a thread, until the video ends | `Saved`, and the file for the gallery |
@@ -68,6 +70,8 @@ pub enum Outcome {
     Written(PathBuf),
     /// Files that the person wants to hand on.
     Share(Vec<PathBuf>),
+    /// Another toy is shown: the scan beside its file, by which a platform that can may recognise it; none where there is none.
+    Scan(Option<PathBuf>),
 }
 
 /// Does the work.
@@ -127,6 +131,12 @@ impl Worker {
     /// Does what a command asks for.
     pub fn obey(&mut self, live: &Live, command: WorkCommand) {
         match command {
+            WorkCommand::Plate(job) => self.run("plate", ShellEvent::Plated(None), move |_| {
+                ShellEvent::Plated(Some(Box::new(job.run())))
+            }),
+            WorkCommand::Search(job) => self.run("search", ShellEvent::Searched(None), move |_| {
+                ShellEvent::Searched(Some(Box::new(job.run())))
+            }),
             WorkCommand::Align(job) => match self.pace {
                 Pace::Live => self.align(*job),
                 Pace::Repeatable => self.waiting.push(*job),
@@ -163,7 +173,13 @@ impl Worker {
     /// Reads the file of a toy that a person has chosen.
     pub fn read_toy(&self, folder: PathBuf, name: String) {
         let (file, died) = (self.toy_file.clone(), "it could not be read".to_owned());
-        let read = move |_: &Sender<Outcome>| file.read(&folder, &name);
+        let read = move |outcomes: &Sender<Outcome>| {
+            let read = file.read(&folder, &name);
+            if let ShellEvent::Toy(Ok(_)) = &read {
+                send(outcomes, Outcome::Scan(toys::scan_beside(&folder, &name)));
+            }
+            read
+        };
         self.run("toy", ShellEvent::Toy(Err(died)), read);
     }
 

@@ -65,19 +65,19 @@ pub fn permission(status: isize) -> Permission {
 /// What is done about a session of ARKit that failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AfterFailure {
-    /// It is run again without the picture of the card: the one thing that is asked for and can be left out.
-    RunWithoutCard,
+    /// It is run again with less to look for: the toy's scan is left out, or else the picture of the card.
+    RunWithLess,
     /// The app is told.
     Tell(ArSession),
 }
 
-/// What is done after a session failed with an `ARErrorCode`, which `had_card` to look for.
+/// What is done after a session failed with an `ARErrorCode`, which had something to look for that can be left out, or not.
 ///
 /// One picture or object that ARKit refuses (300, 301, 302) fails the whole run, and each one after it; so may a configuration that the
 /// phone does not have (100).
-pub fn after_failure(code: isize, had_card: bool) -> AfterFailure {
+pub fn after_failure(code: isize, can_have_less: bool) -> AfterFailure {
     match code {
-        100 | 300..=302 if had_card => AfterFailure::RunWithoutCard,
+        100 | 300..=302 if can_have_less => AfterFailure::RunWithLess,
         code => AfterFailure::Tell(failed_session(code)),
     }
 }
@@ -123,7 +123,7 @@ mod tests {
     fn what_arkit_refuses_is_left_out_before_anything_is_said() {
         let tell = |ar_session| AfterFailure::Tell(ar_session);
         for code in [100, 300, 301, 302] {
-            assert_eq!(after_failure(code, true), AfterFailure::RunWithoutCard, "{code}");
+            assert_eq!(after_failure(code, true), AfterFailure::RunWithLess, "{code}");
         }
         // The run without it failed as well.
         assert_eq!(after_failure(100, false), tell(ArSession::Unsupported));

@@ -72,6 +72,8 @@ pub struct RawFrame<'a> {
     pub card: Option<[[f32; 4]; 4]>,
     /// The anchor that is held, by the number it was asked for, and the columns of its `transform`.
     pub anchor: Option<(u64, [[f32; 4]; 4])>,
+    /// Columns of the `transform` of the anchor of the toy's scan, once it was recognised.
+    pub toy: Option<[[f32; 4]; 4]>,
     /// `UIInterfaceOrientation` of the screen that it is shown on.
     pub orientation: isize,
 }
@@ -116,10 +118,11 @@ pub fn camera_frame(
 ) -> Result<CameraFrame, FrameError> {
     let pose = (raw.tracking[0] == NORMAL).then(|| convert::world_from_camera(raw.transform));
     let exposure = raw.exposure.map(|[duration_s, iso]| Exposure { duration_s, iso });
-    let anchor = raw.anchor.as_ref().and_then(|(id, transform)| {
+    let toy = raw.toy.map(|transform| (Anchor::OF_TOY, transform));
+    let anchors = raw.anchor.into_iter().chain(toy).filter_map(|(id, transform)| {
         Some(Anchor {
-            id: *id,
-            world_from_anchor: convert::world_from_camera(*transform)?,
+            id,
+            world_from_anchor: convert::world_from_camera(transform)?,
         })
     });
     let stamp = Stamp {
@@ -140,7 +143,7 @@ pub fn camera_frame(
         tracking: tracking(raw.tracking),
         world_from_camera: pose.flatten(),
         planes: raw.surfaces.iter().filter_map(found_plane).collect(),
-        anchors: anchor.into_iter().collect(),
+        anchors: anchors.collect(),
         world_from_card: raw.card.and_then(convert::world_from_camera),
         light_estimate: raw.light.map(|[lumen, kelvin]| LightEstimate {
             ambient_intensity: Some(lumen).filter(|lumen| lumen.is_finite()),
@@ -289,6 +292,7 @@ mod tests {
             }],
             card: Some(UPRIGHT),
             anchor: Some((3, UPRIGHT)),
+            toy: None,
             orientation: 4,
         }
     }
@@ -333,6 +337,19 @@ mod tests {
     }
 
     #[test]
+    fn a_toy_that_is_recognised_is_an_anchor_of_its_own() {
+        let recognised = RawFrame {
+            toy: Some(UPRIGHT),
+            ..raw()
+        };
+        let frame = camera_frame(&recognised, None, COUNT).expect("a frame");
+        let ids: Vec<u64> = frame.anchors.iter().map(|anchor| anchor.id).collect();
+        assert_eq!(ids, [3, Anchor::OF_TOY]);
+        let at = frame.anchors[1].world_from_anchor.transform_point3(DVec3::ZERO);
+        assert_eq!(at, DVec3::new(1.0, 2.0, 3.0));
+    }
+
+    #[test]
     fn a_plane_is_the_rectangle_that_its_boundary_fills() {
         let plane = found_plane(&raw().surfaces[0]).expect("a plane");
         assert_eq!(plane.half_extent_m, DVec2::new(0.5, 0.5));
@@ -364,6 +381,7 @@ mod tests {
         let wrong = RawFrame {
             exposure: Some([0.01, f64::NAN]),
             anchor: Some((3, [[0.0; 4]; 4])),
+            toy: Some([[f32::NAN; 4]; 4]),
             ..raw()
         };
         let frame = camera_frame(&wrong, None, COUNT).expect("a frame");

@@ -8,9 +8,13 @@ pub mod camera;
 #[cfg(target_os = "ios")]
 mod card;
 #[cfg(target_os = "ios")]
+mod coaching;
+#[cfg(target_os = "ios")]
 mod pixels;
 #[cfg(target_os = "ios")]
 pub mod read;
+#[cfg(target_os = "ios")]
+mod scan;
 #[cfg(target_os = "ios")]
 pub mod session;
 #[cfg(target_arch = "aarch64")]

@@ -6,7 +6,9 @@ use app_core::camera_frame::PlanarImage;
 use objc2::rc::Retained;
 use objc2::runtime::Sel;
 use objc2::{Message, msg_send, sel};
-use objc2_ar_kit::{ARAnchor, ARFrame, ARImageAnchor, ARPlaneAnchor, ARPlaneGeometry, ARTrackable};
+use objc2_ar_kit::{
+    ARAnchor, ARFrame, ARImageAnchor, ARObjectAnchor, ARPlaneAnchor, ARPlaneGeometry, ARTrackable,
+};
 use objc2_core_video::{CVPixelBufferGetHeight, CVPixelBufferGetPixelFormatType, CVPixelBufferGetWidth};
 use objc2_foundation::{NSArray, NSNumber, NSProcessInfo, ns_string};
 
@@ -74,6 +76,7 @@ pub(super) fn with_raw<T>(
         surfaces: surfaces.map(|anchor| surface(&anchor)).collect(),
         card: anchors.iter().find_map(|anchor| card(&anchor)),
         anchor,
+        toy: anchors.iter().find_map(|anchor| toy(&anchor)),
         orientation,
     };
     Some(take(&raw, lent))
@@ -107,6 +110,13 @@ fn card(anchor: &ARAnchor) -> Option<[[f32; 4]; 4]> {
             .isTracked()
             .then(|| shim::columns4(pointer(image), selector(sel!(transform))).0)
     }
+}
+
+/// Where the toy was recognised, if this is its anchor: no other object is looked for.
+fn toy(anchor: &ARAnchor) -> Option<[[f32; 4]; 4]> {
+    let object = anchor.downcast_ref::<ARObjectAnchor>()?;
+    // SAFETY: a property of an anchor, which never changes; it is a SIMD matrix of four columns.
+    Some(unsafe { shim::columns4(pointer(object), selector(sel!(transform))).0 })
 }
 
 fn surface(anchor: &ARPlaneAnchor) -> RawSurface {

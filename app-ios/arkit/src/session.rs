@@ -1,6 +1,7 @@
 //! A session of ARKit: world tracking, its frames, and what it tells of itself.
 
 use std::cell::{Cell, RefCell};
+use std::path::Path;
 use std::rc::Rc;
 
 use app_core::app::{ArSession, ShellEvent};
@@ -12,14 +13,16 @@ use objc2::{
     AnyThread, ClassType, DefinedClass, MainThreadMarker, MainThreadOnly, define_class, msg_send, sel,
 };
 use objc2_ar_kit::{
-    ARAnchor, ARFrame, ARPlaneDetection, ARReferenceImage, ARSession, ARSessionDelegate, ARSessionObserver,
-    ARSessionRunOptions, ARWorldTrackingConfiguration,
+    ARAnchor, ARFrame, ARPlaneDetection, ARReferenceImage, ARReferenceObject, ARSession, ARSessionDelegate,
+    ARSessionObserver, ARSessionRunOptions, ARWorldTrackingConfiguration,
 };
 use objc2_foundation::{NSError, NSObjectProtocol, NSProcessInfo, NSSet};
+use objc2_ui_kit::UIView;
 
+use super::coaching::Coach;
 use super::frame::{Count, camera_frame};
 use super::textures::TextureCache;
-use super::{card, read, shim};
+use super::{card, read, scan, shim};
 use crate::convert::{self, AfterFailure};
 use app_shell::guard::guarded;
 
@@ -45,6 +48,10 @@ struct Shared {
     finds: Cell<Finds>,
     /// What the card is known by; none before anybody has one, or if ARKit has refused it.
     card: RefCell<Card>,
+    /// By which the toy is recognised; none without a scan, or if ARKit has refused it.
+    scan: RefCell<Option<Retained<ARReferenceObject>>>,
+    /// None until there is a view.
+    coach: RefCell<Option<Coach>>,
     /// A frame was refused, and why was written.
     is_refusing: Cell<bool>,
 }
@@ -83,6 +90,9 @@ impl Shared {
         if finds.card && card.is_none() {
             (self.tell)(ShellEvent::CardRefused);
         }
+        if let Some(coach) = &*self.coach.borrow() {
+            coach.helps(finds.planes);
+        }
         // SAFETY: a configuration of this session's own, with options that every session takes.
         unsafe {
             configuration.setPlaneDetection(planes);
@@ -91,6 +101,9 @@ impl Shared {
             if let Some(card) = card {
                 configuration.setDetectionImages(Some(&NSSet::from_slice(&[&*card])));
                 configuration.setMaximumNumberOfTrackedImages(1);
+            }
+            if let Some(scan) = &*self.scan.borrow() {
+                configuration.setDetectionObjects(&NSSet::from_slice(&[&**scan]));
             }
             session.runWithConfiguration_options(&configuration, options);
         }
@@ -110,8 +123,14 @@ impl Shared {
     /// Does what helps after a run that failed.
     fn fail(&self, session: &ARSession, code: isize) {
         let had_card = self.finds.get().card && matches!(*self.card.borrow(), Card::Made(_));
-        match convert::after_failure(code, had_card) {
-            AfterFailure::RunWithoutCard => {
+        let had_scan = self.scan.borrow().is_some();
+        match convert::after_failure(code, had_card || had_scan) {
+            AfterFailure::RunWithLess if had_scan => {
+                eprintln!("arkit: the toy is not recognised: the session refuses its scan");
+                self.scan.replace(None);
+                self.run(session, ARSessionRunOptions::empty());
+            }
+            AfterFailure::RunWithLess => {
                 eprintln!("arkit: the card is not looked for: the session refuses it");
                 self.card.replace(Card::Refused);
                 self.run(session, ARSessionRunOptions::empty());
@@ -237,6 +256,8 @@ impl Session {
             orientation: Cell::new(0),
             finds: Cell::default(),
             card: RefCell::default(),
+            scan: RefCell::default(),
+            coach: RefCell::default(),
             is_refusing: Cell::new(false),
         });
         let delegate = Delegate::new(main_thread, Rc::clone(&shared));
@@ -254,6 +275,17 @@ impl Session {
     /// Lends pictures to this device from now on, or copies them where there is none.
     pub fn lend_to(&self, device: Option<DeviceHandle>) {
         self.shared.textures.replace(device.and_then(TextureCache::new));
+    }
+
+    /// Has ARKit's own guidance shown over a view while a table is looked for.
+    pub fn coach_over(&self, view: &UIView) {
+        let coach = Coach::over(view, &self.session);
+        self.shared.coach.replace(Some(coach));
+    }
+
+    /// Recognises the toy by this scan from the next run on, or no longer.
+    pub fn recognise(&self, scan: Option<&Path>) {
+        self.shared.scan.replace(scan.and_then(scan::reference_object));
     }
 
     /// Whether this phone has world tracking.

@@ -115,8 +115,10 @@ pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments
 /// The files of all pictures are checked before the first frame. Files of an earlier run in the output folder are
 /// removed, so that no old report lies beside new frames.
 ///
-/// # Errors When a frame cannot be read, made or written; earlier frames stay, with a report that gives the reason of
-/// the end. When the output folder holds files that no run wrote, or another run writes into it.
+/// # Errors
+/// When a frame cannot be read, made or written; earlier frames stay, with a report that gives the
+/// reason of the end. When the output folder holds files that no run wrote, or another run writes
+/// into it.
 pub fn replay(
     session: &dyn Session,
     truth: Option<&dyn GroundTruth>,
@@ -136,7 +138,8 @@ pub fn replay(
 
 /// The same with given corrections; further frames are aligned as they come. `core` makes the first preset's pictures.
 ///
-/// # Errors As [`replay`].
+/// # Errors
+/// As [`replay`].
 pub fn replay_aligned(
     (session, truth): (&dyn Session, Option<&dyn GroundTruth>),
     core: &mut Core,
@@ -385,6 +388,7 @@ impl<'a> Run<'a> {
             alignment: shot.alignments.of(shot.index).map(AlignmentEntry::from),
             sharpness: input.sharpness.into(),
             gloss: GlossEntry::of(&input.gloss),
+            reflection: input.reflection.map(Into::into),
             scores: None,
             floor_rmse: shot.floor_rmse,
             flicker: None,

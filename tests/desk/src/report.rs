@@ -4,6 +4,7 @@
 use app_core::alignment::{AlignmentReport, AlignmentWarning, LensAlignment};
 use app_core::frame::{FrameReport, PassGroup, PassTime};
 use app_core::gloss::{Gloss, N_GLOSSES};
+use app_core::reflection::Reflection;
 use app_core::scene::MAX_LIGHTS;
 use app_core::sharpness::{Sharpness, Spread};
 use app_pipeline::model::state::solution::Fit;
@@ -100,6 +101,8 @@ pub struct FrameEntry {
     pub sharpness: SharpnessEntry,
     /// How glossy the toy was measured to be; none of a matt one.
     pub gloss: Option<GlossEntry>,
+    /// How the receiver that the toy stands on was found to reflect; none where it is taken for matt.
+    pub reflection: Option<ReflectionEntry>,
     /// Error against the truth, if there is one.
     pub scores: Option<Scores>,
     /// RMSE of the camera frame against the truth outside of both shadows, where they show the
@@ -118,6 +121,27 @@ pub struct SharpnessEntry {
     pub plate_px: [f64; 2],
     /// The blur that makes a sharp outline as soft.
     pub outline_px: [f64; 2],
+}
+
+/// How a receiver reflects.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ReflectionEntry {
+    /// Width of the lobe, as Beckmann's alpha.
+    pub roughness: f64,
+    /// Linear light of the surroundings that it reflects.
+    pub surroundings: [f32; 3],
+    /// What the toy's is above it.
+    pub toy_above_surroundings: [f32; 3],
+}
+
+impl From<Reflection> for ReflectionEntry {
+    fn from(reflection: Reflection) -> Self {
+        Self {
+            roughness: reflection.roughness,
+            surroundings: reflection.surroundings,
+            toy_above_surroundings: reflection.toy_above_surroundings,
+        }
+    }
 }
 
 impl From<Sharpness> for SharpnessEntry {

@@ -84,6 +84,8 @@ pub struct ReceiverSample {
     pub ambient: f64,
     /// Visibility of each light.
     pub visibility: DVec4,
+    /// What the receiver reflects, over the gain.
+    pub reflected: DVec3,
 }
 
 /// Every `stride_px`th pixel, along each side, that shows the receiver alone.
@@ -101,6 +103,7 @@ pub fn receiver_samples(region: &Region, pictures: &Pictures, stride_px: u32) ->
             point,
             ambient: coarse_at(&pictures.ambient, region, at),
             visibility: pictures.visibility.at(*texel),
+            reflected: region.reflected(point, pictures.visibility.at(*texel)),
         })
     };
     taken.texels().iter().filter_map(sample).collect()
@@ -160,7 +163,7 @@ fn receiver_equations(
     let mut of_clipped = 0.0;
     for sample in samples {
         let [frame, plate] = [sample.frame, sample.plate].map(|color| color[channel]);
-        let value = frame / before.gain[channel];
+        let value = frame / before.gain[channel] - sample.reflected[channel];
         let total = before.plate_falloff(region, sample.point)[channel];
         let plane = region.plane_of(sample.point);
         let ambient = sample.ambient;

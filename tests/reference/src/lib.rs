@@ -29,6 +29,7 @@ pub mod pcss;
 pub mod plate;
 pub mod raster;
 pub mod real;
+pub mod reflection;
 pub mod residual;
 pub mod retarget;
 pub mod rim;

@@ -50,7 +50,7 @@ fn receiver() {
     runs().iter().for_each(check_receivers);
 }
 
-fn check_receivers(run: &Run) {
+pub(crate) fn check_receivers(run: &Run) {
     let constants = FitConstants::default();
     let samples = receiver_samples(&run.region, &run.pictures, run.plan.fit_stride_px);
     let mut expected = start(run.region.lights.len());

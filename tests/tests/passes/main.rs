@@ -39,6 +39,7 @@ mod photo;
 mod plate;
 mod plates;
 mod references;
+mod reflection;
 mod residual;
 mod resources;
 mod retarget;

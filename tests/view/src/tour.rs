@@ -2,11 +2,12 @@
 //! pictures.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-use app_core::app::{Permission, PhoneQuestion, ShellEvent, Step};
+use app_core::app::{Permission, PhoneQuestion, Placing, ShellEvent, Step};
 use app_core::core::CoreError;
 use app_core::interface::{Screen, Touch, TouchPhase};
-use glam::{DMat4, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 use thiserror::Error;
 
 use super::desktop::Desk;
@@ -23,15 +24,12 @@ const N_PATIENCE: usize = 60;
 const N_RECORDED: usize = 24;
 /// Frames of a video.
 const N_VIDEO: usize = 15;
-/// Error of the ghost as the simulated person leaves it: in metres, and in radians.
-const GHOST_OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
-const GHOST_OFF_RAD: f64 = 0.1;
+/// Number of frames after which the search for the toy has failed.
+const N_SEARCHED: usize = 150;
 /// Number of drags after which a button that is still out of sight is touched at its place.
 const N_SCROLLS: usize = 6;
 /// Free margin of a sheet below its controls, in points.
 const SHEET_MARGIN_POINTS: f64 = 28.0;
-/// Turn per step of the wheel, in radians, as in the interface.
-const WHEEL_RAD: f64 = 0.05;
 
 /// A tour that ended early.
 #[derive(Debug, Error)]
@@ -53,6 +51,9 @@ pub enum TourError {
         /// The existing buttons.
         found: Vec<String>,
     },
+    /// The toy that was put down was not found.
+    #[error("the toy was not found: {0:?}")]
+    NotFound(Placing),
     /// The app is at the wrong step.
     #[error("after {after}: the step is {is:?}, not {expected:?}")]
     Astray {
@@ -71,7 +72,20 @@ pub struct Tour<'a> {
     screen: Screen,
     out: PathBuf,
     time_s: f64,
+    n_touches: u32,
     written: Vec<PathBuf>,
+}
+
+/// The straight way from the first screen to the toy that moves.
+#[derive(Clone, Copy, Debug)]
+pub struct Way {
+    /// Touches of the screen.
+    pub n_touches: u32,
+    /// Time of the camera's pictures until then, in seconds: a thread's work takes none of it here.
+    pub camera_s: f64,
+    /// What threads and pictures took on this machine, in seconds: from the toy that was put down to the first ghost, from there to the
+    /// end of the search, and from there to the toy that moves.
+    pub machine_s: [f64; 3],
 }
 
 impl<'a> Tour<'a> {
@@ -88,13 +102,15 @@ impl<'a> Tour<'a> {
             screen,
             out: out.to_owned(),
             time_s: 0.0,
+            n_touches: 0,
             written: Vec::new(),
         })
     }
 
     /// Makes the whole tour, and returns the pictures in their order.
     ///
-    /// # Errors When the app reaches a wrong step.
+    /// # Errors
+    /// When the app reaches a wrong step.
     pub fn go(mut self) -> Result<Vec<PathBuf>, TourError> {
         self.welcome()?;
         self.find_table()?;
@@ -103,6 +119,56 @@ impl<'a> Tour<'a> {
         self.play()?;
         self.faults()?;
         Ok(self.written)
+    }
+
+    /// Goes straight to the toy that moves.
+    ///
+    /// # Errors
+    /// When the app does not go where it should.
+    pub fn straight(mut self) -> Result<Way, TourError> {
+        self.desk.answer = Permission::Granted;
+        self.shoot_nothing()?;
+        self.press("Begin")?;
+        // A device compiles while the person looks around.
+        for _ in 0..N_PATIENCE {
+            if self.button("Here").is_ok() {
+                break;
+            }
+            self.frame()?;
+        }
+        self.press("Here")?;
+        self.wait_for(Step::PlaceToy, "the place was photographed")?;
+        let mut since = Instant::now();
+        let mut lap_s = || {
+            std::mem::replace(&mut since, Instant::now())
+                .elapsed()
+                .as_secs_f64()
+        };
+        let mut machine_s = [0.0; 3];
+        self.desk.feed.is_toy_there = true;
+        self.search(|placing| matches!(placing, Placing::Asked { .. }))?;
+        machine_s[0] = lap_s();
+        self.search(|placing| placing == Placing::Asked { is_searching: false })?;
+        machine_s[1] = lap_s();
+        self.press("Yes")?;
+        self.wait_for(Step::Play, "the toy was found")?;
+        machine_s[2] = lap_s();
+        Ok(Way {
+            n_touches: self.n_touches,
+            camera_s: self.time_s,
+            machine_s,
+        })
+    }
+
+    /// Waits until the search is so far.
+    fn search(&mut self, is_so_far: impl Fn(Placing) -> bool) -> Result<(), TourError> {
+        for _ in 0..N_SEARCHED {
+            if is_so_far(self.desk.live.app().placing()) {
+                return Ok(());
+            }
+            self.frame()?;
+        }
+        Err(TourError::NotFound(self.desk.live.app().placing()))
     }
 
     fn welcome(&mut self) -> Result<(), TourError> {
@@ -157,16 +223,20 @@ impl<'a> Tour<'a> {
     }
 
     fn place_toy(&mut self) -> Result<(), TourError> {
+        self.shoot("put_toy")?;
         self.desk.feed.is_toy_there = true;
-        self.shoot("place_toy")?;
-        self.turn_ghost()?;
-        let at = self.toy_px(GHOST_OFF_M);
-        self.tap(at)?;
-        self.shoot("toy_placed")?;
+        self.search(|placing| matches!(placing, Placing::Asked { .. }))?;
+        self.shoot("first_ghost")?;
+        self.search(|placing| placing == Placing::Asked { is_searching: false })?;
+        self.shoot("asked")?;
+        self.press("Turn it")?;
+        self.shoot("turned")?;
+        self.press("Find it for me")?;
+        self.search(|placing| placing == Placing::Asked { is_searching: false })?;
         if self.desk.live.app().sees_card() {
             self.take_lens()?;
         }
-        self.press("It fits")?;
+        self.press("Yes")?;
         self.frame()?;
         self.expect(Step::Align, "the ghost was placed")?;
         self.shoot("align")?;
@@ -289,16 +359,6 @@ impl<'a> Tour<'a> {
         camera.intrinsics.pixel_of(in_camera).unwrap_or(DVec2::ZERO)
     }
 
-    /// Turns the ghost with the wheel until it almost has the toy's orientation.
-    fn turn_ghost(&mut self) -> Result<(), TourError> {
-        let (world_from_object, camera) = self.desk.feed.toy();
-        let yaw = |pose: &DMat4| pose.z_axis.x.atan2(pose.z_axis.z);
-        let to_camera = camera.world_from_camera.w_axis - world_from_object.w_axis;
-        let angle_rad = yaw(world_from_object) - to_camera.x.atan2(to_camera.z) + GHOST_OFF_RAD;
-        self.desk.live.wheel(angle_rad / WHEEL_RAD);
-        self.frame()
-    }
-
     /// Touches a pixel of the camera's picture.
     fn tap(&mut self, pixel: DVec2) -> Result<(), TourError> {
         let (picture_px, display) = self
@@ -312,6 +372,7 @@ impl<'a> Tour<'a> {
     }
 
     fn touch(&mut self, at_px: [f64; 2]) -> Result<(), TourError> {
+        self.n_touches += 1;
         for phase in [TouchPhase::Began, TouchPhase::Ended] {
             self.desk.live.touch(Touch { id: 1, phase, at_px });
             self.frame()?;

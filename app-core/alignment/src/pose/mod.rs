@@ -49,7 +49,7 @@ use sides::Beside;
 
 pub(super) use paint::{Paint, Surfel};
 pub use regions::ViewDirection;
-pub(super) use regions::guesses;
+pub(super) use regions::{Standing, TINY_PIXELS, changed, guesses, standing_guesses};
 pub(super) use resting::find_resting;
 pub(super) use standing::{Ground, Plane, feet};
 

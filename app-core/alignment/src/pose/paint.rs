@@ -444,6 +444,13 @@ impl Shaded<'_> {
         self.seen.at(at).map(|surface| self.light.shade(&surface))
     }
 
+    /// The toy's own colour there, whatever the light.
+    pub(super) fn color(&self, at: IVec2) -> Option<Color> {
+        self.seen
+            .at(at)
+            .map(|surface| surface.color.map(|channel| channel.max(DARKEST_PAINT)))
+    }
+
     /// The point of the toy that a pixel's centre shows, where the toy was given, in camera space.
     pub(super) fn given(&self, at: IVec2) -> Option<DVec3> {
         let seen = &self.seen;

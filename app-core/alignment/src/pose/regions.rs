@@ -33,10 +33,16 @@ const SHARES: [f64; 7] = [0.95, 0.8, 0.66, 0.55, 0.45, 0.36, 0.28];
 const SHARES_OF_PICTURE: [f64; 7] = [0.3, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035];
 /// Smallest fraction of a silhouette's pixels inside the picture.
 const LEAST_INSIDE: f64 = 0.8;
+/// Largest number of pixels of the tiny level for guesses.
+pub(crate) const TINY_PIXELS: i32 = 7000;
 /// Distance of the places to try, in pixels.
 const STRIDE_PX: i32 = 2;
 /// Margin around the changed area, over the square root of that area.
 const MARGIN: f64 = 0.35;
+/// Number of moves of a standing toy to its best place.
+const N_STANDING: usize = 4;
+/// Smallest sine of the angle between a line of sight and a plane: 3 degrees.
+const LEAST_SLOPE: f64 = 0.052;
 
 /// A direction from which an upright toy is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +77,32 @@ pub(crate) fn guesses(shape: &Shape, level: &Level, directions: &[ViewDirection]
     let guesses = directions
         .iter()
         .filter_map(|direction| regions.best(shape, *direction));
+    let mut guesses: Vec<Guess> = guesses.collect();
+    guesses.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    guesses
+}
+
+/// The plane of a standing toy's centre, in camera space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Standing {
+    /// A point of the plane.
+    pub(crate) point: DVec3,
+    /// Of unit length.
+    pub(crate) normal: DVec3,
+}
+
+/// The best place for each turn of a toy that stands on a plane, best first. The shape is upright,
+/// in camera space; the turns are about the plane's normal, in radians. The plane fixes the toy's
+/// distance, and with it its size.
+pub(crate) fn standing_guesses(
+    shape: &Shape,
+    level: &Level,
+    (standing, turns_rad): (Standing, &[f64]),
+) -> Vec<Guess> {
+    let regions = Regions::new(level);
+    let guesses = turns_rad
+        .iter()
+        .filter_map(|turn_rad| regions.best_standing(shape, (standing, *turn_rad)));
     let mut guesses: Vec<Guess> = guesses.collect();
     guesses.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     guesses
@@ -157,6 +189,45 @@ impl<'a> Regions<'a> {
         best
     }
 
+    /// The best place for a turn about a plane's normal.
+    fn best_standing(&self, shape: &Shape, (standing, turn_rad): (Standing, f64)) -> Option<Guess> {
+        let turn = DMat4::from_quat(DQuat::from_axis_angle(standing.normal, turn_rad));
+        let turned = turn * DMat4::from_translation(-shape.centre);
+        let mut at_px = 0.5 * (self.from_px + self.to_px).as_dvec2();
+        let mut best: Option<Guess> = None;
+        // Each move brings the silhouette nearer to the view of its place.
+        for _ in 0..N_STANDING {
+            let middle = self.seen_at(standing, at_px)?;
+            let moved = DMat4::from_translation(middle) * turned;
+            let silhouette = self.seen_silhouette(shape, &moved);
+            let from = at_px.round().as_ivec2();
+            let (to, cost) = self.best_place_from(&silhouette, from)?;
+            if best.is_none_or(|best| cost < best.cost) {
+                best = Some(Guess {
+                    camera_from_upright: moved,
+                    cost,
+                });
+            }
+            if to == IVec2::ZERO {
+                break;
+            }
+            at_px += to.as_dvec2();
+        }
+        best
+    }
+
+    /// The point of a plane at a pixel; `None` above its horizon.
+    fn seen_at(&self, standing: Standing, at_px: DVec2) -> Option<DVec3> {
+        let ray = DVec3::new(
+            (at_px.x - self.k.cx_px) / self.k.fx_px,
+            -(at_px.y - self.k.cy_px) / self.k.fy_px,
+            -1.0,
+        );
+        let toward = ray.dot(standing.normal);
+        let depth = standing.point.dot(standing.normal) / toward;
+        (toward.abs() > LEAST_SLOPE * ray.length() && depth > 0.0).then_some(depth * ray)
+    }
+
     /// A toy in the centre of the picture, moved to another place with the same view.
     fn placed(&self, at_px: DVec2, depth_m: f64) -> DMat4 {
         let ray = DVec3::new(at_px.x / self.k.fx_px, -at_px.y / self.k.fy_px, -1.0);
@@ -179,14 +250,38 @@ impl<'a> Regions<'a> {
         covered.map(|at| at - self.size_px).collect()
     }
 
+    /// Pixels of the toy in its place, relative to the principal point, also outside the picture.
+    fn seen_silhouette(&self, shape: &Shape, camera_from_upright: &DMat4) -> Vec<IVec2> {
+        let points = shape.points.iter();
+        let points = points.map(|point| camera_from_upright.transform_point3(*point));
+        let half_px = self.size_px / 2;
+        let k = Intrinsics {
+            cx_px: self.k.cx_px + f64::from(half_px.x),
+            cy_px: self.k.cy_px + f64::from(half_px.y),
+            ..*self.k
+        };
+        let corners = project(points, &k);
+        let coverage = Rasterizer::default().coverage(&corners, &shape.faces, 2 * self.size_px);
+        let covered = coverage.pixels().filter(|at| coverage.at(*at) >= 0.5);
+        let middle = self.middle();
+        covered.map(|at| at - half_px - middle).collect()
+    }
+
+    /// The shift with the lowest cost of a silhouette around a pixel.
+    fn best_place_from(&self, silhouette: &[IVec2], from_px: IVec2) -> Option<(IVec2, f64)> {
+        let span = (self.to_px - self.from_px) / STRIDE_PX;
+        let coarse = places(span + 1).map(|at| self.from_px + STRIDE_PX * at - from_px);
+        let (best, _) = self.best_of(silhouette, coarse)?;
+        self.best_of(silhouette, beside(best))
+    }
+
+    fn middle(&self) -> IVec2 {
+        DVec2::new(self.k.cx_px, self.k.cy_px).round().as_ivec2()
+    }
+
     /// The shift from the principal point with the lowest cost.
     fn best_place(&self, silhouette: &[IVec2]) -> Option<(IVec2, f64)> {
-        let middle = DVec2::new(self.k.cx_px, self.k.cy_px).round().as_ivec2();
-        let span = (self.to_px - self.from_px) / STRIDE_PX;
-        let coarse = places(span + 1).map(|at| self.from_px + STRIDE_PX * at - middle);
-        let (best, _) = self.best_of(silhouette, coarse)?;
-        let fine = places(IVec2::splat(2 * STRIDE_PX - 1)).map(|at| best + at - (STRIDE_PX - 1));
-        self.best_of(silhouette, fine)
+        self.best_place_from(silhouette, self.middle())
     }
 
     fn best_of(&self, silhouette: &[IVec2], shifts: impl Iterator<Item = IVec2>) -> Option<(IVec2, f64)> {
@@ -196,7 +291,7 @@ impl<'a> Regions<'a> {
 
     /// Mean entropy of a pixel; `None` if the silhouette leaves the searched rectangle.
     fn cost(&self, silhouette: &[IVec2], shift: IVec2) -> Option<f64> {
-        let middle = DVec2::new(self.k.cx_px, self.k.cy_px).round().as_ivec2();
+        let middle = self.middle();
         let mut colors = vec![0.0; self.n_bins[0]];
         let mut ratios = self.ratios.clone();
         let mut n_inside = 0.0;
@@ -210,6 +305,11 @@ impl<'a> Regions<'a> {
         let is_inside = n_inside >= LEAST_INSIDE * silhouette.len() as f64 && n_inside > 0.0;
         is_inside.then(|| (entropy(&colors, n_inside) + entropy(&ratios, self.n - n_inside)) / self.n)
     }
+}
+
+/// The fine shifts around a coarse one.
+fn beside(shift: IVec2) -> impl Iterator<Item = IVec2> {
+    places(IVec2::splat(2 * STRIDE_PX - 1)).map(move |at| shift + at - (STRIDE_PX - 1))
 }
 
 /// Entropy of `n` values distributed over bins, in nats.
@@ -235,19 +335,7 @@ fn extent(level: &Level) -> (Vec<f64>, IVec2, IVec2) {
     if level.plate.is_none() {
         return whole;
     }
-    let ratios: Vec<(IVec2, Color)> = places(size_px)
-        .filter_map(|at| Some((at, logarithms(level, at)?.1)))
-        .collect();
-    let median = [0, 1, 2].map(|channel| {
-        let mut values: Vec<f32> = ratios.iter().map(|(_, ratio)| ratio[channel]).collect();
-        values.sort_by(f32::total_cmp);
-        values.get(values.len() / 2).copied().unwrap_or(0.0)
-    });
-    let is_changed = |ratio: &Color| (0..3).any(|channel| (ratio[channel] - median[channel]).abs() > CHANGED);
-    let changed: Vec<IVec2> = ratios
-        .iter()
-        .filter_map(|(at, ratio)| is_changed(ratio).then_some(*at))
-        .collect();
+    let changed = changed(level);
     if changed.is_empty() {
         return whole;
     }
@@ -264,4 +352,22 @@ fn extent(level: &Level) -> (Vec<f64>, IVec2, IVec2) {
     let from_px = (IVec2::new(x[0], y[0]) - margin_px).max(IVec2::ZERO);
     let to_px = (IVec2::new(x[1], y[1]) + margin_px + 1).min(size_px);
     (SHARES.map(|share| share * n_changed).to_vec(), from_px, to_px)
+}
+
+/// Pixels that differ from the plate by more than light and noise; all without a plate.
+pub(crate) fn changed(level: &Level) -> Vec<IVec2> {
+    let size_px = level.frame.size_px;
+    let ratios: Vec<(IVec2, Color)> = places(size_px)
+        .filter_map(|at| Some((at, logarithms(level, at)?.1)))
+        .collect();
+    let median = [0, 1, 2].map(|channel| {
+        let mut values: Vec<f32> = ratios.iter().map(|(_, ratio)| ratio[channel]).collect();
+        values.sort_by(f32::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or(0.0)
+    });
+    let is_changed = |ratio: &Color| (0..3).any(|channel| (ratio[channel] - median[channel]).abs() > CHANGED);
+    let changed = ratios
+        .iter()
+        .filter_map(|(at, ratio)| is_changed(ratio).then_some(*at));
+    changed.collect()
 }

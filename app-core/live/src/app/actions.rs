@@ -7,14 +7,16 @@ use super::event::{
 use super::ghost::Ghost;
 use super::notice::Notice;
 use super::platform::Obstacle;
+use super::search::Placing;
 use super::step::{Cause, Step};
 use super::table::table_at;
+use app_scene::scene::Camera;
 
 impl App {
     pub(super) fn act(&mut self, action: UserAction, commands: &mut Vec<ShellCommand>) {
         let is_on_picture = matches!(
             action,
-            UserAction::Tap(_) | UserAction::Drag { .. } | UserAction::Twist(_)
+            UserAction::Tap(_) | UserAction::TapReticle | UserAction::Drag { .. } | UserAction::Twist(_)
         );
         if is_on_picture && self.phone_check.is_some() {
             return;
@@ -25,16 +27,19 @@ impl App {
             UserAction::Begin => self.begin(commands),
             UserAction::OpenSettings => commands.push(PlatformCommand::OpenSettings.into()),
             UserAction::Tap(pixel) => self.tap(pixel),
-            UserAction::Drag { from_px, to_px } => {
-                if let (Step::PlaceToy, Some(ghost), Some(camera)) =
-                    (self.step, &mut self.ghost, &self.camera)
-                {
-                    ghost.drag(camera, [from_px, to_px]);
+            UserAction::TapReticle => {
+                if let (Step::FindTable, Some(pixel)) = (self.step, self.reticle_px()) {
+                    self.tap(pixel);
                 }
             }
-            UserAction::Twist(angle_rad) => {
-                if let (Step::PlaceToy, Some(ghost)) = (self.step, &mut self.ghost) {
-                    ghost.turn(angle_rad);
+            UserAction::Drag { from_px, to_px } => {
+                self.by_hand(|ghost, camera| ghost.drag(camera, [from_px, to_px]));
+            }
+            UserAction::Twist(angle_rad) => self.by_hand(|ghost, _| ghost.turn(angle_rad)),
+            UserAction::ByHand => self.by_hand(|_, _| {}),
+            UserAction::LookAgain => {
+                if let (Step::PlaceToy, Some(ghost)) = (self.step, &self.ghost) {
+                    self.search.look_again(ghost.world_from_object());
                 }
             }
             UserAction::TakeLens => self.take_lens(),
@@ -132,6 +137,19 @@ impl App {
         }
     }
 
+    /// A person moves the ghost: nobody else does any longer.
+    fn by_hand(&mut self, change: impl FnOnce(&mut Ghost, &Camera)) {
+        if self.step != Step::PlaceToy {
+            return;
+        }
+        if let (Some(ghost), Some(camera)) = (&mut self.ghost, &self.camera) {
+            change(ghost, camera);
+        }
+        if !matches!(self.placing(), Placing::Waiting { .. } | Placing::Looking) {
+            self.search.give_up();
+        }
+    }
+
     fn tap(&mut self, pixel: glam::DVec2) {
         match (self.step, &self.camera, &self.latest) {
             (Step::FindTable, Some(camera), Some(latest)) => {
@@ -142,11 +160,18 @@ impl App {
                 self.table = Some(plane);
                 self.go(Cause::TableChosen);
             }
-            (Step::PlaceToy, Some(camera), _) => match (&mut self.ghost, &self.table) {
-                (Some(ghost), _) => ghost.move_to(camera, pixel),
-                (ghost, Some(table)) => *ghost = Ghost::at(&self.toy, table, (camera, pixel)).ok().flatten(),
-                _ => {}
-            },
+            (Step::PlaceToy, Some(camera), _) => {
+                match (&mut self.ghost, &self.table) {
+                    (Some(ghost), _) => ghost.move_to(camera, pixel),
+                    (ghost, Some(table)) => {
+                        *ghost = Ghost::at(&self.toy, table, (camera, pixel)).ok().flatten();
+                    }
+                    _ => {}
+                }
+                if let Some(ghost) = &self.ghost {
+                    self.search.look_again(ghost.world_from_object());
+                }
+            }
             _ => {}
         }
     }

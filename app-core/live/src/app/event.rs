@@ -5,7 +5,10 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::aligning::{AlignJob, AlignedJob};
+use super::language::Language;
 use super::launch_history::LaunchHistory;
+use super::plates::{PlateJob, PlatedJob};
+use super::search::{SearchJob, SearchedJob};
 use super::step::Step;
 use app_scene::camera_frame::CameraFrame;
 use app_scene::toy::{ClipId, Toy};
@@ -86,6 +89,8 @@ pub enum UserAction {
     OpenSettings,
     /// A point of the camera's picture was tapped, in its pixels.
     Tap(DVec2),
+    /// The place that the reticle lies on.
+    TapReticle,
     /// A finger went from one pixel of the camera's picture to another.
     Drag {
         /// Where it was.
@@ -101,6 +106,10 @@ pub enum UserAction {
     TakeLens,
     /// The ghost stands where the toy does.
     Placed,
+    /// It does not: a person moves and turns it.
+    ByHand,
+    /// The toy is to be searched for where the ghost is.
+    LookAgain,
     /// Back to the ghost.
     Replace,
     /// The toy was lifted away: the place is to be photographed.
@@ -164,6 +173,10 @@ pub enum ShellEvent {
     Thermal(Thermal),
     /// Memory is short.
     MemoryLow,
+    /// [`WorkCommand::Plate`] ended; none where its thread did not come to an end.
+    Plated(Option<Box<PlatedJob>>),
+    /// [`WorkCommand::Search`] ended; none where its thread did not come to an end.
+    Searched(Option<Box<SearchedJob>>),
     /// [`WorkCommand::Align`] ended; none where its thread did not come to an end.
     Aligned(Option<Box<AlignedJob>>),
     /// Names of toys' files that a person can choose from, in answer to [`WorkCommand::PickToy`].
@@ -180,6 +193,8 @@ pub enum ShellEvent {
     Started(LaunchHistory),
     /// This app has taken the place of one that a panic ended; see [`Panics`](super::Panics).
     Restarted,
+    /// The language that the person reads, before anything is shown in it.
+    Language(Language),
     /// What a person does with the interface, which [`Live`](crate::live::Live) has.
     User(UserAction),
 }
@@ -241,14 +256,20 @@ pub enum PlatformCommand {
     FrameRate(u32),
     /// Open the graphics device anew.
     ReopenDevice,
-    /// Say it to those who do not see the screen.
+    /// A step has begun: say it to those who do not see the screen, in the words of [`announced`](crate::interface::announced).
     Announce(Step),
+    /// Something was found: one short knock that a hand feels.
+    Knock,
 }
 
 /// Work that is the same on each platform.
 #[derive(Debug)]
 pub enum WorkCommand {
     /// Run this on another thread, and tell.
+    Plate(Box<PlateJob>),
+    /// The same.
+    Search(Box<SearchJob>),
+    /// The same.
     Align(Box<AlignJob>),
     /// Save the next finished picture.
     SavePhoto,

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use super::App;
 use super::aligning::{AlignedJob, Place, Verdict};
 use super::event::{PlatformCommand, ShellCommand, Thermal, WorkCommand};
+use super::ghost::Ghost;
 use super::notice::Notice;
 use super::step::{Cause, Step};
-use super::table::as_told_now;
-use app_alignment::plate_taker::{PlateShot, PlateStep};
-use app_scene::camera_frame::{Arrival, CameraFrame, Tracking};
+use super::table::{as_told_now, beside};
+use app_scene::camera_frame::{Arrival, CameraFrame, FoundPlane, Tracking};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Receiver, Scene, Surface};
 
@@ -48,9 +48,14 @@ impl App {
         if let Some(place) = &mut self.place {
             place.follow_anchor(&frame.anchors, elapsed_s);
         }
+        self.follow_reticle(commands);
+        self.follow_scan(&frame);
         match self.step {
-            Step::PlaceToy => self.offer_lens(&frame),
-            Step::TakePlate => self.offer_plate(&frame, elapsed_s),
+            Step::PlaceToy => {
+                self.offer_lens(&frame);
+                self.search(camera.is_some(), elapsed_s, commands);
+            }
+            Step::TakePlate => self.offer_plate(&frame, elapsed_s, commands),
             Step::Align | Step::Play => self.align(camera.is_some(), commands),
             _ => {}
         }
@@ -104,38 +109,43 @@ impl App {
         }
     }
 
-    fn offer_plate(&mut self, frame: &CameraFrame, elapsed_s: f64) {
-        let step = self.plate_taker.offer(&PlateShot {
-            image: frame.image.clone(),
-            camera: frame.camera(),
-            elapsed_s,
-        });
-        if let PlateStep::Taken { plate, .. } = &step {
-            self.plates.push(plate.clone());
-            self.plate_exposure = frame.exposure.and_then(|exposure| exposure.amount());
-            self.go(Cause::PlateTaken);
-        }
-        self.plate_step = Some(step);
-    }
-
-    /// Makes a scene of the table, the plates and the ghost.
-    pub(super) fn place_toy(&mut self) {
-        let (Some(table), Some(ghost), Some(latest)) = (&self.table, &self.ghost, &self.latest) else {
-            return;
+    /// A scene of the table, the plates and the ghost, or a toy in the middle of the table before there is one.
+    pub(super) fn placed_scene(&self) -> Option<Scene> {
+        let (table, latest) = (self.table.as_ref()?, self.latest.as_ref()?);
+        let ghost = match &self.ghost {
+            Some(ghost) => *ghost,
+            None => Ghost::standing(&self.toy, table, &table.world_from_plane)?,
+        };
+        let others = beside(table, &latest.planes, &ghost.world_from_object(), &self.toy);
+        let receiver = |(index, plane): (usize, &FoundPlane)| Receiver {
+            name: if index == 0 {
+                "table".to_owned()
+            } else {
+                format!("plane {index}")
+            },
+            world_from_plane: plane.world_from_plane,
+            half_extent_m: plane.half_extent_m,
+            surface: Surface::Textured,
         };
         let scene = Scene::new(
             latest.image.size_px(),
             Arc::clone(&self.toy),
             ghost.world_from_object(),
-            vec![Receiver {
-                name: "table".to_owned(),
-                world_from_plane: table.world_from_plane,
-                half_extent_m: table.half_extent_m,
-                surface: Surface::Textured,
-            }],
-        )
-        .with_plates(self.plates.clone())
-        .with_probe(self.lens.probe());
+            std::iter::once(table)
+                .chain(others)
+                .enumerate()
+                .map(receiver)
+                .collect(),
+        );
+        Some(scene.with_plates(self.plates.clone()))
+    }
+
+    /// Makes a scene of the table, the plates and the ghost.
+    pub(super) fn place_toy(&mut self) {
+        let Some(scene) = self.placed_scene() else {
+            return;
+        };
+        let scene = scene.with_probe(self.lens.probe());
         self.n_places += 1;
         self.wants_anchor = true;
         self.place = Some(Place::new(self.n_places, scene));
@@ -162,17 +172,21 @@ impl App {
         }
     }
 
+    /// That of a frame over that of the plates; 1 where the platform does not tell.
+    pub(super) fn exposure_of(&self, frame: &CameraFrame) -> f64 {
+        let amount = frame.exposure.and_then(|exposure| exposure.amount());
+        match (amount, self.plate_exposure) {
+            (Some(amount), Some(plate)) => amount / plate,
+            _ => 1.0,
+        }
+    }
+
     /// The latest frame with the moment that is shown, as the tracker gives it.
     pub(super) fn input(&self, effect: f64) -> Option<FrameInput> {
         let (latest, place) = (self.latest.as_ref()?, self.place.as_ref()?);
-        let amount = latest.exposure.and_then(|exposure| exposure.amount());
-        let exposure = match (amount, self.plate_exposure) {
-            (Some(amount), Some(plate)) => amount / plate,
-            _ => 1.0,
-        };
         let camera = latest.camera().or(self.camera)?;
         let input = FrameInput::new(latest.image.clone(), camera, place.scene.world_from_object)
-            .with_exposure(exposure)
+            .with_exposure(self.exposure_of(latest))
             .with_light_estimate(latest.light_estimate)
             .with_shown_pose(self.playback.pose())
             .with_effect(effect);

@@ -23,7 +23,16 @@ pub(super) struct Ghost {
     yaw_rad: f64,
     /// From the lowest point of the toy to its origin, in metres.
     lift_m: f64,
+    /// Radius of the ring around it that turns it, in metres.
+    ring_m: f64,
 }
+
+/// The ring that turns a ghost, over the toy's reach.
+const RING: f64 = 1.25;
+/// A finger within that part of it moves the ghost.
+const WITHIN: f64 = 0.8;
+/// Its corners.
+const N_CORNERS: u32 = 64;
 
 impl Ghost {
     /// A toy that stands where a camera sees the plane at `pixel`, its front, which is object space's +Z, towards the camera; none
@@ -36,7 +45,7 @@ impl Ghost {
         plane: &FoundPlane,
         (camera, pixel): (&Camera, DVec2),
     ) -> Result<Option<Self>, ToyError> {
-        let lift_m = -f64::from(toy.bounds_of_pose(&Pose::Authored)?.min.y);
+        let [lift_m, ring_m] = sizes(toy)?;
         let eye_in_plane = plane
             .world_from_plane
             .inverse()
@@ -48,8 +57,24 @@ impl Ghost {
                 place_m,
                 yaw_rad: to_camera.x.atan2(to_camera.y),
                 lift_m,
+                ring_m,
             }
         }))
+    }
+
+    /// One that stands on the plane where a toy of that transform is, turned as that is; none if the toy cannot be posed.
+    pub(super) fn standing(toy: &Toy, plane: &FoundPlane, world_from_object: &DMat4) -> Option<Self> {
+        let [lift_m, ring_m] = sizes(toy).ok()?;
+        let in_plane = plane.world_from_plane.inverse() * *world_from_object;
+        let place = in_plane.w_axis;
+        let ghost = Self {
+            world_from_plane: plane.world_from_plane,
+            place_m: DVec2::new(place.x, place.z),
+            yaw_rad: in_plane.z_axis.x.atan2(in_plane.z_axis.z),
+            lift_m,
+            ring_m,
+        };
+        in_plane.is_finite().then_some(ghost)
     }
 
     /// Puts it where a camera sees the plane at `pixel`; where that is no place on the plane it stays.
@@ -59,12 +84,33 @@ impl Ghost {
         }
     }
 
-    /// Moves it as a finger goes over the plane.
+    /// Moves it as a finger goes over the plane within the ring, and turns it as one goes around it anywhere else.
     pub(super) fn drag(&mut self, camera: &Camera, [from_px, to_px]: [DVec2; 2]) {
         let places = [from_px, to_px].map(|pixel| seen_at(&self.world_from_plane, camera, pixel));
-        if let [Some(from_m), Some(to_m)] = places {
+        let [Some(from_m), Some(to_m)] = places else {
+            return;
+        };
+        let (from, to) = (from_m - self.place_m, to_m - self.place_m);
+        if from.length() < WITHIN * self.ring_m {
             self.place_m += to_m - from_m;
+        } else if to.length() > 0.0 {
+            // A plane's x goes to its z by a turn to the right, seen from above.
+            self.turn(-from.angle_to(to));
         }
+    }
+
+    /// The ring that turns it, corner by corner, and its knob, before the toy's front; in pixels.
+    pub(super) fn ring_px(&self, camera: &Camera) -> Option<(Vec<DVec2>, DVec2)> {
+        let pixel = |at_m: DVec2| {
+            let at = self
+                .world_from_plane
+                .transform_point3(DVec3::new(at_m.x, 0.0, at_m.y));
+            let in_camera = camera.world_from_camera.inverse().transform_point3(at);
+            camera.intrinsics.pixel_of(in_camera)
+        };
+        let corners = circle(self.place_m, self.ring_m, N_CORNERS).filter_map(pixel);
+        let front = DVec2::new(self.yaw_rad.sin(), self.yaw_rad.cos());
+        Some((corners.collect(), pixel(self.place_m + self.ring_m * front)?))
     }
 
     /// Turns it, counterclockwise from above.
@@ -86,6 +132,14 @@ impl Ghost {
     }
 }
 
+/// From the lowest point of a toy to its origin, and the radius of its ring.
+fn sizes(toy: &Toy) -> Result<[f64; 2], ToyError> {
+    let bounds = toy.bounds_of_pose(&Pose::Authored)?;
+    let [x, z] = [(bounds.min.x, bounds.max.x), (bounds.min.z, bounds.max.z)]
+        .map(|(least, most)| f64::from(least.abs().max(most.abs())));
+    Ok([-f64::from(bounds.min.y), RING * x.hypot(z)])
+}
+
 /// The place of a plane that a camera sees at `pixel`, as its x and z; none above the horizon, from below, or far away.
 pub(super) fn seen_at(world_from_plane: &DMat4, camera: &Camera, pixel: DVec2) -> Option<DVec2> {
     let k = &camera.intrinsics;
@@ -103,4 +157,10 @@ pub(super) fn seen_at(world_from_plane: &DMat4, camera: &Camera, pixel: DVec2) -
     let distance_m = eye.y / -ray.y;
     let place = eye + distance_m * ray;
     (distance_m <= FARTHEST_M).then_some(DVec2::new(place.x, place.z))
+}
+
+/// Corners of a circle, the first on the first axis.
+pub(super) fn circle(middle: DVec2, radius: f64, n: u32) -> impl Iterator<Item = DVec2> {
+    let step_rad = TAU / f64::from(n);
+    (0..n).map(move |corner| middle + radius * DVec2::from_angle(step_rad * f64::from(corner)))
 }

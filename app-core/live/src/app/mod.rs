@@ -10,16 +10,21 @@ mod event;
 mod frames;
 mod ghost;
 mod ghost_shape;
+mod language;
 mod launch_history;
 mod lens;
 mod log;
 mod notice;
 mod panics;
 mod phone_check;
+mod placing;
+mod plates;
 mod platform;
 mod playback;
 mod recorder;
 mod recordings;
+mod reticle;
+mod search;
 mod show;
 mod start;
 mod step;
@@ -27,6 +32,8 @@ mod table;
 mod toys;
 
 use std::sync::Arc;
+
+use glam::DVec3;
 
 use app_scene::camera_frame::{Arrivals, CameraFrame, Fade, FoundPlane};
 use app_scene::scene::{Camera, Plate};
@@ -37,8 +44,10 @@ use ghost::Ghost;
 use ghost_shape::GhostShape;
 use lens::Lens;
 use phone_check::PhoneCheck;
+use plates::Plating;
 use platform::{Asked, Captures, Commanded, Platform};
 use recorder::Recorder;
+use search::Search;
 use start::Start;
 
 pub use aligning::{AlignJob, AlignedJob, Verdict};
@@ -48,13 +57,17 @@ pub use event::{
     ArSession, GraphicsState, Permission, PlatformCommand, Recorded, Saved, ShellCommand, ShellEvent,
     Thermal, UserAction, WorkCommand,
 };
+pub use language::Language;
 pub use launch_history::{LaunchHistory, MAX_FAILED_LAUNCHES, N_GOOD_FRAMES, Simplified};
 pub use log::Log;
 pub use notice::{LensFailure, Notice};
 pub use panics::Panics;
 pub use phone_check::{CheckInk, PhoneQuestion};
+pub use plates::{PlateJob, PlatedJob};
 pub use platform::Obstacle;
 pub use playback::Playback;
+pub use reticle::Reticle;
+pub use search::{Placing, SearchJob, SearchedJob};
 pub use show::Show;
 pub use step::{Cause, Step};
 
@@ -79,6 +92,7 @@ pub struct App {
     uses_card: bool,
     /// What the platform says of its AR session.
     ar_words: Option<String>,
+    language: Language,
     /// What has to be said on the first screen, by the terms of what it runs on.
     disclosure: Option<&'static str>,
     /// For so long the tracker has looked for a place where nothing was chosen.
@@ -97,13 +111,17 @@ pub struct App {
     /// While a person chooses another one.
     toy_files: Option<Vec<String>>,
     table: Option<FoundPlane>,
-    plate_taker: PlateTaker,
-    plate_step: Option<PlateStep>,
+    plating: Plating,
     plates: Vec<Plate>,
     /// That of the plates, where the platform tells; frames are told relative to it.
     plate_exposure: Option<f64>,
     ghost: Option<Ghost>,
     ghost_shape: GhostShape,
+    search: Search,
+    /// Where the platform has recognised the toy.
+    scanned_at: Option<DVec3>,
+    /// Whether the reticle lay on a table in the frame before.
+    had_reticle: bool,
     lens: Lens,
     place: Option<Place>,
     n_places: u64,
@@ -130,6 +148,7 @@ impl App {
             wants_anchor: false,
             uses_card: false,
             ar_words: None,
+            language: Language::default(),
             disclosure: None,
             relocalising_s: 0.0,
             shows_profile: false,
@@ -144,11 +163,13 @@ impl App {
             toy,
             toy_files: None,
             table: None,
-            plate_taker: PlateTaker::default(),
-            plate_step: None,
+            plating: Plating::default(),
             plates: Vec::new(),
             plate_exposure: None,
             ghost: None,
+            search: Search::default(),
+            scanned_at: None,
+            had_reticle: false,
             lens: Lens::default(),
             place: None,
             n_places: 0,
@@ -174,6 +195,8 @@ impl App {
             ShellEvent::Frame(frame) => self.frame(*frame, &mut commands),
             ShellEvent::Thermal(thermal) => self.platform.thermal = thermal,
             ShellEvent::MemoryLow => self.memory_low(),
+            ShellEvent::Plated(done) => self.plated(done),
+            ShellEvent::Searched(done) => self.searched(done, &mut commands),
             ShellEvent::Aligned(done) => self.aligned(done),
             ShellEvent::ToyFiles(files) => self.toy_files = Some(files),
             ShellEvent::Toy(read) => self.take_toy(read),
@@ -181,6 +204,7 @@ impl App {
             ShellEvent::Recorded(recorded) => self.recorded(recorded),
             ShellEvent::FreeSpace(free_bytes) => self.free_space(free_bytes),
             ShellEvent::Started(history) => self.started(history),
+            ShellEvent::Language(language) => self.language = language,
             ShellEvent::Restarted => self.tell(Notice::Restarted),
             ShellEvent::User(action) => self.act(action, &mut commands),
         }
@@ -226,6 +250,12 @@ impl App {
         self.uses_card
     }
 
+    /// What it speaks.
+    #[must_use]
+    pub fn language(&self) -> Language {
+        self.language
+    }
+
     /// Says this on the first screen, by the terms of what the app runs on.
     pub fn disclose(&mut self, words: &'static str) {
         self.disclosure = Some(words);
@@ -246,7 +276,7 @@ impl App {
     /// How far the photograph of the empty place is, in its step.
     #[must_use]
     pub fn plate_step(&self) -> Option<&PlateStep> {
-        self.plate_step.as_ref()
+        self.plating.step.as_ref()
     }
 
     /// What the latest alignment says.
@@ -344,10 +374,9 @@ impl App {
             }
             Step::TakePlate => {
                 self.place = None;
-                self.plate_taker = PlateTaker::default();
-                self.plate_step = None;
+                self.plating.begin();
             }
-            Step::PlaceToy => self.place = None,
+            Step::PlaceToy => self.enter_ghost(cause),
             Step::Align => self.place_toy(),
             Step::Play => {}
         }
@@ -356,18 +385,32 @@ impl App {
         }
     }
 
+    /// Where the toy is is asked: it is searched for where it was just put down, and a person goes on by hand where it was seen before.
+    fn enter_ghost(&mut self, cause: Cause) {
+        let place = self.place.take();
+        match cause {
+            Cause::PlateTaken | Cause::PlateSkipped => self.search.begin(!self.plates.is_empty()),
+            _ => self.search.give_up(),
+        }
+        let seen = place.filter(Place::is_known).zip(self.table.as_ref());
+        let seen =
+            seen.and_then(|(place, table)| Ghost::standing(&self.toy, table, place.world_from_object()));
+        self.ghost = seen.or(self.ghost.take());
+    }
+
     /// All that is of one place is dropped.
     fn forget_place(&mut self) {
         self.table = None;
         self.plates.clear();
         self.plate_exposure = None;
         self.ghost = None;
+        self.scanned_at = None;
         self.lens = Lens::default();
         if let Some(check) = &mut self.phone_check {
             check.forget_place();
         }
         self.place = None;
         self.camera = None;
-        self.plate_step = None;
+        self.plating.step = None;
     }
 }

@@ -9,7 +9,9 @@ use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 
 use super::App;
+use super::search::Placing;
 use super::step::Step;
+use app_alignment::Silhouette;
 
 /// What is to be drawn below the interface.
 #[derive(Debug)]
@@ -47,16 +49,22 @@ impl App {
         }
     }
 
-    /// The contour of the toy where a person puts it, as pairs of pixels of the camera's picture; empty in other steps.
+    /// What the toy covers of the camera's picture where it seems to be, or where a person puts it; none while nobody knows.
     #[must_use]
-    pub fn ghost_contour_px(&self) -> Vec<[DVec2; 2]> {
-        let is_shown = matches!(self.step, Step::PlaceToy | Step::Align);
-        match (&self.ghost, &self.camera) {
-            (Some(ghost), Some(camera)) if is_shown => {
-                self.ghost_shape.contour_px(&ghost.world_from_object(), camera)
-            }
-            _ => Vec::new(),
-        }
+    pub fn ghost(&self) -> Option<Silhouette> {
+        let (ghost, camera) = (self.ghost.as_ref()?, self.camera.as_ref()?);
+        let latest = self.latest.as_ref().filter(|_| self.shows_ghost())?;
+        let size_px = latest.image.size_px();
+        self.ghost_shape
+            .silhouette(&ghost.world_from_object(), (camera, size_px))
+    }
+
+    /// The ring that turns the ghost, corner by corner, and its knob, in pixels of the camera's picture; none where nobody turns it.
+    #[must_use]
+    pub fn ring_px(&self) -> Option<(Vec<DVec2>, DVec2)> {
+        let is_turned = self.step == Step::PlaceToy && self.placing() == Placing::ByHand;
+        let ghost = self.ghost.as_ref().filter(|_| is_turned)?;
+        ghost.ring_px(self.camera.as_ref()?)
     }
 
     /// The camera's picture: its size, and how it lies on the screen; none before the first.

@@ -7,7 +7,7 @@ use super::event::{ShellCommand, WorkCommand};
 use super::ghost_shape::GhostShape;
 use super::notice::Notice;
 use super::playback::Playback;
-use super::step::Cause;
+use super::step::{Cause, Step};
 use app_scene::toy::Toy;
 
 impl App {
@@ -31,8 +31,13 @@ impl App {
                 self.playback = Playback::of(&toy);
                 self.ghost_shape = GhostShape::of(&toy);
                 self.toy = toy;
-                self.ghost = None;
                 self.go(Cause::Replace);
+                (self.ghost, self.scanned_at) = (None, None);
+                if self.step == Step::PlaceToy && self.has_plate() {
+                    self.search.begin(true);
+                } else {
+                    self.search.give_up();
+                }
             }
             Err(reason) => self.tell(Notice::ToyRefused(reason)),
         }

@@ -4,7 +4,8 @@ use egui::{Color32, Pos2, Rect, RichText, Stroke, Ui, vec2};
 use glam::DVec2;
 
 use super::parts::{lead, other};
-use super::{style, text};
+use super::style;
+use super::text::{self, say};
 use crate::app::{App, CheckInk, PhoneQuestion, UserAction};
 
 /// Side of a patch, in points.
@@ -25,17 +26,17 @@ pub(super) fn sheet(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     let Some((question, number)) = app.phone_question() else {
         return;
     };
-    let title = format!("{} of {}", number, PhoneQuestion::ALL.len());
+    let title = text::N_OF.filled(app.language(), &[&number, &PhoneQuestion::ALL.len()]);
     ui.label(RichText::new(title).small().color(style::MUTED));
-    ui.label(text::of_question(question));
-    if lead(ui, text::YES) {
+    ui.label(say(app, text::of_question(question)));
+    if lead(ui, say(app, text::YES)) {
         actions.push(UserAction::Answer(true));
     }
     ui.horizontal_wrapped(|ui| {
-        if other(ui, text::NO) {
+        if other(ui, say(app, text::NO)) {
             actions.push(UserAction::Answer(false));
         }
-        if other(ui, text::STOP) {
+        if other(ui, say(app, text::STOP)) {
             actions.push(UserAction::CheckPhone(false));
         }
     });

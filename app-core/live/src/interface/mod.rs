@@ -5,6 +5,7 @@
 
 mod check;
 mod input;
+mod overlay;
 mod painter;
 mod parts;
 mod picture;
@@ -12,6 +13,7 @@ mod play;
 mod screens;
 mod style;
 mod text;
+mod words;
 
 use egui::{CentralPanel, Context, Frame};
 
@@ -19,7 +21,8 @@ use crate::app::{App, Step, UserAction};
 
 pub use input::{Insets, Screen, Touch, TouchPhase};
 pub(crate) use painter::Painter;
-pub use text::{CLOSED, of_no_graphics};
+pub use text::{CLOSED, announced, of_no_graphics};
+pub use words::all_words;
 
 /// A font of 18 KB: Roboto Medium, Copyright 2015 Google, Apache License 2.0, cut to Latin letters and signs.
 const FONT: &[u8] = include_bytes!("roboto_medium.ttf");

@@ -1,8 +1,12 @@
 //! What sheets are made of.
 
-use egui::{Button, RichText, Ui, vec2};
+use egui::{Button, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use super::style;
+
+/// Radius of a slider's knob, and the least width of its line, in points.
+const KNOB_POINTS: f32 = 11.0;
+const LEAST_SLIDER_POINTS: f32 = 60.0;
 
 /// A title, and what to do.
 pub(super) fn words(ui: &mut Ui, title: &str, hint: &str) {
@@ -22,4 +26,23 @@ pub(super) fn lead(ui: &mut Ui, label: &str) -> bool {
 pub(super) fn other(ui: &mut Ui, label: &str) -> bool {
     ui.add(Button::new(label).min_size(vec2(style::TOUCH_POINTS, style::TOUCH_POINTS)))
         .clicked()
+}
+
+/// A knob on a line over all the width that is left, and to which part of it a person drags it. A screen reader reads `value` and `label`.
+/// egui's own slider brings fields of numbers and of text along.
+pub(super) fn slider(ui: &mut Ui, part: f64, (value, label): (f64, &str)) -> Option<f64> {
+    let width = ui.available_width().max(LEAST_SLIDER_POINTS);
+    let size = vec2(width, style::TOUCH_POINTS);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::slider(true, value, label));
+    let line = rect.shrink2(vec2(KNOB_POINTS, 0.0));
+    let at = |part: f32| pos2(egui::lerp(line.x_range(), part), line.center().y);
+    let known = super::input::narrowed(part).clamp(0.0, 1.0);
+    let painter = ui.painter();
+    painter.line_segment([at(0.0), at(1.0)], Stroke::new(4.0, style::TRACK));
+    painter.line_segment([at(0.0), at(known)], Stroke::new(4.0, style::ACCENT));
+    painter.circle_filled(at(known), KNOB_POINTS, style::ACCENT);
+    let is_moved = response.dragged() || response.clicked();
+    let to = response.interact_pointer_pos().filter(|_| is_moved)?;
+    Some(f64::from((to.x - line.left()) / line.width().max(1.0)).clamp(0.0, 1.0))
 }

@@ -1,11 +1,11 @@
-//! The camera's picture below the sheets: taps, drags and turns on it, and the ghost over it.
+//! The camera's picture below the sheets: taps, drags and turns on it, and what is drawn over it.
 
-use egui::{Pos2, Sense, Stroke, Ui};
+use egui::{Pos2, Sense, Ui};
 use glam::{DAffine2, DVec2};
 
 use super::input::{Screen, narrowed};
-use super::{check, style};
-use crate::app::{App, Step, UserAction};
+use super::{check, overlay};
+use crate::app::{App, UserAction};
 
 /// What one step of a mouse's wheel turns, in radians.
 const WHEEL_RAD: f64 = 0.05;
@@ -42,9 +42,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, screen: &Screen, wheel_steps: f64, ac
     if wheel_steps != 0.0 {
         actions.push(UserAction::Twist(wheel_steps * WHEEL_RAD));
     }
-    if matches!(app.step(), Step::PlaceToy | Step::Align) {
-        ghost(ui, app, &picture_from_screen, units);
-    }
+    overlay::show(ui, app, |pixel| on_screen(&picture_from_screen, units, pixel));
     check::picture(ui, app, |pixel| on_screen(&picture_from_screen, units, pixel));
 }
 
@@ -52,12 +50,4 @@ pub(super) fn show(ui: &mut Ui, app: &App, screen: &Screen, wheel_steps: f64, ac
 fn on_screen(picture_from_screen: &DAffine2, units: f64, pixel: DVec2) -> Pos2 {
     let at = picture_from_screen.inverse().transform_point2(pixel) / units;
     Pos2::new(narrowed(at.x), narrowed(at.y))
-}
-
-fn ghost(ui: &Ui, app: &App, picture_from_screen: &DAffine2, units: f64) {
-    let at = |pixel| on_screen(picture_from_screen, units, pixel);
-    let painter = ui.painter();
-    for [from, to] in app.ghost_contour_px() {
-        painter.line_segment([at(from), at(to)], Stroke::new(2.0, style::GHOST));
-    }
 }

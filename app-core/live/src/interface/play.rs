@@ -1,36 +1,45 @@
 //! The sheet while the toy moves: clip, time, photo, video, and all else behind one button.
 
-use egui::{ComboBox, Slider, Ui};
+use egui::{ComboBox, Ui};
 
-use super::parts::other;
-use super::{style, text};
+use super::parts::{other, slider};
+use super::style;
+use super::text::{self, say};
+use super::words::Words;
 use crate::app::{App, UserAction};
 
 pub(super) fn show(ui: &mut Ui, app: &App, is_menu_open: &mut bool, actions: &mut Vec<UserAction>) {
     if let Some(verdict) = app.verdict() {
-        let words = egui::RichText::new(text::of_verdict(verdict));
+        let words = egui::RichText::new(text::of_verdict(verdict, app.language()));
         ui.label(words.small().color(style::MUTED));
     }
     if app.simplified().is_some() {
-        ui.label(egui::RichText::new(text::SIMPLE).small());
+        ui.label(egui::RichText::new(say(app, text::SIMPLE)).small());
     }
     if app.is_recording() {
-        ui.label(egui::RichText::new(text::RECORDING).small());
+        ui.label(egui::RichText::new(say(app, text::RECORDING)).small());
     }
     clip(ui, app, actions);
     ui.horizontal_wrapped(|ui| {
-        if other(ui, text::PHOTO) {
+        if other(ui, say(app, text::PHOTO)) {
             actions.push(UserAction::SavePhoto);
         }
         let video = if app.is_making_video() {
-            text::END_VIDEO
+            say(app, text::END_VIDEO)
         } else {
-            text::VIDEO
+            say(app, text::VIDEO)
         };
         if other(ui, video) {
             actions.push(UserAction::Video(!app.is_making_video()));
         }
-        if other(ui, if *is_menu_open { text::LESS } else { text::MORE }) {
+        if other(
+            ui,
+            if *is_menu_open {
+                say(app, text::LESS)
+            } else {
+                say(app, text::MORE)
+            },
+        ) {
             *is_menu_open = !*is_menu_open;
         }
     });
@@ -46,10 +55,10 @@ fn clip(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
         let chosen = playback.clip().and_then(|clip| names.get(clip.index()));
         ComboBox::from_id_salt("clip")
             .width(ui.available_width())
-            .selected_text(chosen.map_or(text::AUTHORED, String::as_str))
+            .selected_text(chosen.map_or(say(app, text::AUTHORED), String::as_str))
             .show_ui(ui, |ui| {
                 if ui
-                    .selectable_label(playback.clip().is_none(), text::AUTHORED)
+                    .selectable_label(playback.clip().is_none(), say(app, text::AUTHORED))
                     .clicked()
                 {
                     actions.push(UserAction::Choose(None));
@@ -66,19 +75,16 @@ fn clip(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     }
     ui.horizontal(|ui| {
         let label = if playback.is_playing() {
-            text::PAUSE
+            say(app, text::PAUSE)
         } else {
-            text::PLAY
+            say(app, text::PLAY)
         };
         if other(ui, label) {
             actions.push(UserAction::Play(!playback.is_playing()));
         }
-        let mut time_s = playback.time_s();
-        ui.spacing_mut().slider_width = (ui.available_width() - 12.0).max(60.0);
-        let slider = Slider::new(&mut time_s, 0.0..=playback.length_s()).show_value(false);
-        let response = ui.add(slider);
-        response.widget_info(|| egui::WidgetInfo::slider(true, playback.time_s(), text::TIME));
-        if response.changed() {
+        let part = playback.time_s() / playback.length_s();
+        if let Some(part) = slider(ui, part, (playback.time_s(), say(app, text::TIME))) {
+            let time_s = part * playback.length_s();
             actions.extend([UserAction::Play(false), UserAction::Scrub(time_s)]);
         }
     });
@@ -91,22 +97,39 @@ fn menu(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     } else {
         text::RECORD
     };
-    let entries = [
+    let restore = app
+        .simplified()
+        .map(|_| (text::RESTORE, UserAction::RestorePreset));
+    let toy = [
+        (text::REPLACE, UserAction::Replace),
+        (text::PICK_TOY, UserAction::PickToy),
+        (text::RETAKE, UserAction::RetakePlate),
+        (text::START_OVER, UserAction::StartOver),
+    ];
+    let engineers = [
         (record, UserAction::Record(!is_recording)),
         (text::PROFILE, UserAction::ShowProfile(!app.shows_profile())),
         (text::CHECK, UserAction::CheckPhone(true)),
-        (text::REPLACE, UserAction::Replace),
-        (text::RETAKE, UserAction::RetakePlate),
-        (text::PICK_TOY, UserAction::PickToy),
         (text::SHARE, UserAction::Share),
-        (text::START_OVER, UserAction::StartOver),
     ];
+    let toy = toy.into_iter().chain(restore).collect();
+    for (title, entries) in [(text::TOY_GROUP, toy), (text::ENGINEER_GROUP, engineers.to_vec())] {
+        group(ui, app, (title, entries), actions);
+    }
+}
+
+/// Buttons below a title.
+fn group(
+    ui: &mut Ui,
+    app: &App,
+    (title, entries): (Words, Vec<(Words, UserAction)>),
+    actions: &mut Vec<UserAction>,
+) {
+    let title = egui::RichText::new(say(app, title));
+    ui.label(title.small().color(style::MUTED));
     ui.horizontal_wrapped(|ui| {
-        let restore = app
-            .simplified()
-            .map(|_| (text::RESTORE, UserAction::RestorePreset));
-        for (label, action) in entries.into_iter().chain(restore) {
-            if other(ui, label) {
+        for (label, action) in entries {
+            if other(ui, say(app, label)) {
                 actions.push(action);
             }
         }

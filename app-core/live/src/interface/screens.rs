@@ -3,8 +3,9 @@
 use egui::{Align2, Area, Id, Order, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
 
 use super::parts::{lead, other, words};
-use super::{check, play, style, text};
-use crate::app::{App, Obstacle, Step, UserAction};
+use super::text::{self, say};
+use super::{check, play, style};
+use crate::app::{App, Obstacle, Placing, Step, UserAction};
 
 /// The sheet at the bottom, or at the right of a wide screen: the toy is mostly in the middle.
 pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, actions: &mut Vec<UserAction>) {
@@ -39,11 +40,12 @@ pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, actions: &m
 }
 
 fn step(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
-    let (title, hint) = text::of_step(app);
-    words(ui, title, &hint);
+    if let Some((title, hint)) = text::of_step(app) {
+        words(ui, say(app, title), say(app, hint));
+    }
     match app.step() {
         Step::Welcome => {
-            if lead(ui, text::BEGIN) {
+            if lead(ui, say(app, text::BEGIN)) {
                 actions.push(UserAction::Begin);
             }
             if let Some(disclosure) = app.disclosure() {
@@ -52,62 +54,97 @@ fn step(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
         }
         Step::TakePlate => {
             plate_step(ui, app);
-            if other(ui, text::SKIP_PLATE) {
+            if other(ui, say(app, text::SKIP_PLATE)) {
                 actions.push(UserAction::SkipPlate);
             }
-            if other(ui, text::START_OVER) {
+            if other(ui, say(app, text::START_OVER)) {
                 actions.push(UserAction::StartOver);
             }
         }
         Step::PlaceToy if app.is_taking_lens() => {
             ui.spinner();
         }
-        Step::PlaceToy => {
-            if lead(ui, text::PLACED) {
-                actions.push(UserAction::Placed);
-            }
-            if app.sees_card() && other(ui, text::TAKE_LENS) {
-                actions.push(UserAction::TakeLens);
-            }
-            if other(ui, text::PICK_TOY) {
-                actions.push(UserAction::PickToy);
-            }
-            if other(ui, text::START_OVER) {
-                actions.push(UserAction::StartOver);
-            }
-        }
+        Step::PlaceToy => place(ui, app, actions),
         Step::Align => {
             ui.spinner();
-            if other(ui, text::BACK) {
+            if other(ui, say(app, text::BACK)) {
                 actions.push(UserAction::Replace);
             }
         }
         Step::FindTable => {
+            if app.reticle().is_some() && lead(ui, say(app, text::HERE)) {
+                actions.push(UserAction::TapReticle);
+            }
             let words = if app.uses_card() {
                 text::NO_CARD
             } else {
                 text::USE_CARD
             };
-            if other(ui, words) {
-                actions.push(UserAction::UseCard(!app.uses_card()));
-            }
-            if other(ui, text::CHECK) {
-                actions.push(UserAction::CheckPhone(true));
-            }
+            ui.horizontal_wrapped(|ui| {
+                if other(ui, say(app, words)) {
+                    actions.push(UserAction::UseCard(!app.uses_card()));
+                }
+                if other(ui, say(app, text::CHECK)) {
+                    actions.push(UserAction::CheckPhone(true));
+                }
+            });
         }
         Step::Play => {}
     }
 }
 
+/// Where the toy is: it is waited for, asked, or turned.
+fn place(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
+    let placing = app.placing();
+    match placing {
+        Placing::Waiting { .. } => {}
+        Placing::Looking => {
+            ui.spinner();
+        }
+        Placing::Asked { is_searching } => {
+            if lead(ui, say(app, text::YES)) {
+                actions.push(UserAction::Placed);
+            }
+            if is_searching {
+                ui.spinner();
+            }
+        }
+        Placing::ByHand => {
+            if lead(ui, say(app, text::PLACED)) {
+                actions.push(UserAction::Placed);
+            }
+        }
+    }
+    let by_hand = match placing {
+        Placing::Asked { .. } => Some((text::TURN, UserAction::ByHand)),
+        Placing::ByHand => Some((text::LOOK_AGAIN, UserAction::LookAgain)),
+        _ => None,
+    };
+    let lens = (app.sees_card()).then_some((text::TAKE_LENS, UserAction::TakeLens));
+    let others = [
+        by_hand,
+        lens,
+        Some((text::PICK_TOY, UserAction::PickToy)),
+        Some((text::START_OVER, UserAction::StartOver)),
+    ];
+    ui.horizontal_wrapped(|ui| {
+        for (label, action) in others.into_iter().flatten() {
+            if other(ui, say(app, label)) {
+                actions.push(action);
+            }
+        }
+    });
+}
+
 /// Toys to choose from.
 fn toys(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
-    words(ui, text::PICK_TOY, text::WHERE_TOYS_ARE);
+    words(ui, say(app, text::PICK_TOY), say(app, text::WHERE_TOYS_ARE));
     for (index, name) in app.toy_files().unwrap_or_default().iter().enumerate() {
         if other(ui, name) {
             actions.push(UserAction::ChooseToy(Some(index)));
         }
     }
-    if other(ui, text::BACK) {
+    if other(ui, say(app, text::BACK)) {
         actions.push(UserAction::ChooseToy(None));
     }
 }
@@ -116,7 +153,7 @@ fn plate_step(ui: &mut Ui, app: &App) {
     let Some(step) = app.plate_step() else { return };
     let (part, help) = text::of_plate_step(step);
     ui.add(ProgressBar::new(part.unwrap_or(0.0)).desired_height(12.0));
-    ui.label(help);
+    ui.label(say(app, help));
 }
 
 fn in_the_way(ui: &mut Ui, app: &App, obstacle: Obstacle, actions: &mut Vec<UserAction>) {
@@ -131,17 +168,17 @@ fn in_the_way(ui: &mut Ui, app: &App, obstacle: Obstacle, actions: &mut Vec<User
         (Obstacle::NoAr, Some(_)) => text::NO_AR,
         _ => title,
     };
-    words(ui, title, said.unwrap_or(hint));
+    words(ui, say(app, title), said.unwrap_or(say(app, hint)));
     let way_back = match obstacle {
-        Obstacle::CameraDenied => lead(ui, text::ALLOW_CAMERA).then_some(UserAction::Begin),
-        Obstacle::CameraBarred => lead(ui, text::OPEN_SETTINGS).then_some(UserAction::OpenSettings),
-        Obstacle::ArFailed => lead(ui, text::START_OVER).then_some(UserAction::StartOver),
-        Obstacle::Tracking(_) => other(ui, text::START_OVER).then_some(UserAction::StartOver),
-        Obstacle::NoAr => lead(ui, text::TRY_AGAIN).then_some(UserAction::TryAgain),
+        Obstacle::CameraDenied => lead(ui, say(app, text::ALLOW_CAMERA)).then_some(UserAction::Begin),
+        Obstacle::CameraBarred => lead(ui, say(app, text::OPEN_SETTINGS)).then_some(UserAction::OpenSettings),
+        Obstacle::ArFailed => lead(ui, say(app, text::START_OVER)).then_some(UserAction::StartOver),
+        Obstacle::Tracking(_) => other(ui, say(app, text::START_OVER)).then_some(UserAction::StartOver),
+        Obstacle::NoAr => lead(ui, say(app, text::TRY_AGAIN)).then_some(UserAction::TryAgain),
         // The first screen itself is below it.
         _ if app.step() == Step::Welcome => None,
         Obstacle::Installing | Obstacle::Interrupted | Obstacle::TooHot | Obstacle::Preparing => {
-            other(ui, text::LEAVE).then_some(UserAction::Leave)
+            other(ui, say(app, text::LEAVE)).then_some(UserAction::Leave)
         }
     };
     actions.extend(way_back);
@@ -166,7 +203,7 @@ pub(super) fn notice(ui: &Ui, app: &App) -> Option<Rect> {
         .show(ui.ctx(), |ui| {
             style::card().show(ui, |ui| {
                 ui.set_max_width(width - 32.0);
-                ui.label(text::of_notice(notice));
+                ui.label(text::of_notice(notice, app.language()));
             });
         });
     Some(shown.response.rect)

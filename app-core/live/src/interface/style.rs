@@ -18,6 +18,8 @@ pub(super) const ACCENT: Color32 = Color32::from_rgb(255, 190, 60);
 pub(super) const ON_ACCENT: Color32 = Color32::from_rgb(40, 26, 0);
 /// What is less important.
 pub(super) const MUTED: Color32 = Color32::from_rgb(190, 194, 204);
+/// The line that a knob moves on.
+pub(super) const TRACK: Color32 = Color32::from_rgb(92, 97, 112);
 /// The contour of the ghost.
 pub(super) const GHOST: Color32 = Color32::from_rgb(255, 214, 120);
 

@@ -104,6 +104,11 @@ pub enum Warning {
         /// Of the glossiest material, over that of plastic.
         strength: f32,
     },
+    /// The receiver that the toy stands on is too smooth for what is known of what it reflects.
+    MirrorLike {
+        /// Width of the lobe, as Beckmann's alpha.
+        roughness: f64,
+    },
     /// The camera sees what the model cannot explain.
     Outlier(Outlier),
     /// Something beside the toy is in the pictures.
@@ -199,6 +204,10 @@ impl fmt::Display for Warning {
                 f,
                 "no real shadow is seen of {}: the new one there has the shade of others",
                 listed(unseen, ", ")
+            ),
+            Self::MirrorLike { roughness } => write!(
+                f,
+                "the table is nearly a mirror (roughness {roughness:.2}): the toy's reflection is shown in one colour, and sharper things of the room in it stay as photographed; lay something duller under the toy"
             ),
             Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Outlier(unknown) => unknown.fmt(f),

@@ -45,6 +45,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "planes",
     "pool",
     "receiver_light",
+    "reflection",
     "self_shadow",
     "soft_toy",
     "source",

@@ -7,6 +7,7 @@ mod gloss;
 pub(crate) mod method;
 mod output;
 mod placement;
+mod reflection;
 mod reuse;
 mod soft;
 mod style;
@@ -40,6 +41,7 @@ use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
 use app_scene::geometry::bounds::Bounds;
 use app_scene::gloss::Gloss;
+use app_scene::reflection::Reflection;
 use app_scene::scene::{Camera, Image, Scene};
 use app_scene::shadow_style::ShadowStyle;
 use app_scene::sharpness::Sharpness;
@@ -99,6 +101,8 @@ pub(crate) struct Stage {
     sharpness: Sharpness,
     /// How glossy the toy is taken to be.
     gloss: Gloss,
+    /// How the first receiver reflects, as the latest frame says.
+    reflection: Option<Reflection>,
     /// How the latest frame's shadow is to look.
     shadow_style: ShadowStyle,
     /// How the shadow that was drawn last looks.
@@ -194,6 +198,7 @@ impl Stage {
             reached_rects: Vec::new(),
             sharpness: Sharpness::SHARP,
             gloss: Gloss::NONE,
+            reflection: None,
             shadow_style: ShadowStyle::TRUE,
             drawn_style: ShadowStyle::TRUE,
             lights_inside: None,
@@ -443,6 +448,7 @@ impl Stage {
         report.warnings.extend(self.light_warning());
         report.warnings.extend(self.thing_warnings());
         report.warnings.extend(self.gloss_warning());
+        report.warnings.extend(self.reflection_warning());
         if !self.shows_toy(&footprint.view) {
             report.warnings.push(Warning::ToyOutOfPicture);
         }

@@ -65,6 +65,12 @@ pub struct Anchor {
     pub world_from_anchor: DMat4,
 }
 
+impl Anchor {
+    /// Number of the toy's own anchor, if the platform recognises the toy by a scan. Its axes are
+    /// the scan's.
+    pub const OF_TOY: u64 = u64::MAX;
+}
+
 /// A camera picture and the platform's data about it.
 ///
 /// Pixels count from the top left of the sensor's picture, which is never turned; the world is in

@@ -155,6 +155,7 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
             is_softened: false,
             gloss: Gloss::NONE,
             angular_radii_rad: vec![0.0],
+            reflection: None,
             region,
             physical_toy: Some(region),
             toy_box: Some(region),

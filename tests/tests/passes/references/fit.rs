@@ -40,6 +40,7 @@ fn samples(region: &Region, solution: &Solution) -> Vec<ReceiverSample> {
             point: point(in_plane),
             ambient,
             visibility,
+            reflected: DVec3::ZERO,
         }
     };
     (0..N_SAMPLES).map(sample).collect()

@@ -29,6 +29,8 @@ pub(crate) enum Happening {
     /// It runs as it would, on a picture that shows no toy.
     AlignmentRuns,
     AlignmentDies,
+    /// What else threads work on comes to its end, or they do.
+    WorkEnds(bool),
     OtherToy(bool),
     Saved(Saved),
     /// The first or the last recording ends, asked or not.
@@ -82,6 +84,7 @@ pub(crate) fn happening() -> impl Strategy<Value = Happening> {
         4 => select(vec![Some(0.1), Some(0.1), Some(1.9), None]).prop_map(Happening::AlignmentEnds),
         1 => Just(Happening::AlignmentRuns),
         1 => Just(Happening::AlignmentDies),
+        4 => select(vec![true, true, true, false]).prop_map(Happening::WorkEnds),
         1 => any::<bool>().prop_map(Happening::OtherToy),
         1 => saved.prop_map(Happening::Saved),
         1 => any::<bool>().prop_map(Happening::RecordingEnds),
@@ -96,6 +99,9 @@ fn action() -> impl Strategy<Value = UserAction> {
         UserAction::Begin,
         UserAction::OpenSettings,
         UserAction::SkipPlate,
+        UserAction::TapReticle,
+        UserAction::ByHand,
+        UserAction::LookAgain,
         UserAction::TakeLens,
         UserAction::Placed,
         UserAction::Placed,

@@ -96,9 +96,15 @@ impl Person {
 
     fn tell(&mut self, event: ShellEvent) {
         for command in self.app.event(event) {
-            if let ShellCommand::Platform(PlatformCommand::Underexpose(is_on)) = command {
-                self.commands.push(format!("{command:?}"));
-                self.feed.is_dark = is_on && self.can_darken;
+            match command {
+                ShellCommand::Platform(PlatformCommand::Underexpose(is_on)) => {
+                    self.commands.push(format!("{command:?}"));
+                    self.feed.is_dark = is_on && self.can_darken;
+                }
+                ShellCommand::Work(WorkCommand::Plate(job)) => {
+                    self.tell(ShellEvent::Plated(Some(Box::new(job.run()))));
+                }
+                _ => {}
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Whatever happens in whatever order, what the shell is asked for makes sense.
 
 use app_core::app::{
-    AlignJob, AlignedJob, App, GraphicsState, Notice, Permission, PlatformCommand, ShellCommand, ShellEvent,
-    Show, Step, UserAction, WorkCommand,
+    AlignJob, AlignedJob, App, GraphicsState, Notice, Permission, PlateJob, PlatformCommand, SearchJob,
+    ShellCommand, ShellEvent, Show, Step, UserAction, WorkCommand,
 };
 use app_core::camera_frame::{Exposure, Tracking};
 use app_core::frame::FrameInput;
@@ -28,6 +28,8 @@ struct Platform {
     time_ns: i64,
     world_epoch: u32,
     jobs: Vec<AlignJob>,
+    plates: Vec<PlateJob>,
+    searches: Vec<SearchJob>,
     recordings: Vec<RecordingJob>,
 }
 
@@ -71,6 +73,14 @@ impl Platform {
             }),
             Happening::AlignmentRuns => self.end(|job| Some(job.run())),
             Happening::AlignmentDies => self.end(|_| None),
+            Happening::WorkEnds(is_whole) => {
+                let plates = self.plates.drain(..);
+                let plates = plates.map(|job| is_whole.then(|| Box::new(job.run())));
+                let searches = self.searches.drain(..);
+                let searches = searches.map(|job| is_whole.then(|| Box::new(job.run())));
+                let plates = plates.map(ShellEvent::Plated);
+                plates.chain(searches.map(ShellEvent::Searched)).collect()
+            }
             Happening::OtherToy(is_toy) => {
                 let read = if is_toy {
                     Ok(world::toy())
@@ -161,6 +171,8 @@ impl Platform {
                 }
             }
             ShellCommand::Work(WorkCommand::Align(job)) => self.jobs.push(*job),
+            ShellCommand::Work(WorkCommand::Plate(job)) => self.plates.push(*job),
+            ShellCommand::Work(WorkCommand::Search(job)) => self.searches.push(*job),
             _ => {}
         }
         Ok(())
@@ -183,6 +195,7 @@ impl Platform {
             (self.makes_video && !(self.runs && step == Step::Play), "a video of nothing"),
             (self.records && !(self.runs && step == Step::Play), "a recording of nothing"),
             (self.records != app.is_recording(), "the app is wrong about its recording"),
+            (app.ghost().is_some() && !matches!(step, Step::PlaceToy | Step::Align), "a ghost of nothing"),
             (is_toy && step != Step::Play, "the effect is shown before the toy was found"),
             (!(0.0..=1.0).contains(&effect), "an effect that cannot be"),
             (self.makes_video != app.is_making_video(), "the app is wrong about its video"),

@@ -1,8 +1,8 @@
 //! The interface without a device: what can be read out and touched, on every screen.
 
-use app_core::app::{App, GraphicsState, Permission, ShellEvent, Step, UserAction};
+use app_core::app::{App, GraphicsState, Language, Permission, ShellEvent, Step, UserAction};
 use app_core::camera_frame::Tracking;
-use app_core::interface::{Insets, Interface, Screen, Touch, TouchPhase, Widget};
+use app_core::interface::{Insets, Interface, Screen, Touch, TouchPhase, Widget, all_words};
 use glam::DVec2;
 
 use crate::app::world;
@@ -74,14 +74,16 @@ fn events() -> Vec<ShellEvent> {
         ShellEvent::User(UserAction::Tap(DVec2::new(32.0, 24.0))),
         ShellEvent::Frame(Box::new(world::frame(3, 66_000_000, 0, Tracking::Normal))),
         ShellEvent::User(UserAction::SkipPlate),
+        ShellEvent::User(UserAction::ByHand),
         ShellEvent::User(UserAction::Placed),
     ]
 }
 
 /// The app on each of its screens but that of the last step, which needs a toy that was found.
-fn apps() -> Vec<App> {
+fn apps(language: Language) -> Vec<App> {
     let apps = (1..=events().len()).map(|n| {
         let mut app = world::app();
+        let _ = app.event(ShellEvent::Language(language));
         for event in events().into_iter().take(n) {
             let _ = app.event(event);
         }
@@ -92,7 +94,7 @@ fn apps() -> Vec<App> {
 
 #[test]
 fn whatever_is_touched_is_large_enough_read_out_and_on_the_screen() {
-    let apps = apps();
+    let apps: Vec<App> = Language::ALL.into_iter().flat_map(apps).collect();
     assert_eq!(apps.last().unwrap().step(), Step::Align);
     for app in &apps {
         for (name, screen) in screens() {
@@ -138,7 +140,7 @@ fn whatever_is_touched_is_large_enough_read_out_and_on_the_screen() {
 fn a_sheet_is_the_same_whichever_came_before() {
     for (name, screen) in screens() {
         let mut interface = Interface::default();
-        for app in &apps() {
+        for app in &apps(Language::English) {
             for _ in 0..3 {
                 interface.actions(app, &screen);
             }
@@ -174,4 +176,59 @@ fn a_finger_presses_the_button_below_it() {
         [UserAction::Begin]
     );
     assert_eq!(press([5.0, 5.0]), []);
+}
+
+/// What is wrong with words, of which there is one of each language.
+fn flaw([english, german]: [&str; Language::ALL.len()]) -> Option<&'static str> {
+    let n_filled = |text: &str| text.matches("{}").count();
+    let length = |text: &str| text.chars().count() as f64;
+    let is_of_font = |text: &str| text.chars().all(|sign| u32::from(sign) < 256);
+    let is_long = |one: &str, other: &str| length(one) > 1.45 * length(other) + 12.0;
+    #[rustfmt::skip] // One flaw a line.
+    let flaws = [
+        (english.trim().is_empty() || german.trim().is_empty(), "a language lacks them"),
+        (n_filled(english) != n_filled(german), "not the same is filled in"),
+        (is_long(german, english) || is_long(english, german), "one is much longer"),
+        (!is_of_font(english) || !is_of_font(german), "the font lacks a sign"),
+    ];
+    flaws
+        .into_iter()
+        .find(|(is_wrong, _)| *is_wrong)
+        .map(|(_, flaw)| flaw)
+}
+
+#[test]
+fn words_are_whole_in_each_language() {
+    let words = all_words();
+    assert!(words.len() > 100, "{}", words.len());
+    for words in words {
+        assert_eq!(flaw(words), None, "{words:?}");
+    }
+    assert_eq!(flaw(["Yes", ""]), Some("a language lacks them"));
+    assert_eq!(flaw(["{} lights", "Lichter"]), Some("not the same is filled in"));
+    assert_eq!(
+        flaw(["Begin", "Hier geht es jetzt also endlich los"]),
+        Some("one is much longer")
+    );
+    assert_eq!(flaw(["Yes", "\u{434}\u{430}"]), Some("the font lacks a sign"));
+}
+
+#[test]
+fn a_language_is_that_of_its_tag() {
+    for (tag, language) in [
+        ("de-AT", Language::German),
+        ("DE", Language::German),
+        ("den", Language::English),
+        ("fr-FR", Language::English),
+        ("", Language::English),
+    ] {
+        assert_eq!(Language::of_tag(tag), language, "{tag}");
+    }
+    let mut app = world::app();
+    let _ = app.event(ShellEvent::Language(Language::German));
+    let labels: Vec<String> = widgets(&app, &PORTRAIT)
+        .into_iter()
+        .map(|widget| widget.label)
+        .collect();
+    assert!(labels.contains(&"Anfangen".to_owned()), "{labels:?}");
 }

@@ -1,8 +1,11 @@
-//! Another toy: the list of those that there are, one of which is read.
+//! Another toy: the list of those that there are, one of which is read, and one that the platform recognises.
 
-use app_core::app::{ShellCommand, ShellEvent, Step, UserAction, WorkCommand};
+use std::sync::Arc;
+
+use app_core::app::{Placing, ShellCommand, ShellEvent, Step, UserAction, WorkCommand};
+use app_core::camera_frame::{Anchor, Tracking};
 use app_core::interface::{Interface, Screen};
-use glam::DVec2;
+use glam::{DMat4, DVec2, DVec3};
 
 use crate::app::world;
 
@@ -49,7 +52,35 @@ fn a_toy_is_chosen_from_the_files_that_there_are() {
     // The ghost is the other toy's, where the person taps next.
     let _ = app.event(ShellEvent::Toy(Ok(world::toy())));
     assert_eq!(app.step(), Step::PlaceToy);
-    assert!(app.ghost_contour_px().is_empty());
+    assert!(app.ghost().is_none());
     let _ = app.event(ShellEvent::User(UserAction::Tap(DVec2::new(32.0, 24.0))));
-    assert!(!app.ghost_contour_px().is_empty());
+    assert!(app.ghost().is_some());
+}
+
+#[test]
+fn a_toy_that_the_platform_recognises_is_asked_about_where_it_stands() {
+    let mut app = world::at_ghost();
+    let _ = app.event(ShellEvent::User(UserAction::ByHand));
+    let mut see = |id: u64, x_m: f64| {
+        let time_ns = i64::try_from(id).unwrap() * 33_000_000;
+        let mut frame = world::frame(id, time_ns, 0, Tracking::Normal);
+        frame.anchors = Arc::new([Anchor {
+            id: Anchor::OF_TOY,
+            world_from_anchor: DMat4::from_translation(DVec3::new(x_m, 0.0, 0.0)),
+        }]);
+        let _ = app.event(ShellEvent::Frame(Box::new(frame)));
+        let placing = app.placing();
+        let _ = app.event(ShellEvent::User(UserAction::ByHand));
+        let (ring, _) = app.ring_px().unwrap();
+        (placing, ring.iter().sum::<DVec2>() / ring.len() as f64)
+    };
+    let (placing, at) = see(3, 0.05);
+    assert_eq!(placing, Placing::Asked { is_searching: true });
+    // The frames' camera looks at the origin from .5 m, with 60 pixels a unit of slope.
+    assert!((at.x - (32.0 + 60.0 * 0.05 / 0.5)).abs() < 1.0, "{at}");
+    let (placing, _) = see(4, 0.051);
+    assert_eq!(placing, Placing::ByHand, "it stands where it stood");
+    let (placing, moved) = see(5, 0.1);
+    assert_eq!(placing, Placing::Asked { is_searching: true });
+    assert!(moved.x > at.x + 3.0, "{at} {moved}");
 }

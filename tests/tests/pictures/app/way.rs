@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use app_core::app::{App, ShellCommand, ShellEvent, Show, Step, UserAction, Verdict, WorkCommand};
+use app_core::app::{App, Placing, ShellCommand, ShellEvent, Show, Step, UserAction, Verdict, WorkCommand};
 use app_core::recording::RecordingJob;
 use app_core::scene::Camera;
 use desk::files::BUNDLED_SESSION;
@@ -27,6 +27,12 @@ impl Person {
     pub(crate) fn tell(&mut self, event: ShellEvent) {
         for command in self.app.event(event) {
             match command {
+                ShellCommand::Work(WorkCommand::Plate(job)) => {
+                    self.tell(ShellEvent::Plated(Some(Box::new(job.run()))));
+                }
+                ShellCommand::Work(WorkCommand::Search(job)) => {
+                    self.tell(ShellEvent::Searched(Some(Box::new(job.run()))));
+                }
                 ShellCommand::Work(WorkCommand::Align(job)) => {
                     self.tell(ShellEvent::Aligned(Some(Box::new(job.run()))))
                 }
@@ -64,8 +70,8 @@ fn facing_rad(world_from_object: &DMat4, camera: &Camera) -> f64 {
     to_camera.x.atan2(to_camera.z)
 }
 
-/// A person who has placed the ghost, as far off as told, and waits.
-pub(crate) fn placed(off_m: DVec3) -> Person {
+/// A person who has photographed the empty place.
+fn photographed() -> Person {
     let feed = Feed::of_stored(Stored::open(BUNDLED_SESSION).unwrap()).unwrap();
     let app = App::new(Arc::clone(&feed.scene().toy));
     let mut person = Person {
@@ -85,6 +91,12 @@ pub(crate) fn placed(off_m: DVec3) -> Person {
     }
     assert_eq!(person.app.step(), Step::PlaceToy);
     assert!(person.app.has_plate());
+    person
+}
+
+/// A person who has placed the ghost, as far off as told, and waits.
+pub(crate) fn placed(off_m: DVec3) -> Person {
+    let mut person = photographed();
     person.feed.is_toy_there = true;
     person.frames(1);
     let (world_from_object, camera) = person.feed.toy();
@@ -92,7 +104,7 @@ pub(crate) fn placed(off_m: DVec3) -> Person {
     let at = person.pixel_of(off_m);
     person.act(UserAction::Twist(turn_rad));
     person.act(UserAction::Tap(at));
-    assert!(person.app.ghost_contour_px().len() > 50);
+    assert!(matches!(person.app.placing(), Placing::Asked { .. }));
     person.act(UserAction::Placed);
     assert_eq!(person.app.step(), Step::Align);
     person
@@ -123,6 +135,71 @@ fn a_ghost_that_is_a_little_off_becomes_a_toy_that_moves() {
     let turned_rad = (yaw_rad(&input.world_from_object) - yaw_rad(truth)).abs();
     assert!(turned_rad < 0.01, "{turned_rad}");
     assert_eq!(input.lights.as_ref().map(|lights| lights.len()), Some(1));
+}
+
+#[test]
+fn a_toy_that_is_put_down_is_found_without_a_touch() {
+    let mut person = photographed();
+    person.frames(30);
+    assert_eq!(person.app.placing(), Placing::Waiting { is_long: false });
+    assert!(person.app.ghost().is_none(), "nobody knows where the toy will be");
+    person.feed.is_toy_there = true;
+    let mut n_frames = 0;
+    while person.app.placing() != (Placing::Asked { is_searching: false }) {
+        person.frames(1);
+        n_frames += 1;
+        assert!(n_frames < 90, "{:?}", person.app.placing());
+    }
+    let silhouette = person.app.ghost().expect("a ghost");
+    let [low, high] = silhouette.corners_px;
+    let toy_px = person.pixel_of(DVec3::new(0.0, 0.02, 0.0));
+    assert!(
+        low.cmplt(toy_px).all() && toy_px.cmplt(high).all(),
+        "{low} {high}"
+    );
+    person.act(UserAction::Placed);
+    person.frames(1);
+    assert_eq!(person.app.step(), Step::Play, "{:?}", person.app.verdict());
+    person.frames(20);
+    let Show::Toy { input, .. } = person.app.show() else {
+        panic!("{:?}", person.app.step());
+    };
+    let (truth, _) = person.feed.toy();
+    let turned_rad = (yaw_rad(&input.world_from_object) - yaw_rad(truth)).abs();
+    assert!(turned_rad < 0.01, "{turned_rad}");
+    // Moved again, it begins where it was found.
+    person.act(UserAction::Replace);
+    assert_eq!(person.app.placing(), Placing::ByHand);
+    assert!(person.app.ring_px().is_some());
+}
+
+#[test]
+fn a_thumb_around_the_ring_turns_the_ghost_and_within_it_moves_it() {
+    let mut person = placed(OFF_M);
+    person.act(UserAction::Replace);
+    let pose = |person: &Person| person.app.ring_px().expect("a ring");
+    let (ring, knob) = pose(&person);
+    let middle: DVec2 = ring.iter().sum::<DVec2>() / ring.len() as f64;
+    // From the ring's knob to the corner a quarter of it away.
+    let at = ring.iter().enumerate();
+    let (at, _) = at
+        .min_by(|(_, a), (_, b)| a.distance(knob).total_cmp(&b.distance(knob)))
+        .expect("corners");
+    let to_px = ring[(at + ring.len() / 4) % ring.len()];
+    person.act(UserAction::Drag {
+        from_px: ring[at],
+        to_px,
+    });
+    let (after, knob) = pose(&person);
+    assert!(knob.distance(to_px) < 12.0, "{knob} follows the thumb to {to_px}");
+    assert!(after[0].distance(ring[0]) < 1e-6, "the ring stays in its place");
+    let to_px = middle + DVec2::new(30.0, 0.0);
+    person.act(UserAction::Drag {
+        from_px: middle,
+        to_px,
+    });
+    let (moved, _) = pose(&person);
+    assert!(moved[0].distance(ring[0]) > 15.0, "{} {}", moved[0], ring[0]);
 }
 
 #[test]

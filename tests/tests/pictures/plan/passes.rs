@@ -49,6 +49,7 @@ fn facts_with(size_px: [u32; 2], penumbrae_px: Vec<f64>) -> SceneFacts {
         is_softened: false,
         gloss: Gloss::NONE,
         angular_radii_rad: vec![0.0; penumbrae_px.len()],
+        reflection: None,
         region,
         physical_toy: Some(region),
         toy_box: Some(region),

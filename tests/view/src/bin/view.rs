@@ -22,7 +22,7 @@ use desk::shaders::ShaderArgs;
 use view::desktop::{Desk, Keeping};
 use view::fault::Fault;
 use view::feed::Feed;
-use view::tour::Tour;
+use view::tour::{Tour, Way};
 use view::window;
 use view::window::Options;
 
@@ -46,6 +46,9 @@ struct Args {
     /// Without a window: a simulated person visits every screen, and each is written as a picture
     #[arg(long)]
     tour: bool,
+    /// On the tour: straight to the toy that moves, with touches and seconds counted
+    #[arg(long, requires = "tour")]
+    straight: bool,
     /// Width and height of the window or of the tour's screen, in points
     #[arg(long, value_name = "WxH", default_value = "844x390", value_parser = size)]
     size: [u32; 2],
@@ -127,6 +130,17 @@ fn run(args: Args) -> Result<()> {
         insets: Insets::default(),
         text_scale: args.text_scale,
     };
+    if args.straight {
+        let Way {
+            n_touches,
+            camera_s,
+            machine_s: [ghost, searched, moves],
+        } = Tour::new(&mut desk, screen, &out)?.straight()?;
+        println!(
+            "{n_touches} touches, {camera_s:.1} s of the camera; computed: the first ghost after {ghost:.1} s, the search ended {searched:.1} s later, the toy moved {moves:.1} s later"
+        );
+        return Ok(());
+    }
     let pictures = Tour::new(&mut desk, screen, &out)?.go()?;
     println!("{} screens: {}", pictures.len(), out.display());
     Ok(())

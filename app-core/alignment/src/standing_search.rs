@@ -1,0 +1,346 @@
+//! Search for a toy that was put on a known table, from twelve turns, in steps: what is best so far is known after each of them.
+//!
+//! The plane tells how large the toy is wherever it stands, so a tiny picture suffices to find the best place of each turn
+//! (`pose::standing_guesses`). The best of these are followed to the outline, and those that meet it are refined and told apart by
+//! their colours, as [`find_toy`](crate::find_toy) does without a table.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use glam::{DMat4, DVec2, DVec3, IVec2};
+
+use crate::camera::{Finder, corrected};
+use crate::error::{AlignError, check};
+use crate::photograph::Photograph;
+use crate::picture::{Level, places};
+use crate::pose::{self, Standing};
+use crate::shape::Shape;
+use crate::toy_search::{Followed, Search, told_apart};
+use app_scene::frame::FrameInput;
+use app_scene::scene::Scene;
+
+/// Turns about the table's normal that are started from.
+const N_TURNS: u32 = 12;
+/// Of guesses that a plate ranks, those that are followed to the outline.
+const N_FOLLOWED: usize = 8;
+/// Poses that are refined, at most.
+const N_REFINED: usize = 3;
+/// A pose whose outline is farther from the picture's, in pixels, is not refined.
+const MOST_REFINED_PX: f64 = 2.0;
+/// Of poses that guesses led to, that many of one pose are enough if their outline is that near, in pixels.
+const N_AGREED: usize = 2;
+const AGREED_PX: f64 = 0.6;
+/// A speck that takes a smaller part of the picture is no toy.
+const LEAST_SHARE: f64 = 0.002;
+
+/// Something in a picture that its plate does not show.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Newcomer {
+    /// Where its middle is seen on the first receiver, in the world.
+    pub at: DVec3,
+    /// The part of the picture that it takes, with its shadow.
+    pub share: f64,
+}
+
+impl Newcomer {
+    /// What is new in a picture: the largest of all that does not reach the picture's border, as an arm does. None without a plate.
+    ///
+    /// # Errors
+    /// As [`Aligner::align`](crate::Aligner::align).
+    pub fn of(scene: &Scene, input: &FrameInput) -> Result<Option<Self>, AlignError> {
+        check(scene, input)?;
+        let photograph = Photograph::new(scene, input, None);
+        let tiny = photograph.pyramid().at_most(pose::TINY_PIXELS);
+        if tiny.plate.is_none() {
+            return Ok(None);
+        }
+        let to_picture = f64::from(scene.width_px) / f64::from(tiny.frame.size_px.x.max(1));
+        let Some(changed) = within(&tiny).into_iter().max_by_key(Vec::len) else {
+            return Ok(None);
+        };
+        let n = changed.len() as f64;
+        let sum: DVec2 = changed.iter().map(|at| at.as_dvec2() + 0.5).sum();
+        let share = n / f64::from(tiny.frame.size_px.x * tiny.frame.size_px.y);
+        let at = on_receiver(scene, input, to_picture * sum / n);
+        Ok(at.filter(|_| share >= LEAST_SHARE).map(|at| Self { at, share }))
+    }
+}
+
+/// Where a pixel shows the first receiver, in the world; none above its horizon.
+fn on_receiver(scene: &Scene, input: &FrameInput, pixel: DVec2) -> Option<DVec3> {
+    let k = &input.camera.intrinsics;
+    let ray = DVec3::new(
+        (pixel.x - k.cx_px) / k.fx_px,
+        -(pixel.y - k.cy_px) / k.fy_px,
+        -1.0,
+    );
+    let world_from_camera = input.camera.world_from_camera;
+    let (eye, ray) = (
+        world_from_camera.w_axis.truncate(),
+        world_from_camera.transform_vector3(ray),
+    );
+    let plane = scene.receivers.first()?.world_from_plane;
+    let normal = plane.y_axis.truncate();
+    let (height, slope) = ((eye - plane.w_axis.truncate()).dot(normal), ray.dot(normal));
+    (height > 0.0 && slope < 0.0).then(|| eye - height / slope * ray)
+}
+
+/// Groups of neighbouring pixels that differ from the plate, but for those at the border.
+fn within(level: &Level) -> Vec<Vec<IVec2>> {
+    let size_px = level.frame.size_px;
+    let mut is_open = vec![false; (size_px.x * size_px.y) as usize];
+    let index = |at: IVec2| (at.y * size_px.x + at.x) as usize;
+    for at in pose::changed(level) {
+        is_open[index(at)] = true;
+    }
+    let mut groups = Vec::new();
+    for start in places(size_px) {
+        let (mut group, mut waiting, mut is_at_border) = (Vec::new(), vec![start], false);
+        while let Some(at) = waiting.pop() {
+            let is_inside = at.cmpge(IVec2::ZERO).all() && at.cmplt(size_px).all();
+            if !is_inside || !std::mem::take(&mut is_open[index(at)]) {
+                continue;
+            }
+            is_at_border |= at.cmpeq(IVec2::ZERO).any() || at.cmpeq(size_px - 1).any();
+            group.push(at);
+            waiting.extend([IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y].map(|step| at + step));
+        }
+        if !group.is_empty() && !is_at_border {
+            groups.push(group);
+        }
+    }
+    groups
+}
+
+/// A pose that the toy may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StandingPose {
+    /// From object space to world.
+    pub world_from_object: DMat4,
+    /// Root mean square distance of the outline, in pixels; none for a guess that was not followed yet.
+    pub outline_px: Option<f64>,
+}
+
+/// What is done next.
+#[derive(Debug)]
+enum Stage {
+    Guess,
+    Register,
+    /// Guesses that wait, the best last.
+    Follow(Vec<DMat4>),
+    /// Poses that wait, the best last.
+    Refine(Vec<Followed>),
+    Done,
+}
+
+/// A search for a toy on a table, in steps of some tenths of a second.
+pub struct StandingSearch {
+    scene: Arc<Scene>,
+    input: FrameInput,
+    stage: Stage,
+    /// Once the first guesses are made.
+    search: Option<Search>,
+    guesses: Vec<DMat4>,
+    followed: Vec<Followed>,
+    found: Vec<crate::FoundToy>,
+    best: Option<StandingPose>,
+}
+
+impl StandingSearch {
+    /// A search that begins. `input.world_from_object` stands on the first receiver, in any turn: at the toy's place where no plate shows
+    /// what is new, and anywhere else beside a plate.
+    #[must_use]
+    pub fn new(scene: Arc<Scene>, input: FrameInput) -> Self {
+        Self {
+            scene,
+            input,
+            stage: Stage::Guess,
+            search: None,
+            guesses: Vec::new(),
+            followed: Vec::new(),
+            found: Vec::new(),
+            best: None,
+        }
+    }
+
+    /// The best that is known; none before the first step.
+    #[must_use]
+    pub fn best(&self) -> Option<StandingPose> {
+        self.best
+    }
+
+    /// Whether there is nothing more to be done.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        matches!(self.stage, Stage::Done)
+    }
+
+    /// One step.
+    ///
+    /// # Errors
+    /// As [`Aligner::align`](crate::Aligner::align): the search is at its end then.
+    pub fn step(&mut self) -> Result<(), AlignError> {
+        self.stage = match std::mem::replace(&mut self.stage, Stage::Done) {
+            Stage::Guess => self.guess()?,
+            Stage::Register => self.register()?,
+            Stage::Follow(waiting) => self.follow(waiting)?,
+            Stage::Refine(waiting) => self.refine(waiting)?,
+            Stage::Done => Stage::Done,
+        };
+        Ok(())
+    }
+
+    fn guess(&mut self) -> Result<Stage, AlignError> {
+        check(&self.scene, &self.input)?;
+        let search = Search::new(Arc::clone(&self.scene), self.input.clone())?;
+        self.guesses = match self.scene.receivers.first() {
+            Some(receiver) if !self.scene.plates.is_empty() => {
+                let normal = receiver.world_from_plane.y_axis.truncate();
+                let world_from_camera = self.input.camera.world_from_camera;
+                let camera_from_world = world_from_camera.inverse();
+                let (_, tiny) = search.tiny();
+                let shape = Shape::new(&self.scene, &(camera_from_world * self.input.world_from_object))?;
+                let standing = Standing {
+                    point: shape.centre,
+                    normal: camera_from_world.transform_vector3(normal).normalize(),
+                };
+                let coarse = shape.merged_in_px(0.5, &tiny);
+                let guesses = pose::standing_guesses(&coarse, &tiny, (standing, &turns()));
+                let in_world = |guess: &DMat4| world_from_camera * *guess * camera_from_world;
+                let poses = guesses
+                    .iter()
+                    .map(|guess| in_world(&guess.camera_from_upright) * self.input.world_from_object);
+                poses.collect()
+            }
+            _ => self.turned_in_place(),
+        };
+        self.best = self.guesses.first().map(|world_from_object| StandingPose {
+            world_from_object: *world_from_object,
+            outline_px: None,
+        });
+        self.search = Some(search);
+        Ok(Stage::Register)
+    }
+
+    /// All turns where the toy is given, that of the input first.
+    fn turned_in_place(&self) -> Vec<DMat4> {
+        let given = self.input.world_from_object;
+        let up = self.scene.receivers.first();
+        let up = up.map_or(DVec3::Y, |receiver| receiver.world_from_plane.y_axis.truncate());
+        let middle = DMat4::from_translation(given.w_axis.truncate());
+        let turned = turns().map(|turn_rad| {
+            let turn = DMat4::from_axis_angle(up.normalize_or(DVec3::Y), turn_rad);
+            middle * turn * middle.inverse() * given
+        });
+        turned.to_vec()
+    }
+
+    /// Corrects the camera against the plates, as an alignment does.
+    fn register(&mut self) -> Result<Stage, AlignError> {
+        let Scene {
+            plates,
+            receivers,
+            uncertainty,
+            ..
+        } = &*self.scene;
+        let given = (self.input.image.rgba(), &self.input.camera, None);
+        let found = Finder::default().find(given, (plates, receivers), &uncertainty.camera);
+        let (camera, _) = corrected(&self.input.camera, found);
+        if camera != self.input.camera {
+            let moved = camera.world_from_camera * self.input.camera.world_from_camera.inverse();
+            // Guesses were made in the picture.
+            for guess in &mut self.guesses {
+                *guess = moved * *guess;
+            }
+            self.input.camera = camera;
+            self.search = Some(Search::new(Arc::clone(&self.scene), self.input.clone())?);
+        }
+        let n_followed = if plates.is_empty() {
+            self.guesses.len()
+        } else {
+            N_FOLLOWED
+        };
+        let mut waiting: Vec<DMat4> = self.guesses.iter().take(n_followed).copied().collect();
+        waiting.reverse();
+        Ok(Stage::Follow(waiting))
+    }
+
+    fn follow(&mut self, mut waiting: Vec<DMat4>) -> Result<Stage, AlignError> {
+        let (Some(search), Some(start)) = (&self.search, waiting.pop()) else {
+            return Ok(self.end_following());
+        };
+        let Some(followed) = search.follow(&start)? else {
+            return Ok(Stage::Follow(waiting));
+        };
+        self.followed.push(followed);
+        if self
+            .best
+            .and_then(|best| best.outline_px)
+            .is_none_or(|px| followed.outline_px < px)
+        {
+            self.best = Some(StandingPose {
+                world_from_object: followed.world_from_object,
+                outline_px: Some(followed.outline_px),
+            });
+        }
+        let same = self.followed.iter().filter(|other| {
+            other.outline_px <= AGREED_PX
+                && search.are_one(&other.world_from_object, &followed.world_from_object)
+        });
+        if waiting.is_empty() || same.count() >= N_AGREED {
+            return Ok(self.end_following());
+        }
+        Ok(Stage::Follow(waiting))
+    }
+
+    /// Different poses, the nearest to the outline last.
+    fn end_following(&mut self) -> Stage {
+        let Some(search) = &self.search else {
+            return Stage::Done;
+        };
+        self.followed
+            .sort_by(|a, b| a.outline_px.total_cmp(&b.outline_px));
+        let mut waiting: Vec<Followed> = Vec::new();
+        for followed in &self.followed {
+            let is_known = waiting
+                .iter()
+                .any(|known| search.are_one(&known.world_from_object, &followed.world_from_object));
+            if !is_known && followed.outline_px <= MOST_REFINED_PX && waiting.len() < N_REFINED {
+                waiting.push(*followed);
+            }
+        }
+        waiting.reverse();
+        if waiting.is_empty() {
+            return Stage::Done;
+        }
+        Stage::Refine(waiting)
+    }
+
+    fn refine(&mut self, mut waiting: Vec<Followed>) -> Result<Stage, AlignError> {
+        let (Some(search), Some(pose)) = (&self.search, waiting.pop()) else {
+            return Ok(Stage::Done);
+        };
+        self.found.extend(search.refine(&pose.world_from_object)?);
+        if let Some(best) = told_apart(self.found.clone()).first() {
+            self.best = Some(StandingPose {
+                world_from_object: best.world_from_object,
+                outline_px: Some(best.outline_px),
+            });
+        }
+        Ok(if waiting.is_empty() {
+            Stage::Done
+        } else {
+            Stage::Refine(waiting)
+        })
+    }
+}
+
+impl std::fmt::Debug for StandingSearch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "StandingSearch({:?})", self.best)
+    }
+}
+
+fn turns() -> [f64; N_TURNS as usize] {
+    std::array::from_fn(|turn| TAU * turn as f64 / f64::from(N_TURNS))
+}

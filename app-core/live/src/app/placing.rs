@@ -1,0 +1,123 @@
+//! Where the toy is and where the plate is from: what threads find, as the app takes it.
+
+use super::App;
+use super::event::{PlatformCommand, ShellCommand, WorkCommand};
+use super::ghost::Ghost;
+use super::plates::PlatedJob;
+use super::search::{Placing, SearchedJob};
+use super::step::{Cause, Step};
+use app_scene::camera_frame::{Anchor, CameraFrame};
+use app_scene::frame::FrameInput;
+
+/// A toy that the platform sees farther from where it saw it before was moved, in metres.
+const MOVED_M: f64 = 0.03;
+
+impl App {
+    /// How the person is asked where the toy is; in [`Step::PlaceToy`].
+    #[must_use]
+    pub fn placing(&self) -> Placing {
+        match self.search.placing() {
+            // Nothing tells where it is but a tap.
+            Placing::ByHand if self.ghost.is_none() => Placing::Waiting { is_long: true },
+            placing => placing,
+        }
+    }
+
+    /// Whether the ghost means anything yet.
+    pub(super) fn shows_ghost(&self) -> bool {
+        match self.step {
+            Step::Align => true,
+            Step::PlaceToy => matches!(self.placing(), Placing::Asked { .. } | Placing::ByHand),
+            _ => false,
+        }
+    }
+
+    /// The platform recognises the toy by its scan, or sees it elsewhere than before: the search begins there, in all turns, since the
+    /// scan's axes are its own.
+    pub(super) fn follow_scan(&mut self, frame: &CameraFrame) {
+        let own = frame.anchors.iter().rfind(|anchor| anchor.id == Anchor::OF_TOY);
+        let (Some(own), Some(table)) = (own, &self.table) else {
+            return;
+        };
+        let at = own.world_from_anchor.w_axis.truncate();
+        let is_elsewhere = self.scanned_at.is_none_or(|before| before.distance(at) > MOVED_M);
+        let is_lost = self.step == Step::Play && self.place.as_ref().is_some_and(|place| !place.is_known());
+        if !is_elsewhere || !(self.step == Step::PlaceToy || is_lost) {
+            return;
+        }
+        let Some(ghost) = Ghost::standing(&self.toy, table, &own.world_from_anchor) else {
+            return;
+        };
+        self.scanned_at = Some(at);
+        self.note(&("the platform recognises the toy", at));
+        if is_lost {
+            self.go(Cause::Replace);
+        }
+        self.search.look_again(ghost.world_from_object());
+        self.ghost = Some(ghost);
+    }
+
+    pub(super) fn search(&mut self, is_trusted: bool, elapsed_s: f64, commands: &mut Vec<ShellCommand>) {
+        let mut search = std::mem::take(&mut self.search);
+        let job = search.job(elapsed_s, || {
+            let scene = self
+                .placed_scene()
+                .filter(|_| is_trusted && !self.lens.is_awaited())?;
+            let latest = self.latest.as_ref()?;
+            let camera = latest.camera()?;
+            // The job runs for some tenths of a second, and a platform has few pictures to lend.
+            let input = FrameInput::new(latest.image.kept(), camera, scene.world_from_object);
+            Some((scene, input.with_exposure(self.exposure_of(latest))))
+        });
+        self.search = search;
+        commands.extend(job.map(|job| WorkCommand::Search(Box::new(job)).into()));
+    }
+
+    /// Takes what came of a part of the search; none if its thread did not come to an end.
+    pub(super) fn searched(&mut self, done: Option<Box<SearchedJob>>, commands: &mut Vec<ShellCommand>) {
+        let Some(done) = done else {
+            return self.search.die();
+        };
+        let was_known = self.search.best.is_some();
+        if !self.search.take(*done) || self.step != Step::PlaceToy {
+            return;
+        }
+        if !was_known {
+            commands.push(PlatformCommand::Knock.into());
+        }
+        let (Some(best), Some(table)) = (self.search.best, &self.table) else {
+            return;
+        };
+        if let Some(ghost) = Ghost::standing(&self.toy, table, &best.world_from_object) {
+            self.ghost = Some(ghost);
+        }
+        self.note(&("search", best.outline_px));
+    }
+
+    pub(super) fn offer_plate(
+        &mut self,
+        frame: &CameraFrame,
+        elapsed_s: f64,
+        commands: &mut Vec<ShellCommand>,
+    ) {
+        let job = self.plating.job(frame, elapsed_s);
+        commands.extend(job.map(|job| WorkCommand::Plate(Box::new(job)).into()));
+    }
+
+    /// Takes what came of a shot; none if its thread did not come to an end.
+    pub(super) fn plated(&mut self, done: Option<Box<PlatedJob>>) {
+        let Some(done) = done else {
+            // Another thread may have more luck.
+            return self.plating.begin();
+        };
+        let plate = done.plate();
+        if !self.plating.take(*done) || self.step != Step::TakePlate {
+            return;
+        }
+        if let Some((plate, exposure)) = plate {
+            self.plates.push(plate);
+            self.plate_exposure = exposure;
+            self.go(Cause::PlateTaken);
+        }
+    }
+}

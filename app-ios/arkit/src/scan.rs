@@ -1,0 +1,17 @@
+//! The scan of a toy, by which ARKit recognises it: an `.arobject` that an app of Apple's writes as a phone goes around the toy.
+
+use std::path::Path;
+
+use objc2::AnyThread;
+use objc2::rc::Retained;
+use objc2_ar_kit::ARReferenceObject;
+use objc2_foundation::{NSString, NSURL};
+
+/// What is in the file; none, and why in the log, where that is no scan.
+pub(super) fn reference_object(path: &Path) -> Option<Retained<ARReferenceObject>> {
+    let url = NSURL::fileURLWithPath(&NSString::from_str(path.to_str()?));
+    // SAFETY: an initialiser that takes the address of a file, and checks what it reads.
+    let read = unsafe { ARReferenceObject::initWithArchiveURL_error(ARReferenceObject::alloc(), &url) };
+    read.inspect_err(|error| eprintln!("arkit: {}: no scan: {error}", path.display()))
+        .ok()
+}
