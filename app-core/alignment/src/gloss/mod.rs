@@ -7,6 +7,7 @@
 //!
 //! A tone curve imitates a broad, weak lobe. So the loss must fall by more than it does for a matt toy whose photograph went through one.
 
+mod columns;
 mod light_depth;
 mod look;
 mod reflectance;
@@ -16,7 +17,6 @@ mod solve;
 use app_scene::gloss::{Gloss, N_GLOSSES};
 
 pub(crate) use look::{Lights, Look};
-use solve::Material;
 
 /// Part of the loss that goes where a lobe is first believed, and from which on it is in full. Measured: matt toys 0 to .02, through a phone's
 /// pipeline too; glossy ones .3 and more.
@@ -57,9 +57,4 @@ pub(crate) fn gloss(look: &Look) -> Gloss {
 fn smoothstep([low, high]: [f64; 2], x: f64) -> f64 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
-}
-
-/// Index of the strength that a material has.
-fn slot_of(material: usize) -> Material {
-    material.min(N_GLOSSES - 1)
 }

@@ -6,18 +6,10 @@ use glam::DVec3;
 
 use super::lamp::Lamp;
 use super::rays::{Hit, Place};
+use super::world::Sheen;
 
 /// Reflectance of plastic where light falls straight on it.
 const STRAIGHT: f64 = 0.04;
-
-/// How glossy a toy is: the same all over.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sheen {
-    /// Slope of Beckmann's distribution of facets.
-    pub roughness: f64,
-    /// Reflectance over that of plastic.
-    pub strength: f64,
-}
 
 impl Sheen {
     /// Radiance that a lamp's light gives towards `to_camera`, over that which a white matt surface has of it.
