@@ -197,10 +197,7 @@ impl fmt::Display for Warning {
                 "no real shadow is seen of {}: the new one there has the shade of others",
                 listed(unseen, ", ")
             ),
-            Self::MirrorLike { roughness } => write!(
-                f,
-                "the table is nearly a mirror (roughness {roughness:.2}): the toy's reflection is shown in one colour, and sharper things of the room in it stay as photographed; lay something duller under the toy"
-            ),
+            Self::MirrorLike { roughness } => mirror_like(f, *roughness),
             Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Outlier(unknown) => unknown.fmt(f),
             Self::Thing(thing) => thing.fmt(f),
@@ -245,6 +242,13 @@ fn bounce_at_limit(is_black: bool) -> &'static str {
     } else {
         "the table beside the toy is brighter than beside a white one: a bright thing nearby, or gloss; the new shadow may be too light"
     }
+}
+
+fn mirror_like(f: &mut fmt::Formatter<'_>, roughness: f64) -> fmt::Result {
+    write!(
+        f,
+        "the table is nearly a mirror (roughness {roughness:.2}): the toy's reflection in it has one colour; lay something duller under the toy"
+    )
 }
 
 fn ambient_alone(f: &mut fmt::Formatter<'_>, strength: f32) -> fmt::Result {
