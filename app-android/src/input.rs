@@ -1,14 +1,14 @@
-//! Android's fingers and screen as the interface takes them.
+//! Conversion of Android's touches and screen to those of the interface.
 
 use app_core::interface::{Insets, Screen, Touch, TouchPhase};
 
-/// Density at which a pixel is a point, in dots an inch.
+/// Density at which a pixel is a point, in dots per inch.
 const POINT_DPI: f64 = 160.0;
 
-/// The key by which a person leaves: what is pressed and let go of in front of the app alone.
+/// The back key: only a press and a release in front of the app count.
 ///
-/// Android cancels a press when the window loses the focus. android-activity 0.6 does not hand the flag of a cancelled key on, so the loss
-/// itself counts.
+/// Android cancels a press when the window loses the focus. android-activity 0.6 does not pass the
+/// flag of a cancelled key on, so the loss itself counts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BackKey {
     is_down: bool,
@@ -20,37 +20,37 @@ impl BackKey {
         self.is_down = true;
     }
 
-    /// The window has lost the focus, or nobody looks at it.
+    /// The window has lost the focus, or is not visible.
     pub fn cancel(&mut self) {
         self.is_down = false;
     }
 
-    /// The key goes up; whether it was pressed here.
+    /// The key goes up; returns whether it was pressed here.
     #[must_use]
     pub fn release(&mut self) -> bool {
         std::mem::take(&mut self.is_down)
     }
 }
 
-/// What a motion event tells.
+/// Kind of a motion event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// The finger of that place in the list came down.
+    /// The finger with this index in the list came down.
     Down(usize),
-    /// Any of them may have moved.
+    /// Any finger may have moved.
     Moved,
-    /// The finger of that place in the list goes up.
+    /// The finger with this index in the list goes up.
     Up(usize),
-    /// All of them are taken for something else.
+    /// All touches are cancelled.
     Cancelled,
 }
 
 /// A finger of a motion event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finger {
-    /// The same as long as it is down.
+    /// Identifier of the finger while it is down.
     pub id: i32,
-    /// From the window's top left corner, in physical pixels.
+    /// Position from the window's top left corner, in physical pixels.
     pub at_px: [f32; 2],
 }
 
@@ -77,12 +77,14 @@ pub fn touches(motion: Motion, fingers: &[Finger]) -> Vec<Touch> {
         .collect()
 }
 
-/// The screen of a window of so many pixels.
+/// The screen of a window of this size.
 ///
-/// `insets_px` is what bars and cut-outs cover at the left, the top, the right and the bottom; none before Android reports it. Then
-/// `content_px` counts, what a bar leaves free: left, top, right and bottom from the window's top left corner; an empty one is as none.
-/// Of a window that reaches below the bars, as every one does since Android 15, it is all. Letters are `text_scale` times as large as
-/// usual, or as usual if that is no scale.
+/// `insets_px` are the widths covered by bars and cut-outs at the left, the top, the right and the
+/// bottom; `None` before Android reports them. Then `content_px` is used, the part left free by
+/// bars: left, top, right and bottom from the window's top left corner; an empty one is ignored. In
+/// a window that extends below the bars, as every one does since Android 15, it is the whole
+/// window. Letters are `text_scale` times as large as usual, or of the usual size if that is not a
+/// valid scale.
 #[must_use]
 pub fn screen(
     size_px: [u32; 2],

@@ -1,8 +1,9 @@
-//! The activity's event loop: which life cycle event and which finger does what to the stage.
+//! The activity's event loop: the effect of each life cycle event and each touch on the stage.
 //!
-//! The loop polls the activity's glue itself. winit's event loop does not pass `onDestroy` on, while the Java thread
-//! waits in it for `android_main` to return (winit issue 4303), refuses to be created a second time in one process
-//! (3325), and hides `onPause` and `onResume`, which an ARCore session must follow.
+//! The loop polls the activity's glue itself. winit's event loop does not pass `onDestroy` on,
+//! while the Java thread waits in it for `android_main` to return (winit issue 4303), refuses to be
+//! created a second time in one process (3325), and hides `onPause` and `onResume`, which an ARCore
+//! session must follow.
 
 use android_activity::input::{InputEvent, KeyAction, Keycode, MotionAction, MotionEvent};
 use android_activity::{AndroidApp, InputStatus, MainEvent, PollEvent};
@@ -14,7 +15,8 @@ use app_shell::guard::guarded;
 /// Runs until the activity is destroyed.
 ///
 /// # Errors
-/// The first error of the graphics core, which ends the loop: a fresh activity starts with a fresh core.
+/// The first error of the graphics core, which ends the loop: a fresh activity starts with a fresh
+/// core.
 pub(crate) fn run(app: &AndroidApp) -> Result<(), StageError> {
     let mut stage = Stage::new(app.clone());
     let mut is_destroyed = false;
@@ -42,8 +44,8 @@ pub(crate) fn run(app: &AndroidApp) -> Result<(), StageError> {
     }
 }
 
-/// Applies one life cycle event. For `TerminateWindow` the surface is gone before this returns, as Android demands, and for
-/// `Pause` the camera.
+/// Applies one life cycle event. For `TerminateWindow` the surface is dropped before this returns,
+/// as Android demands, and for `Pause` the camera is released.
 fn handle(event: &MainEvent<'_>, app: &AndroidApp, stage: &mut Stage) -> Result<(), StageError> {
     match event {
         MainEvent::InitWindow { .. } => {
@@ -62,8 +64,8 @@ fn handle(event: &MainEvent<'_>, app: &AndroidApp, stage: &mut Stage) -> Result<
     Ok(())
 }
 
-/// Takes fingers and the back key, and hands every other event back to Android. An app that leaves its queue unread is reported as not
-/// responding.
+/// Processes touches and the back key, and returns every other event to Android. An app that leaves
+/// its queue unread is reported as not responding.
 fn take_input(app: &AndroidApp, stage: &mut Stage) {
     let Ok(mut events) = app.input_events_iter() else {
         return;
@@ -71,7 +73,8 @@ fn take_input(app: &AndroidApp, stage: &mut Stage) {
     let mut take = |event: &InputEvent<'_>| match event {
         InputEvent::MotionEvent(event) => take_motion(event, stage),
         InputEvent::KeyEvent(event) if event.key_code() == Keycode::Back => {
-            // Java gets neither half of a press: it leaves the activity only if it sees both, so the stage finishes it by itself.
+            // Java gets neither half of a press: it leaves the activity only if it gets both, so
+            // the stage finishes the activity itself.
             match event.action() {
                 KeyAction::Down => stage.press_back(),
                 KeyAction::Up => stage.release_back(),

@@ -1,4 +1,5 @@
-//! The shell and the window it draws on: the app is created with the first window, then moved from window to window.
+//! The shell and its window: the app is created with the first window, then moved from window to
+//! window.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -22,7 +23,7 @@ use crate::phone::Phone;
 use crate::shell::{Shell, bundled_toy};
 use app_shell::guard::guarded;
 
-/// Why there is nothing to draw with.
+/// The reason why nothing can be drawn.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum StageError {
     /// Vulkan refused the window.
@@ -31,16 +32,16 @@ pub(crate) enum StageError {
     /// The core could not start or continue.
     #[error(transparent)]
     Core(#[from] CoreError),
-    /// The bundled toy is none.
+    /// The bundled toy is invalid.
     #[error(transparent)]
     Toy(#[from] ToyError),
-    /// One app after the other was ended by a panic.
+    /// Several apps in succession were ended by a panic.
     #[error("panics came one after the other")]
     Panics,
 }
 
 impl StageError {
-    /// For the person, who sees no picture any more.
+    /// Text for the person, who no longer sees a picture.
     pub(crate) fn words(&self) -> &'static str {
         match self {
             Self::Core(error) => of_no_graphics(error),
@@ -60,7 +61,8 @@ pub(crate) struct Stage {
     is_foreground: bool,
     panics: Panics,
     is_restarted: bool,
-    /// The folder of what is the app's own, and whether the driver is trusted with a cache of compiled pipelines that is kept there.
+    /// The app's own folder, and whether the driver is trusted with a cache of compiled pipelines
+    /// that is kept there.
     own: Option<PathBuf>,
     trusts_pipelines: bool,
     back_key: BackKey,
@@ -86,7 +88,8 @@ impl Stage {
         }
     }
 
-    /// What a guarded callback came to. After a panic the app is dropped; the next picture begins a new one.
+    /// Handles the result of a guarded callback. After a panic the app is dropped; the next picture
+    /// begins a new one.
     pub(crate) fn settle(&mut self, outcome: Option<Result<(), StageError>>) -> Result<(), StageError> {
         if let Some(outcome) = outcome {
             return outcome;
@@ -101,7 +104,7 @@ impl Stage {
         }
     }
 
-    /// For how long the loop may sleep; none until an event.
+    /// Time for which the loop may sleep; `None` until an event.
     pub(crate) fn sleep(&mut self) -> Option<Duration> {
         let (now, draws) = (self.start.elapsed(), self.draws());
         let slept = self
@@ -111,17 +114,17 @@ impl Stage {
         draws.then_some(slept)
     }
 
-    /// The phone's own way back is pressed.
+    /// The phone's own back key is pressed.
     pub(crate) fn press_back(&mut self) {
         self.back_key.press();
     }
 
-    /// It will not be let go of here.
+    /// It will not be released here.
     pub(crate) fn cancel_back(&mut self) {
         self.back_key.cancel();
     }
 
-    /// It is let go of: the app goes back, or the activity is finished.
+    /// It is released: the app goes back, or the activity is finished.
     pub(crate) fn release_back(&mut self) {
         if !self.back_key.release() {
             return;
@@ -148,7 +151,7 @@ impl Stage {
             }
             None => {
                 let phone = Activity::new(self.app.clone());
-                // Before a driver is asked for anything.
+                // Before the first call of a driver.
                 let starts = phone
                     .own_folder()
                     .map(|folder| starts::begin(&folder, cfg!(debug_assertions)));
@@ -176,9 +179,9 @@ impl Stage {
         Ok(())
     }
 
-    /// Drops surface and window; the core keeps device, pipelines and what it has learned.
+    /// Drops surface and window; the core keeps device, pipelines and estimates.
     pub(crate) fn detach(&mut self) {
-        // First of all: the window goes even where suspending the core panics.
+        // Taken first: the window is dropped even if suspending the core panics.
         let _window = self.window.take();
         if let Some(shell) = &mut self.shell {
             shell.live().core_mut().suspend();
@@ -195,7 +198,7 @@ impl Stage {
         }
     }
 
-    /// The activity came to the front, or left it.
+    /// The activity came to the foreground, or left it.
     pub(crate) fn set_foreground(&mut self, is_foreground: bool) {
         self.is_foreground = is_foreground;
         if let Some(shell) = &mut self.shell {
@@ -210,7 +213,7 @@ impl Stage {
         }
     }
 
-    /// Hands a finger over.
+    /// Passes a touch on.
     pub(crate) fn touch(&mut self, touch: Touch) {
         if let Some(shell) = &mut self.shell {
             shell.live().touch(touch);
@@ -218,7 +221,7 @@ impl Stage {
         }
     }
 
-    /// One picture, where there is a window; an app or a core that was lost is brought anew before.
+    /// Draws one picture, if there is a window; a lost app or core is created anew before.
     pub(crate) fn present(&mut self) -> Result<(), StageError> {
         if let (None, Some(window)) = (&self.shell, self.window.clone()) {
             self.attach(window)?;
@@ -226,7 +229,7 @@ impl Stage {
         let (Some(mut shell), Some(window)) = (self.shell.take(), self.window.clone()) else {
             return Ok(());
         };
-        // A panic on the way drops the app, as it has to.
+        // A panic on the way drops the app, as intended.
         let drawn = self.draw(&mut shell, &window);
         self.shell = Some(shell);
         drawn
@@ -274,8 +277,8 @@ impl Stage {
                 data: data.as_deref(),
                 fallback: true,
             };
-            // SAFETY: the data are what wgpu returned to an earlier start, by the same version, device and driver, and whole: they are
-            // stored with a sum of theirs.
+            // SAFETY: the data were returned by wgpu to an earlier start, by the same version,
+            // device and driver, and are complete: they are stored with a checksum.
             core.set_pipeline_cache(unsafe { device.raw().create_pipeline_cache(&descriptor) });
         }
         Ok(core)
@@ -291,13 +294,13 @@ fn surface_on(
     Ok(instance.create_surface(target)?)
 }
 
-/// Width and height, at least one pixel each: the window answers a question at a bad moment with a negative number,
-/// and no surface can be empty.
+/// Width and height, at least one pixel each: at a bad moment the window answers with a negative
+/// number, and no surface can be empty.
 fn size_px(window: &NativeWindow) -> [u32; 2] {
     [window.width(), window.height()].map(|side_px| u32::try_from(side_px).unwrap_or(1).max(1))
 }
 
-/// Android has one display connection, and wgpu wants it named.
+/// Android has only one display connection, which wgpu requires explicitly.
 #[derive(Debug)]
 struct AndroidDisplay;
 

@@ -1,4 +1,5 @@
-//! A loop over frames whose poses are the program's own: the llama turns its head, and each pass is timed.
+//! A loop over frames with poses of the program's own: the llama turns its head, and each pass is
+//! timed.
 //!
 //! `cargo run -p app-core --features fs --example live_loop`
 
@@ -14,11 +15,11 @@ use app_core::session::{Capture, Folder, Session};
 use app_core::toy::{NodePose, Toy, ToyError};
 use app_core::{Core, wgpu};
 
-/// How far the head turns from frame to frame, in radians.
+/// Rotation of the head from frame to frame, in radians.
 const STEP_RAD: f64 = 0.1;
 const N_FRAMES: u32 = 4;
 
-/// The session that comes with the project: a jointed wooden llama on a table, under one bulb.
+/// The project's session: a jointed wooden llama on a table, under one bulb.
 const SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/sessions/llama");
 
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
@@ -27,10 +28,11 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let instance = wgpu::Instance::default();
     let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
     core.set_scene(session.scene().clone(), Preset::Balanced)?;
-    // Times are taken on the device, where it can; a program that does not ask pays nothing.
+    // Times are measured on the device, if it supports that; without this request there is no cost.
     core.time_passes(true)?;
 
-    // A camera that stands still: one picture for all frames. A live app brings a new one with each.
+    // A camera that stands still: one picture for all frames. A live app supplies a new one with
+    // each.
     let mut input = FrameInput::from(&session.frame(0)?);
     let mut before = None;
     for frame in 0..N_FRAMES {
@@ -41,11 +43,13 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
         for time in core.read_pass_times()? {
             println!("  {:7} {:16} {:8.3} ms", time.path.name(), time.pass, time.gpu_ms);
         }
-        // The first frame learns the place: lights, surfaces, what the toy hides. Later ones only draw.
+        // The first frame estimates the place: lights, surfaces, the area behind the toy. Later
+        // ones only draw.
         let learns = report.ran.iter().any(|run| run.path == PassGroup::Capture);
         assert_eq!(learns, frame == 0);
 
-        // Reading back waits for the device; an app shows the picture with `Core::present` or `Core::draw_on`.
+        // Readback waits for the device; an app shows the picture with `Core::present` or
+        // `Core::draw_on`.
         let picture = core.read_picture()?;
         assert_ne!(before.as_ref(), Some(&picture));
         before = Some(picture);
@@ -53,7 +57,8 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The pose with the head turned about its own vertical axis: nodes that are not named stay as authored.
+/// The pose with the head turned about its own vertical axis: nodes without an entry stay as
+/// authored.
 fn head_turned(toy: &Toy, angle_rad: f64) -> Result<Pose, ToyError> {
     let head = toy.find_node("head")?;
     let mut nodes = NodePose::default();

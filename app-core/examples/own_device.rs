@@ -1,4 +1,5 @@
-//! The pipeline on a device that the program opened for itself, as an engine does that draws more than this picture.
+//! The pipeline on a device that the program opened itself, like an engine that draws more than
+//! this picture.
 //!
 //! `cargo run -p app-core --features fs --example own_device`
 
@@ -10,11 +11,12 @@ use app_core::preset::Preset;
 use app_core::session::{Capture, Folder, Session};
 use app_core::{Core, gpu, wgpu};
 
-/// The session that comes with the project: a jointed wooden llama on a table, under one bulb.
+/// The project's session: a jointed wooden llama on a table, under one bulb.
 const SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/sessions/llama");
 
 pub(crate) fn main() -> Result<(), Box<dyn Error>> {
-    // Any device will do that has the limits of a phone. It may have more of them, and features of any kind.
+    // Every device with the limits of a phone is suitable. It may have higher limits, and any
+    // features.
     let instance = wgpu::Instance::default();
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
@@ -29,11 +31,12 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let input = FrameInput::from(&session.frame(0)?);
     core.frame(&input)?;
 
-    // The picture can stay on the device: as a texture of the core's, to be bound or copied from ...
+    // The picture can stay on the device: as a texture of the core's, to be bound or copied from
+    // ...
     let picture = core.picture()?;
     println!("{} x {} px", picture.width(), picture.height());
 
-    // ... or drawn on a texture of the program's own, of any size and as a display is turned.
+    // ... or drawn on a texture of the program's own, of any size and in the display's rotation.
     let screen = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("own screen"),
         size: wgpu::Extent3d {
@@ -49,10 +52,10 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
         view_formats: &[],
     });
     core.draw_on(&screen, Display::default())?;
-    // Work of the program's own on the same queue comes after it.
+    // The program's own work on the same queue runs after it.
     queue.submit([]);
 
-    // Read back, the picture is not the photograph: the llama looks elsewhere.
+    // The picture that is read back is not the photograph: the llama looks in another direction.
     let made = core.read_picture()?;
     let photograph = input.image.rgba();
     assert_ne!(made.rgba8, photograph.rgba8);

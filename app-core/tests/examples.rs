@@ -1,4 +1,4 @@
-//! The examples run: they are what a stranger copies first.
+//! The examples run: they are the first code that a stranger copies.
 
 use std::error::Error;
 

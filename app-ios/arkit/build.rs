@@ -1,8 +1,8 @@
-//! Tells the tests whether this machine can run the phone's processor.
+//! Informs the tests whether this machine can emulate the phone's processor.
 
 use std::env;
 
-/// Compiler and emulator, by the packages of Debian that have them.
+/// Compiler and emulator, with their names in Debian's packages.
 const PROGRAMS: [&str; 2] = ["aarch64-linux-gnu-gcc", "qemu-aarch64"];
 
 fn main() {
@@ -14,7 +14,7 @@ fn main() {
             .iter()
             .map(|folder| folder.join(program))
             .find(|path| path.is_file());
-        // A file that is not there yet makes this run again.
+        // A file that does not exist yet makes this script run again.
         let path = found.clone().unwrap_or_else(|| program.into());
         println!("cargo::rerun-if-changed={}", path.display());
         found.is_some()

@@ -1,4 +1,4 @@
-//! UIKit's points and the system's numbers turned into ours.
+//! Conversion of UIKit's points and the system's numbers to ours.
 
 use app_core::app::Thermal;
 use glam::DVec2;
@@ -6,11 +6,11 @@ use glam::DVec2;
 /// Whole pixels from a size in UIKit's points. `None` while there is no area, as before the first layout.
 pub fn size_px(size_points: [f64; 2], pixels_per_point: f64) -> Option<[u32; 2]> {
     let size_px = (DVec2::from(size_points) * pixels_per_point).round();
-    // The conversion saturates; no number here is anywhere near a limit of u32.
+    // The conversion saturates; no number here is near a limit of u32.
     (size_px.min_element() >= 1.0).then(|| size_px.as_uvec2().to_array())
 }
 
-/// How hot the phone is from an `NSProcessInfoThermalState`.
+/// The phone's heat from an `NSProcessInfoThermalState`.
 pub fn thermal(state: isize) -> Thermal {
     match state {
         ..=0 => Thermal::Nominal,

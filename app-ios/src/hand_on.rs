@@ -1,4 +1,4 @@
-//! Files on their way out of the app: into Photos, and to whatever the share sheet offers.
+//! Files that leave the app: to Photos, and to the targets of the share sheet.
 
 use std::path::{Path, PathBuf};
 use std::ptr;
@@ -11,7 +11,7 @@ use objc2_ui_kit::{
     UISaveVideoAtPathToSavedPhotosAlbum, UIVideoAtPathIsCompatibleWithSavedPhotosAlbum, UIView,
 };
 
-/// Shows what can be done with files, over a view that is in a window.
+/// Shows the share sheet for files, over a view that is in a window.
 pub(crate) fn show_sheet(view: &UIView, files: &[PathBuf]) {
     let Some(controller) = view.window().and_then(|window| window.rootViewController()) else {
         return;
@@ -24,7 +24,8 @@ pub(crate) fn show_sheet(view: &UIView, files: &[PathBuf]) {
         return;
     }
     let items = NSArray::from_retained_slice(&urls);
-    // SAFETY: addresses of files are among the items that a sheet takes; an array forgets the type of what it holds.
+    // SAFETY: addresses of files are among the items of a share sheet; an array does not record the
+    // type of its elements.
     let sheet = unsafe {
         UIActivityViewController::initWithActivityItems_applicationActivities(
             UIActivityViewController::alloc(view.mtm()),
@@ -35,12 +36,13 @@ pub(crate) fn show_sheet(view: &UIView, files: &[PathBuf]) {
     controller.presentViewController_animated_completion(&sheet, true, None);
 }
 
-/// Has Photos take a copy of a photo or a video, where the person lets it; the system asks them the first time.
+/// Makes Photos take a copy of a photo or a video, if the person permits it; the system asks them
+/// the first time.
 pub(crate) fn into_photos(file: &Path) {
     let Some(path) = file.to_str().map(NSString::from_str) else {
         return;
     };
-    // SAFETY: without a target nobody is told, and nothing is called with the context.
+    // SAFETY: without a target there is no callback, and the context is not used.
     unsafe {
         if file.extension().is_some_and(|extension| extension == "png") {
             if let Some(image) = UIImage::imageWithContentsOfFile(&path) {
@@ -52,7 +54,7 @@ pub(crate) fn into_photos(file: &Path) {
     }
 }
 
-/// Lets the app run on in the background until what is returned is dropped.
+/// Keeps the app running in the background until the returned value is dropped.
 pub(crate) fn keep_running() -> Box<dyn Send> {
     Box::new(MainThreadMarker::new().map(Unsuspended::begin))
 }
@@ -63,8 +65,9 @@ struct Unsuspended {
     task: UIBackgroundTaskIdentifier,
 }
 
-// SAFETY: all that another thread does with the application is to end the task, which «can be called on a non-main thread»
-// (Apple, UIApplication), and to release a singleton that never goes.
+// SAFETY: the only actions of another thread on the application are to end the task, which «can be
+// called on a non-main thread» (Apple, UIApplication), and to release a singleton that is never
+// destroyed.
 unsafe impl Send for Unsuspended {}
 
 impl Unsuspended {

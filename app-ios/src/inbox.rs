@@ -1,25 +1,27 @@
-//! What callbacks leave for the shell, which takes it when it is free: no callback finds it at work.
+//! Messages that callbacks leave for the shell, which reads them when it is idle: no callback
+//! interrupts its work.
 
 use std::cell::RefCell;
 
 use app_core::app::ShellEvent;
 use app_core::interface::Touch;
 
-/// What a callback tells.
+/// A message of a callback.
 #[derive(Debug)]
 pub enum Told {
-    /// For the app.
+    /// An event for the app.
     Event(ShellEvent),
-    /// For its interface.
+    /// A touch for its interface.
     Touch(Touch),
 }
 
-/// What was told and not taken yet, in its order.
+/// Unread messages, in their order.
 #[derive(Debug, Default)]
 pub struct Inbox(RefCell<Vec<Told>>);
 
 impl Inbox {
-    /// Leaves an event. A camera frame takes the place of one that still waits: late frames are of no use.
+    /// Leaves an event. A camera frame replaces one that still waits, since late frames are
+    /// useless.
     pub fn tell(&self, event: ShellEvent) {
         let mut waiting = self.0.borrow_mut();
         if matches!(event, ShellEvent::Frame(_)) {
@@ -33,7 +35,7 @@ impl Inbox {
         self.0.borrow_mut().push(Told::Touch(touch));
     }
 
-    /// All of it; what is told meanwhile waits for the next time.
+    /// Returns all messages; those that arrive meanwhile wait for the next call.
     #[must_use]
     pub fn take(&self) -> Vec<Told> {
         self.0.take()

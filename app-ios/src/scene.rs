@@ -1,7 +1,7 @@
-//! Application and scene delegate: UIKit's life cycle, told to the view.
+//! Application and scene delegate: UIKit's life cycle, passed to the view.
 //!
-//! The scene life cycle is not a choice: an app built with the iOS 27 SDK without it is stopped at launch (Apple,
-//! technical note TN3187).
+//! The scene life cycle is mandatory: an app built with the iOS 27 SDK without it is stopped at
+//! launch (Apple, technical note TN3187).
 
 use std::cell::RefCell;
 
@@ -17,7 +17,7 @@ use objc2_ui_kit::{
 use crate::view::MetalView;
 use app_shell::guard::guarded;
 
-/// Hands the main thread to UIKit.
+/// Passes the main thread to UIKit.
 pub(crate) fn run_app() -> ! {
     let Some(main_thread) = MainThreadMarker::new() else {
         eprintln!("app-ios: app_ios_main must be called on the main thread");
@@ -43,7 +43,7 @@ define_class!(
     unsafe impl UIApplicationDelegate for AppDelegate {}
 );
 
-/// What a connected scene keeps alive.
+/// The objects of a connected scene that must stay alive.
 struct Shown {
     view: Retained<MetalView>,
     /// UIKit does not keep the windows of a scene alive for us.
@@ -129,15 +129,15 @@ impl SceneDelegate {
         }));
     }
 
-    /// Lets go of window and view; UIKit may connect the scene again later.
+    /// Releases window and view; UIKit may connect the scene again later.
     fn disconnect(&self) {
         if let Some(shown) = self.ivars().shown.take() {
             shown.view.retire();
         }
     }
 
-    /// Tells the connected scene's view something. The view is held by a reference of its own meanwhile, so that UIKit
-    /// may call back into this delegate.
+    /// Calls a function with the connected scene's view. A separate reference holds the view
+    /// meanwhile, so that UIKit may call back into this delegate.
     fn with_view(&self, tell: impl FnOnce(&MetalView)) {
         let view = self
             .ivars()

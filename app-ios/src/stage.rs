@@ -1,4 +1,4 @@
-//! The app and the layer it draws on: created once, without a surface in the background.
+//! The app and its layer: created once, without a surface in the background.
 
 use std::sync::Arc;
 
@@ -13,10 +13,10 @@ use objc2::Message;
 use objc2::rc::Retained;
 use objc2_quartz_core::{CALayer, CAMetalLayer};
 
-/// Of the camera and of the screen.
+/// Frame rate of the camera and of the screen.
 const FRAMES_PER_S: u32 = 60;
 
-/// Why there is nothing to draw with.
+/// The reason why nothing can be drawn.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum StageError {
     /// The view is not backed by a Metal layer.
@@ -28,17 +28,17 @@ pub(crate) enum StageError {
     /// The core could not start or continue.
     #[error(transparent)]
     Core(#[from] CoreError),
-    /// The toy to begin with cannot be read.
+    /// The initial toy cannot be read.
     #[error(transparent)]
     Toy(#[from] ToyError),
 }
 
-/// What became of the app when it was to fit a layer.
+/// The result of fitting the app to a layer.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Fitted {
-    /// It is a new one, which knows of nothing yet.
+    /// The app is a new one, which has no state yet.
     Anew,
-    /// It is the one of before.
+    /// The app is the previous one.
     Again,
 }
 
@@ -60,8 +60,9 @@ impl Stage {
         }
     }
 
-    /// Lets the app draw on `layer` in the given size: creates it, continues it, or resizes it, whichever is due.
-    /// Creating it blocks the main thread until there is a device; pipelines come one a picture.
+    /// Lets the app draw on `layer` in the given size: creates, continues or resizes it, as needed.
+    /// Creating it blocks the main thread until there is a device; pipelines are compiled one per
+    /// picture.
     pub(crate) fn fit(&mut self, layer: &CALayer, size_px: [u32; 2]) -> Result<Fitted, StageError> {
         let mut fitted = Fitted::Again;
         match &mut self.live {
@@ -83,7 +84,7 @@ impl Stage {
         Ok(fitted)
     }
 
-    /// Opens another device on `layer`, where the one before was lost.
+    /// Opens another device on `layer`, after the previous one was lost.
     pub(crate) fn reopen(&mut self, layer: &CALayer, size_px: [u32; 2]) -> Result<(), StageError> {
         if let Some(live) = &mut self.live {
             // A layer has one surface at a time.
@@ -94,7 +95,7 @@ impl Stage {
         Ok(())
     }
 
-    /// Drops the surface; the app keeps device, pipelines and what it has learned.
+    /// Drops the surface; the app keeps device, pipelines and estimates.
     pub(crate) fn suspend(&mut self) {
         if let Some(live) = &mut self.live {
             live.core_mut().suspend();
@@ -107,12 +108,12 @@ impl Stage {
         self.live.as_mut()
     }
 
-    /// Whether the app has something to draw on.
+    /// Whether the app has a surface.
     pub(crate) fn has_surface(&self) -> bool {
         self.has_surface
     }
 
-    /// Drops the app with all it holds.
+    /// Drops the app with everything it holds.
     pub(crate) fn clear(&mut self) {
         self.has_surface = false;
         self.live = None;

@@ -1,6 +1,7 @@
-//! What the sources say, against the property list and each other.
+//! Checks of the sources against the property list and each other.
 
-/// Methods that Objective-C calls, without a guard. Those that only return a constant or call the superclass need none.
+/// Methods that Objective-C calls, without a guard. Those that only return a constant or call the
+/// superclass need none.
 fn unguarded_methods(source: &str) -> Vec<&str> {
     const CONSTANT: [&str; 3] = ["layerClass)", "init)", "session_should_attempt_relocalization"];
     let classes = source
@@ -17,7 +18,7 @@ fn unguarded_methods(source: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Blocks that the system calls, without a guard. Those that do nothing need none.
+/// Blocks that the system calls, without a guard. Empty ones need none.
 fn unguarded_blocks(source: &str) -> Vec<&str> {
     let blocks = source.split("RcBlock::new(").skip(1);
     blocks

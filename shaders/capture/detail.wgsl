@@ -14,6 +14,7 @@
 //#import common/frame
 //#import common/model
 //#import common/pixel
+//#import common/reflection
 //#import common/channels
 //#import common/fullscreen
 //#import common/marks
@@ -41,9 +42,10 @@ fn add_own(texel: vec2i, receiver: u32, product: ptr<function, vec3f>, energy: p
   let point = receiver_point(at);
   let b = textureLoad(plate, texel, 0);
   if receiver_of(point) != receiver || marks_at(texel).r == 0.0 || b.a < 1.0 { return vec3f(1.0); }
-  let f = frame_at(texel) / fit.gain.rgb;
+  let v = textureLoad(visibility, texel, 0);
+  let f = frame_at(texel) / fit.gain.rgb - reflected(point, v);
   let a = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
-  let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
+  let model = receiver_model(point, a, v);
   // Ratios to a nearly black plate are noise.
   let lit = select(vec3f(0.0), b.rgb, b.rgb >= vec3f(DARKEST_USABLE));
   *product += lit * (f - b.rgb * model);

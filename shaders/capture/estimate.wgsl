@@ -1,6 +1,6 @@
 // The plate, completed by an estimate where no plate covers the pixel.
 //
-// Where the fits have found the shadow it is B = frame / (gain M) per pixel of the receiver, with all its texture, as far as
+// Where the fits have found the shadow it is B = (frame - gain reflected) / (gain M) per pixel of the receiver, with all its texture, as far as
 // enough light is left; pixels that the toy hides, or bleeds into, stay smooth, as the fits see all of them.
 // Reads: plate, frame, validity, visibility, ambient, lit cells. Writes: linear colour, alpha 1 where it was
 // photographed, less where it is an estimate. CPU reference: tests/reference/src/estimate.rs.
@@ -12,6 +12,7 @@
 //#import common/completed
 //#import common/fullscreen
 //#import common/marks
+//#import common/reflection
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var plate: texture_2d<f32>;
@@ -34,9 +35,10 @@ fn fs_complete(@builtin(position) position: vec4f) -> @location(0) vec4f {
   if marks_at(vec2i(texel)).b == 0.0 { return smooth_color; }
   let f = frame_at(vec2i(texel));
   let a = textureSampleLevel(ambient, ambient_sampler, position.xy / globals.region_size_px, 0.0).r;
-  let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
+  let v = textureLoad(visibility, texel, 0);
+  let model = receiver_model(point, a, v);
   let left = smallest(model);
   if left <= TELLS_NONE { return smooth_color; }
-  let own = f / (fit.gain.rgb * model);
+  let own = (f - fit.gain.rgb * reflected(point, v)) / (fit.gain.rgb * model);
   return vec4f(mix(smooth_color.rgb, own, smoothstep(TELLS_NONE, TELLS_ALL, left)), smooth_color.a);
 }

@@ -2,10 +2,11 @@
 //
 // Receiver: frame / gain = plate c (A + bounce A (1 - A)
 //   + sum_i fraction_i falloff_i (intensity_i V_i - A) / plate_falloff)
-// is linear in (c, c bounce, c fraction_i), with plate_falloff and gain of the previous step; c corrects the gain.
+// is linear in (c, c bounce, c fraction_i), with plate_falloff and gain of the previous step; c corrects the gain. What the receiver
+// reflects, over the gain, is taken from the left, and is a part of the gain's column in the fit of intensities.
 // Without any light the first two columns add up to the plate, and a third holds what the frame shows beside it.
 // Toy: frame / gain = base (toy_0 (1 + n.y) / 2 + toy_1 (1 - n.y) / 2 + sum_i toy_i intensity_i max(n.l_i, 0) V_i), V_i
-// with self-shadowing.
+// with self-shadowing; a glossy toy adds, over its base, what it reflects of each.
 // Intensities: frame = gain plate (ambient_part + sum_i intensity_i f_i V_i) is linear in (gain, gain intensity_i).
 // Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the
 // previous step. Sums run over pixels here and over workgroups in `fit_solve`.
@@ -20,9 +21,12 @@
 //#import common/model
 //#import common/toy_radiance
 //#import common/pixel
+//#import common/reflection
 //#import common/marks
 //#import common/completed
 //#import common/fit_sums
+//#import common/gloss
+//#import common/toy_point
 
 // Where the plate is to be completed.
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
@@ -38,6 +42,8 @@
 @group(2) @binding(8) var gbuffer_normal: texture_2d<f32>;
 // Each light's cosine times its visibility.
 @group(2) @binding(9) var gbuffer_received: texture_2d<f32>;
+@group(2) @binding(10) var gbuffer_depth: texture_depth_2d;
+@group(2) @binding(11) var<uniform> specular: Specular;
 
 // Residual, as a fraction of plate or base, at which a pixel counts half.
 const CAUCHY_SCALE: f32 = 0.03;
@@ -59,6 +65,8 @@ struct Observation {
   plate: vec3f,
   ambient: f32,
   visibility: vec4f,
+  // What the receiver reflects, over the gain.
+  reflected: vec3f,
   // 0 where the pixel is masked out or unusable.
   weight: vec3f,
   // 1 where frame and plate may both be clipped.
@@ -89,6 +97,7 @@ fn observe(texel: vec2u, plate_texel: vec4f) -> Observation {
   seen.plate = plate_texel.rgb;
   seen.ambient = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
   seen.visibility = textureLoad(visibility, texel, 0);
+  seen.reflected = reflected(seen.point, seen.visibility);
   seen.is_estimated = plate_texel.a < 1.0;
   seen.clipped = is_clipped(seen.frame, seen.plate);
   seen.weight = evident * plate_texel.a * evidence_of(seen.frame, seen.plate);
@@ -100,7 +109,7 @@ fn receiver_equation(seen: Observation) -> Equation {
   if all(seen.weight == vec3f(0.0)) || receiver_of(seen.point) != step.receiver { return eq; }
   let b = seen.plate;
   let total = plate_falloff(seen.point);
-  eq.value = seen.frame / fit.gain.rgb;
+  eq.value = seen.frame / fit.gain.rgb - seen.reflected;
   eq.columns[0] = b * seen.ambient;
   eq.columns[1] = b * bounced(seen.ambient);
   var predicted = eq.columns[0] + fit.receivers[step.receiver].bounce.rgb * eq.columns[1];
@@ -126,7 +135,7 @@ fn intensity_equation(seen: Observation) -> Equation {
   let b = seen.plate;
   let total = plate_falloff(seen.point);
   eq.value = seen.frame;
-  eq.columns[0] = b * ambient_part(seen.point, seen.ambient, total);
+  eq.columns[0] = b * ambient_part(seen.point, seen.ambient, total) + seen.reflected;
   var predicted = eq.columns[0];
   for (var i = 0u; i < MAX_LIGHTS; i++) {
     if i >= globals.n_lights { continue; }
@@ -148,7 +157,9 @@ fn toy_equation(texel: vec2u) -> Equation {
   let in_box = physical_texel(vec2i(texel));
   let base = textureLoad(gbuffer_base, in_box, 0).rgb;
   let f = frame_at(vec2i(texel));
-  let normal = textureLoad(gbuffer_normal, in_box, 0).xyz;
+  let surface = textureLoad(gbuffer_normal, in_box, 0);
+  let normal = surface.xyz;
+  let strength = strength_of(u32(surface.w));
   eq.value = f / fit.gain.rgb;
   let received = textureLoad(gbuffer_received, in_box, 0);
   let part = hemispheres(normal);
@@ -157,10 +168,25 @@ fn toy_equation(texel: vec2u) -> Equation {
   for (var i = 0u; i < MAX_LIGHTS; i++) {
     if i < globals.n_lights { eq.columns[2u + i] = base * fit.intensity[i].rgb * received[i]; }
   }
-  let predicted = base * toy_radiance_over_base(normal, received);
+  var predicted = base * toy_radiance_over_base(normal, received);
+  var scale = TOY_CAUCHY_SCALE * base;
+  if strength > 0.0 {
+    let point = seen_in_anchor(vec2f(texel) + 0.5, textureLoad(gbuffer_depth, in_box, 0));
+    let to_camera = direction_to_camera(point);
+    let ambient = strength * reflected_ambient(normal, to_camera);
+    eq.columns[0] += vec3f(ambient.x);
+    eq.columns[1] += vec3f(ambient.y);
+    for (var i = 0u; i < MAX_LIGHTS; i++) {
+      if i >= globals.n_lights || received[i] == 0.0 { continue; }
+      let of_light = strength * received[i] * reflected_light(i, normal, to_camera, point);
+      eq.columns[2u + i] += fit.intensity[i].rgb * of_light;
+    }
+    predicted += strength * (reflected_of_ambient(normal, point) + reflected_of_lights(normal, point, received));
+    scale += TOY_CAUCHY_SCALE * (ambient.x + ambient.y);
+  }
   // A clipped toy is at least as bright, where nothing else tells how it is lit.
   eq.weight = evidence_of(f, f);
-  if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, TOY_CAUCHY_SCALE * base); }
+  if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, scale); }
   return eq;
 }
 

@@ -1,6 +1,6 @@
 // Colour of the lit receivers, pooled on coarse grids: the source of an estimated plate.
 //
-// B = frame / (gain M) where the receiver is visible and little of its light is missing.
+// B = (frame - gain reflected) / (gain M) where the receiver is visible and little of its light is missing.
 // Reads: frame, validity, visibility, ambient. Writes: cells of (B, 1) times their certainty, finest levels.
 // CPU reference: tests/reference/src/lit.rs.
 
@@ -9,6 +9,7 @@
 //#import common/model
 //#import common/channels
 //#import common/pool
+//#import common/reflection
 //#import common/marks
 
 @group(1) @binding(4) var validity: texture_2d<f32>;
@@ -28,10 +29,11 @@ fn lit_color(point: ReceiverPoint) -> vec4f {
   if seen == 0.0 || receiver_of(here) != receiver_of(point) { return vec4f(0.0); }
   let f = frame_at(vec2i(texel));
   let a = textureSampleLevel(ambient, ambient_sampler, (vec2f(texel) + 0.5) / globals.region_size_px, 0.0).r;
-  let model = receiver_model(here, a, textureLoad(visibility, texel, 0));
+  let v = textureLoad(visibility, texel, 0);
+  let model = receiver_model(here, a, v);
   let left = smallest(model);
   if left <= 0.0 { return vec4f(0.0); }
-  return vec4f(f / (fit.gain.rgb * model), 1.0) * pow(min(left, 1.0), LIT_POWER);
+  return vec4f((f - fit.gain.rgb * reflected(here, v)) / (fit.gain.rgb * model), 1.0) * pow(min(left, 1.0), LIT_POWER);
 }
 
 @compute @workgroup_size(8, 8)

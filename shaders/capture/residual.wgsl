@@ -1,6 +1,6 @@
 // Residual of the model, pooled on coarse grids: reflected colour, a faint second light, uneven ambient.
 //
-// r = sum w plate (frame / gain - plate M) / sum w plate^2, never a division by one dark pixel.
+// r = sum w plate (frame / gain - reflected - plate M) / sum w plate^2, never a division by one dark pixel.
 //
 // Reads: frame, plate, validity, visibility, ambient. Writes: cells of (r, 1) times their certainty, finest levels of
 // the pyramids. CPU reference: tests/reference/src/residual.rs.
@@ -9,6 +9,7 @@
 //#import common/frame
 //#import common/model
 //#import common/pixel
+//#import common/reflection
 //#import common/pool
 //#import common/marks
 
@@ -42,7 +43,8 @@ fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
   let a = textureSampleLevel(ambient, ambient_sampler, (vec2f(texel) + 0.5) / globals.region_size_px, 0.0).r;
   let v = textureLoad(visibility, texel, 0);
   // At the pixel's centre, where the visibilities were sampled.
-  let e = f / fit.gain.rgb - b.rgb * receiver_model(receiver_point(vec2f(texel) + 0.5), a, v);
+  let here = receiver_point(vec2f(texel) + 0.5);
+  let e = f / fit.gain.rgb - reflected(here, v) - b.rgb * receiver_model(here, a, v);
   let relative = dot(e, e) / (brightness * CAUCHY_SCALE * CAUCHY_SCALE);
   let evidence = seen * evidence_of(f, b.rgb);
   let weight = evidence / (1.0 + relative);

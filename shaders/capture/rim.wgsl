@@ -11,6 +11,7 @@
 //#import common/model
 //#import common/cells
 //#import common/spread
+//#import common/reflection
 //#import common/fullscreen
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
@@ -48,8 +49,9 @@ fn shown_receiver(texel: vec2i) -> vec4f {
   let point = receiver_point(at);
   if !is_hit(point) { return vec4f(b.rgb, 1.0); }
   let a = textureSampleLevel(ambient, ambient_sampler, at / globals.region_size_px, 0.0).r;
-  let model = receiver_model(point, a, textureLoad(visibility, texel, 0));
-  return vec4f(b.rgb * max(model + cell_at(point).rgb, vec3f(0.0)), 1.0);
+  let v = textureLoad(visibility, texel, 0);
+  let model = receiver_model(point, a, v);
+  return vec4f(b.rgb * max(model + cell_at(point).rgb, vec3f(0.0)) + reflected(point, v), 1.0);
 }
 
 @fragment

@@ -4,7 +4,7 @@
 // colour, gain and fitted light, to the cell that contains its point. Sums are of integers: their order does not
 // matter.
 //
-// Reads: frame, validity, gbuffer, fit. Writes: sums of the finest cells. CPU reference: tests/reference/src/tint.rs.
+// Reads: frame, validity, gbuffer, fit, what a glossy toy reflects. Writes: sums of the finest cells. CPU reference: tests/reference/src/tint.rs.
 
 //#import common/fit
 //#import common/frame
@@ -14,6 +14,7 @@
 //#import common/tint_grid
 //#import common/tint_cells
 //#import common/marks
+//#import common/toy_point
 
 // Sampling stride in pixels along each side, so large that no sum overflows.
 @group(1) @binding(0) var<uniform> stride_px: u32;
@@ -25,16 +26,18 @@
 @group(1) @binding(5) var gbuffer_normal: texture_2d<f32>;
 @group(1) @binding(6) var gbuffer_received: texture_2d<f32>;
 @group(1) @binding(7) var gbuffer_base: texture_2d<f32>;
+// Of a glossy toy.
+@group(1) @binding(8) var reflected: texture_2d<f32>;
+
+override IS_GLOSSY: bool = false;
 
 // Expected values above this are clipped in the photograph, whatever the paint; the cap also bounds the sums.
 const MOST_EXPECTED: f32 = 3.0;
 
-// The point seen at a pixel: on its ray, at its depth. The plane of the first receiver is y = 0 in anchor space.
-fn seen_in_anchor(at: vec2f, depth: f32) -> vec3f {
-  let depth_m = globals.clip_from_anchor[3].z / depth;
-  let on_plane = globals.receivers[0].plane_from_region_px * vec3f(at, 1.0);
-  let ray = vec3f(on_plane.x, 0.0, on_plane.y) - globals.camera_in_anchor * on_plane.z;
-  return globals.camera_in_anchor + depth_m * ray;
+// What the paint shows of a pixel's colour: without what it reflects.
+fn paint_at(in_box: vec2i, shown: vec3f) -> vec3f {
+  if !IS_GLOSSY { return shown; }
+  return max(shown - fit.gain.rgb * textureLoad(reflected, in_box, 0).rgb, vec3f(0.0));
 }
 
 @compute @workgroup_size(8, 8)
@@ -47,8 +50,10 @@ fn cs_add(@builtin(global_invocation_id) id: vec3u) {
   let surface = textureLoad(gbuffer_normal, in_box, 0);
   let lit = toy_radiance_over_base(surface.xyz, textureLoad(gbuffer_received, in_box, 0));
   let expected = fit.gain.rgb * textureLoad(gbuffer_base, in_box, 0).rgb * lit;
-  let shown = frame_at(vec2i(texel));
-  if largest(shown) > BRIGHTEST_USABLE { return; }
+  let seen = frame_at(vec2i(texel));
+  if largest(seen) > BRIGHTEST_USABLE { return; }
+  if IS_GLOSSY && textureLoad(reflected, in_box, 0).a < 1.0 { return; }
+  let shown = paint_at(in_box, seen);
   let place = tint_place(seen_in_anchor(vec2f(texel) + 0.5, textureLoad(gbuffer_depth, in_box, 0)));
   let cell = vec3u(clamp(place, vec3f(0.0), vec3f(f32(TINT_SIDE - 1u))));
   let first = N_TINT_SUMS * (TINT_CELLS * tint_grid_of(u32(surface.w)) + tint_index(cell, TINT_SIDE));

@@ -52,6 +52,12 @@ struct Globals {
   // Weight of the neighbours on either side, along each axis, in means of what is drawn by spread positions: what they spread is
   // left out of `spread`.
   soft_side: f32,
+  // 1 in the channel of the visibilities that tells how much of the first receiver's reflection the toy leaves; 0 where that is matt.
+  reflection_channel: vec4f,
+  // Light of the surroundings that it reflects, at the plate's exposure; the square root of its lobe's width.
+  reflected_surroundings: vec4f,
+  // The toy's light above that; below 0 where the toy is darker.
+  reflected_toy: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> globals: Globals;

@@ -4,6 +4,7 @@
 //   out = frame + gain plate (M' - M) where the receiver is seen and M' is near M: r is the pixel's own, so the frame
 //                                     passes; also where the frame shows what the model cannot explain
 //   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r): no plate is read there
+// A glossy receiver's reflection is taken from the frame before, and added after as it is with the shown toy.
 //
 // Reads: all that was captured of the receiver, visibility and ambient of the animated pose, the drawn toy.
 // Writes: linear colour, opaque. CPU reference: tests/reference/src/composite.rs.
@@ -20,6 +21,7 @@
 //#import common/borders
 //#import common/made_grain
 //#import common/marks
+//#import common/reflection
 
 struct Drawing {
   // Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
@@ -159,6 +161,9 @@ fn receiver(
     if HAS_GRAIN { missing = missing_beside(color, evident.r, f, b, fit.gain.rgb); }
     return color;
   }
+  let reflection = fit.gain.rgb * reflected(point, v_before);
+  let shown = fit.gain.rgb * reflected_to(globals.camera_in_anchor, point, v_after, min(strength, 1.0));
+  let own_color = f - reflection;
   var models = receiver_models(point, vec2f(a_before, a_after), v_before, v_after);
   var a_shown = a_after;
   if HAS_STRENGTH {
@@ -169,26 +174,27 @@ fn receiver(
   let before = shown_model(b.rgb, clipped, models[0]);
   let after = shown_model(b.rgb, clipped, models[1]);
   // How strong a shadow of the ambient light is stays open where it is all that is known.
-  let most = select(largest(abs(after - before)), abs(a_shown - a_before), has_no_light());
+  let darker = select(largest(abs(after - before)), abs(a_shown - a_before), has_no_light());
+  let most = max(darker, largest(abs(shown - reflection) / max(lit, vec3f(DARKEST_USABLE))));
   let pooled = cell_at(point).rgb;
   let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
   let is_outlier = outlier(pooled);
   let is_object = is_outlier * (1.0 - shadow_likeness(pooled));
-  let deviation = largest(abs(f - lit * (before + pooled)) / max(lit, vec3f(DARKEST_USABLE)));
+  let deviation = largest(abs(own_color - lit * (before + pooled)) / max(lit, vec3f(DARKEST_USABLE)));
   let seen = own_share(evident, has_moved, deviation);
   let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
-  let made = lit * max(after + residual, vec3f(0.0));
-  var own = f + lit * (after - before);
+  let made = lit * max(after + residual, vec3f(0.0)) + shown;
+  var own = own_color + lit * (after - before);
   if drawing.has_detail == 1u && b.a == 1.0 {
     // Ratios to a nearly black plate are noise.
     own = select(own, lit * (after + textureLoad(detail, texel, 0).rgb), b.rgb >= vec3f(DARKEST_USABLE));
   }
-  let kept = mix(own, f, is_object);
+  let kept = mix(own + shown, f, is_object);
   let keep = seen * max(is_near, is_outlier);
   let inside = max(inside_border(at), 1.0 - seen);
   let is_withheld = evident.a < 1.0 && !is_thing(evident);
   let keep_mixed = select(1.0 - evident.r, 0.0, has_moved || is_withheld) * is_near;
-  *change = vec4f(lit * (after - before), keep_mixed);
+  *change = vec4f(lit * (after - before) + (shown - reflection), keep_mixed);
   let color = max(mix(f, mix(made, kept, keep), inside), vec3f(0.0));
   if HAS_GRAIN { missing = missing_beside(color, 1.0 - inside * (1.0 - keep), f, b, fit.gain.rgb * (after + residual)); }
   return color;
@@ -251,7 +257,7 @@ fn fs_open(@builtin(position) position: vec4f) -> @location(0) vec4f {
   if !is_hit(point) { return vec4f(f, 1.0); }
   let models = receiver_models(point, vec2f(a_before, a_after), vec4f(1.0), vec4f(1.0));
   let pooled = cell_at(point).rgb;
-  let b = shown_plate(f, models[0] + pooled);
+  let b = shown_plate(f - fit.gain.rgb * reflected(point, vec4f(1.0)), models[0] + pooled);
   let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
   let change = shown_model(b, clipped, models[1]) - shown_model(b, clipped, models[0]);
   let is_object = outlier(pooled) * (1.0 - shadow_likeness(pooled));

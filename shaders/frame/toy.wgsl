@@ -1,7 +1,8 @@
 // The toy in the shown pose, textured with its camera pixels.
 //
 // Points that the camera saw in the physical pose take its pixels, scaled by the change of the fitted light on the
-// turned surface; hidden points take the model's base colour under the fitted light, times the tint.
+// turned surface; hidden points take the model's base colour under the fitted light, times the tint. What a glossy toy
+// reflected is taken out of its pixels, and what it reflects now is added.
 // Drawn once for each offset; with the multisample positions the offsets make a denser pattern.
 //
 // Reads: both poses, materials, frame, which of its pixels the toy's colours are from and the light these were seen
@@ -22,6 +23,7 @@
 //#import common/behind
 //#import common/source
 //#import common/spread
+//#import common/gloss
 
 // Offset of the whole picture, in pixels to the right and down.
 @group(1) @binding(0) var<uniform> offset_px: vec2f;
@@ -33,9 +35,14 @@
 @group(1) @binding(6) var appearance_source: texture_2d<f32>;
 // What a soft picture mixes into the toy's colours, over the gain, and the part of a pixel that is the toy's.
 @group(1) @binding(7) var rim: texture_2d<f32>;
+// What a glossy toy reflected, over the gain; alpha how far a pixel tells the paint below.
+@group(1) @binding(8) var reflected: texture_2d<f32>;
+@group(1) @binding(9) var<uniform> specular: Specular;
 
 // Whether the light of the camera's pixel will do in place of the point's own, to tell what has changed.
 override IS_COARSE: bool = false;
+// Whether any of the toy is glossy.
+override IS_GLOSSY: bool = false;
 
 // Maximum factor by which a camera pixel is brightened or darkened for a turned surface.
 const MAX_TURN: f32 = 4.0;
@@ -60,6 +67,10 @@ const OTHER_LIGHT: f32 = 0.08;
 const LEAST_PART: f32 = 0.35;
 // Weight of colours extrapolated past the outline, against those of the surface itself.
 const CARRIED_WEIGHT: f32 = 1e-3;
+// Weight of a pixel that does not tell its paint, against one that does.
+const UNTOLD_WEIGHT: f32 = 1e-3;
+// Part of a pixel's light that is its paint's at least.
+const LEAST_PAINT: f32 = 0.1;
 
 struct Vertex {
   @builtin(instance_index) material: u32,
@@ -104,6 +115,11 @@ fn seen_under(texel: vec2i) -> vec3f {
   return toy_radiance_from(vec2f(up, 1.0 - up), textureLoad(appearance_received, texel, 0));
 }
 
+// What was reflected at a texel of the physical box.
+fn seen_reflected(texel: vec2i) -> vec3f {
+  return select(vec3f(0.0), textureLoad(reflected, texel, 0).rgb, IS_GLOSSY);
+}
+
 // Whether a base colour is of another material of the model.
 fn is_other_material(other: vec3f, base: vec3f) -> bool {
   return largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
@@ -122,6 +138,28 @@ fn own_color(texel: vec2i) -> vec3f {
   let mixed = textureLoad(rim, texel, 0);
   let part = max(mixed.a, LEAST_PART);
   return max(seen - (1.0 - part) * fit.gain.rgb * mixed.rgb, vec3f(0.0)) / part;
+}
+
+// The colour of the paint at a texel of the physical box; alpha how far the pixel tells it.
+fn paint_color(texel: vec2i) -> vec4f {
+  let color = own_color(texel);
+  if !IS_GLOSSY { return vec4f(color, 1.0); }
+  let there = textureLoad(reflected, texel, 0);
+  return vec4f(max(color - fit.gain.rgb * there.rgb, LEAST_PAINT * color), there.a);
+}
+
+// What a surface in the shown pose, or with what it received in the physical one, reflects, over the gain.
+fn reflected_at(material: u32, normal: vec3f, in_anchor: vec3f, received: vec4f) -> vec3f {
+  if !IS_GLOSSY { return vec3f(0.0); }
+  let strength = strength_of(material);
+  if strength == 0.0 { return vec3f(0.0); }
+  return strength * (reflected_of_lights(normal, in_anchor, received) + reflected_of_ambient(normal, in_anchor));
+}
+
+// What light changes of a surface's looks: that on it, and of a glossy toy what it reflects, too.
+fn looks(base: vec3f, lit: vec3f, reflects: vec3f) -> vec3f {
+  if IS_GLOSSY { return base * lit + reflects; }
+  return lit;
 }
 
 // Texel of the physical box of one of the four pixels around a point.
@@ -143,8 +181,7 @@ fn is_point_shown(low: vec2f, t: vec2f, depth: f32) -> bool {
   return abs(between - depth) <= SHOWN_DEPTH * depth;
 }
 
-// The camera's colour, under the light `lit`, of the point of the physical toy at `physical_px` and `depth` with the
-// base
+// The camera's colour of the paint, under the light `lit`, of the point of the physical toy at `physical_px` and `depth` with the base
 // colour `base`; alpha 0 where something hides it.
 //
 // Of the four pixels around it only those count that show its own surface and material, or that lie beyond the toy's
@@ -157,6 +194,7 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, stretch
   let t = at - low;
   let is_shown = stretch >= STRETCH_LINES && is_point_shown(low, t, depth);
   var sum = vec4f(0.0);
+  var told = 0.0;
   var up = 0.0;
   var received = vec4f(0.0);
   for (var k = 0u; k < 4u; k++) {
@@ -169,17 +207,19 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, stretch
     if is_other && !is_shown { continue; }
     let number = number_at(textureLoad(appearance_source, texel, 0));
     if number == NO_SOURCE { continue; }
-    let color = own_color(source_texel(texel, number));
+    let color = paint_color(source_texel(texel, number));
     let corner = vec2f(vec2u(k & 1u, k >> 1u));
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
-    let weight = bilinear * select(CARRIED_WEIGHT, 1.0, surface > 0.0) * select(1.0, OTHER_PAINT_WEIGHT, is_other);
-    sum += weight * vec4f(color, 1.0);
+    let own = bilinear * select(CARRIED_WEIGHT, 1.0, surface > 0.0) * select(1.0, OTHER_PAINT_WEIGHT, is_other);
+    let weight = own * mix(UNTOLD_WEIGHT, 1.0, color.a);
+    sum += weight * vec4f(color.rgb, 1.0);
+    told += weight * color.a;
     up += weight * seen_base.a;
     received += weight * textureLoad(appearance_received, texel, 0);
   }
   if sum.a == 0.0 { return sum; }
   let was_lit = toy_radiance_from(vec2f(up, sum.a - up) / sum.a, received / sum.a);
-  return vec4f(relit(sum.rgb / sum.a, lit, was_lit), 1.0);
+  return vec4f(relit(sum.rgb / sum.a, lit, was_lit), told / sum.a);
 }
 
 // Cosine between the triangle's normal and the direction to the camera; `normal` selects its outer side.
@@ -201,13 +241,15 @@ fn light_change(lit: vec3f, was_lit: vec3f) -> f32 {
 // The light it was seen under is that of the same point in the physical pose: what a pixel of the frame shows in its
 // middle says little of a fold or of a shadow's edge that runs through it. Most still pixels show no change there
 // either, and are done.
-fn difference(in_region: vec2i, moved: f32, lit: vec3f, physical_normal: vec3f, physical_in_anchor: vec3f) -> f32 {
+fn difference(in_region: vec2i, moved: f32, shown: vec3f, base: vec3f, material: u32, normal: vec3f, in_anchor: vec3f) -> f32 {
   if moved == 1.0 { return 1.0; }
-  let seen_change = light_change(lit, seen_under(clamped_to_physical_box(physical_texel(in_region))));
+  let texel = clamped_to_physical_box(physical_texel(in_region));
+  let seen_change = light_change(shown, looks(base, seen_under(texel), seen_reflected(texel)));
   if IS_COARSE { return max(moved, seen_change); }
   if seen_change == 0.0 { return moved; }
-  let received = light_received(true, physical_normal, physical_in_anchor);
-  return max(moved, light_change(lit, toy_radiance_over_base(physical_normal, received)));
+  let received = light_received(true, normal, in_anchor);
+  let reflects = reflected_at(material, normal, in_anchor, received);
+  return max(moved, light_change(shown, looks(base, toy_radiance_over_base(normal, received), reflects)));
 }
 
 // Tint of a material at a point of the physical pose.
@@ -240,13 +282,19 @@ fn fs_toy(
     select(0.0, physical_facing / max(facing(in_anchor, normal), physical_facing), physical_facing > 0.0);
   let clip = globals.clip_from_anchor * vec4f(physical_in_anchor, 1.0);
   let physical_px = region_px(clip);
-  let lit = toy_radiance_over_base(normal, light_received(false, normal, in_anchor));
+  let received = light_received(false, normal, in_anchor);
+  let lit = toy_radiance_over_base(normal, received);
+  let reflects = reflected_at(material, normal, in_anchor, received);
   let unseen = fit.gain.rgb * base * tint(material, physical_in_anchor) * lit;
   let pixel = camera_color(physical_px, clip.z / clip.w, base, lit, stretch);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
   // Nothing is discarded, so that depth is tested first: what is behind this surface is behind the receiver, too.
   if is_behind_receiver(at.xy + globals.toy_box_origin_px - offset_px, at.w) { return Drawn(vec4f(0.0), vec4f(0.0)); }
   let is_moved = moved(region_px(globals.clip_from_anchor * vec4f(in_anchor, 1.0)), physical_px);
-  let is_other = difference(vec2i(at.xy + globals.toy_box_origin_px), is_moved, lit, physical_normal, physical_in_anchor);
-  return Drawn(vec4f(mix(unseen, pixel.rgb, seen), 1.0), vec4f(is_other));
+  let shown = looks(base, lit, reflects);
+  let in_region = vec2i(at.xy + globals.toy_box_origin_px);
+  let is_other = difference(in_region, is_moved, shown, base, material, physical_normal, physical_in_anchor);
+  let paint = mix(unseen, pixel.rgb, seen);
+  if !IS_GLOSSY { return Drawn(vec4f(paint, 1.0), vec4f(is_other)); }
+  return Drawn(vec4f(paint + fit.gain.rgb * reflects, 1.0), vec4f(is_other));
 }

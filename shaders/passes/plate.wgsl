@@ -3,10 +3,13 @@
 // Plates are brought to this view by the homographies of the receivers. Of several that saw a point the one that saw it
 // best is taken, from a similar direction and in no less detail, with soft seams; each has its exposure.
 //
+// What the first receiver reflects of its surroundings is taken out, as each camera saw it: the frame shows it whatever shadow lies there.
+//
 // Reads: plates. Writes: linear colour, alpha 1 where a plate shows the point. CPU reference: tests/reference/src/plate.rs.
 // Source: Casas et al. 2019, section 5.8, keeps one plate for a moving camera; here the seen-from-best of several.
 
 //#import common/globals
+//#import common/reflection
 //#import common/fullscreen
 
 const MAX_PLATES: u32 = 4u;
@@ -147,11 +150,20 @@ fn point_beyond(region_px: vec2f) -> ReceiverPoint {
   return point_on(0u, p.xy / p.z);
 }
 
+// A colour that a camera sees at a pixel, without what the receiver there reflects of its surroundings.
+fn without_reflection(color: vec3f, region_px: vec2f, camera: vec3f) -> vec3f {
+  let point = receiver_point(region_px);
+  if !is_hit(point) { return color; }
+  return max(color - reflected_to(camera, point, vec4f(1.0), 1.0), vec3f(0.0));
+}
+
 // Of a plate from this very camera.
 @fragment
 fn fs_copy(@builtin(position) at: vec4f) -> @location(0) vec4f {
   let texel = vec2u(at.xy) + vec2u(globals.region_origin_px);
-  return vec4f(textureLoad(plates, texel, 0u, 0).rgb * views.plates[0].gain.rgb, 1.0);
+  let color = textureLoad(plates, texel, 0u, 0).rgb * views.plates[0].gain.rgb;
+  if all(globals.reflection_channel == vec4f(0.0)) { return vec4f(color, 1.0); }
+  return vec4f(without_reflection(color, at.xy, globals.camera_in_anchor), 1.0);
 }
 
 // What each plate has stands in components of vectors: arrays that are indexed by a plate's number lie in memory.
@@ -188,7 +200,8 @@ fn fs_choose(@builtin(position) at: vec4f) -> @location(0) vec4f {
   var sum = vec4f(0.0);
   for (var i = 0u; i < n_looked_at; i++) {
     let k = looked_at[i];
-    sum += weights[k] * vec4f(sharp_color(k, vec2f(x[k], y[k])), 1.0);
+    let color = sharp_color(k, vec2f(x[k], y[k]));
+    sum += weights[k] * vec4f(without_reflection(color, at.xy, views.plates[k].camera_in_plane[0].xyz), 1.0);
   }
   return vec4f(sum.rgb / sum.a, 1.0);
 }

@@ -128,7 +128,8 @@ pub struct Difference {
 impl<T: Texels> Pair<'_, T> {
     /// The difference of the two sides.
     ///
-    /// # Errors When they cannot be compared texel by texel.
+    /// # Errors
+    /// When they cannot be compared texel by texel.
     pub fn difference(&self) -> Result<Difference, CompareError> {
         if std::ptr::eq(self.expected, self.actual) {
             return Err(CompareError::SameOrigin);
@@ -152,7 +153,8 @@ impl<T: Texels> Pair<'_, T> {
 
     /// The difference, if it meets all `checks`.
     ///
-    /// # Errors When it does not, when there are no checks, or when the sides cannot be compared.
+    /// # Errors
+    /// When it does not, when there are no checks, or when the sides cannot be compared.
     pub fn check(&self, checks: &[Check]) -> Result<Difference, CompareError> {
         let difference = self.difference()?;
         difference.check(checks)?;

@@ -74,7 +74,8 @@ pub fn time_ns(frame: u32) -> u64 {
 
 /// Adds a frame and a note.
 ///
-/// # Errors As the writer.
+/// # Errors
+/// As the writer.
 pub fn add<W: Write>(writer: &mut Writer<W>, frame: u32) -> anyhow::Result<()> {
     let time_ns = time_ns(frame);
     writer.frame(time_ns, Picture::New(&picture(frame)), &entry(frame).to_string())?;
@@ -84,7 +85,8 @@ pub fn add<W: Write>(writer: &mut Writer<W>, frame: u32) -> anyhow::Result<()> {
 /// Writes as fast as it can until the process is killed, and reports on `acknowledge`, a line each,
 /// the number of frames that would survive.
 ///
-/// # Errors When the system refuses.
+/// # Errors
+/// When the system refuses.
 pub fn write(out: &Path, mut acknowledge: impl Write) -> anyhow::Result<()> {
     let file = File::create(out)?;
     let mut writer = Writer::new(file, &session().to_string(), BTreeMap::new(), Limits::default())?;
@@ -122,7 +124,8 @@ impl Killed {
 /// Starts `program`, which writes to `out`, kills it after its first acknowledgement and `delay`,
 /// and reads the rest.
 ///
-/// # Errors When the system refuses, or the rest cannot be read or differs from the written data.
+/// # Errors
+/// When the system refuses, or the rest cannot be read or differs from the written data.
 pub fn kill(program: &Path, out: &Path, delay: Duration) -> anyhow::Result<Killed> {
     let mut child = Command::new(program)
         .arg(out)
@@ -151,8 +154,9 @@ pub fn kill(program: &Path, out: &Path, delay: Duration) -> anyhow::Result<Kille
 
 /// Number of frames of the rest.
 ///
-/// # Errors When it cannot be read, or a frame, its picture or the attached file differs from the
-/// written data.
+/// # Errors
+/// When it cannot be read, or a frame, its picture or the attached file differs from the written
+/// data.
 pub fn read(out: &Path) -> anyhow::Result<u32> {
     let Stored::Recording(recording) = Stored::open(out)? else {
         anyhow::bail!("not a file");
@@ -169,7 +173,8 @@ pub fn read(out: &Path) -> anyhow::Result<u32> {
 
 /// Numbers of the existing frames.
 ///
-/// # Errors When a frame or its picture differs from the written data.
+/// # Errors
+/// When a frame or its picture differs from the written data.
 pub fn compare(recording: &Recording) -> anyhow::Result<Vec<u32>> {
     let index = recording.read("capture.json", u64::MAX)?;
     let index: Index = serde_json::from_slice(&index)?;
@@ -178,7 +183,7 @@ pub fn compare(recording: &Recording) -> anyhow::Result<Vec<u32>> {
         let named: Entry = serde_json::from_str(found.get())?;
         let path = named.image.as_str();
         let number = path.trim_matches(|c: char| !c.is_ascii_digit()).parse()?;
-        // As text: a parser may err in the last digit of a number.
+        // Compared as text, since a parser may err in the last digit of a number.
         let written = entry(number).to_string();
         ensure!(found.get() == written.as_str(), "frame {number}");
         ensure!(

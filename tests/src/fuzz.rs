@@ -45,7 +45,8 @@ const MAX_FILE_BYTES: u64 = 1 << 20;
 
 /// Reads a toy's file and poses it.
 ///
-/// # Panics When an accepted toy has an accepted pose that is not finite.
+/// # Panics
+/// When an accepted toy has an accepted pose that is not finite.
 pub fn toy(bytes: &[u8]) {
     if let Ok(toy) = Toy::from_glb("fuzzed.glb", bytes) {
         check_toy(&toy);
@@ -54,7 +55,8 @@ pub fn toy(bytes: &[u8]) {
 
 /// The same for a file built from its two chunks: two bytes with the first one's length, then both.
 ///
-/// # Panics As [`toy`].
+/// # Panics
+/// As [`toy`].
 pub fn toy_chunks(bytes: &[u8]) {
     toy(&glb_from_chunks(bytes));
 }
@@ -62,7 +64,8 @@ pub fn toy_chunks(bytes: &[u8]) {
 /// Packs a glTF with this text and external files, and reads the toy; returns whether that
 /// succeeded. Every external file has the bytes of [`TOY`].
 ///
-/// # Panics As [`toy`].
+/// # Panics
+/// As [`toy`].
 pub fn packed(bytes: &[u8]) -> bool {
     let (_, bin) = chunks(TOY);
     let whole = app_core::toy::packed("fuzzed.gltf", bytes, &mut |_| Ok(bin.to_vec()));
@@ -84,14 +87,16 @@ pub fn text_of_toy() -> Vec<u8> {
 
 /// Opens a session whose `capture.json` has these bytes, and reads its frames.
 ///
-/// # Panics When an accepted session holds a number that is not finite.
+/// # Panics
+/// When an accepted session holds a number that is not finite.
 pub fn capture(bytes: &[u8]) {
     session(bytes, TOY, PICTURE);
 }
 
 /// Decodes a picture and a mask of 2 x 2 pixels, and reads their tags.
 ///
-/// # Panics When an accepted picture has another size.
+/// # Panics
+/// When an accepted picture has another size.
 pub fn picture(bytes: &[u8]) {
     let _ = wrong_of_picture(bytes);
     session(INDEX, TOY, bytes);
@@ -101,7 +106,8 @@ pub fn picture(bytes: &[u8]) {
 /// second. Binary files of COLMAP are split in the middle, since they contain zeros; a mesh is one
 /// file.
 ///
-/// # Panics When accepted data is not finite.
+/// # Panics
+/// When accepted data is not finite.
 pub fn import(bytes: &[u8]) {
     const FORMATS: [Format; 5] = [
         Format::Nerfstudio,
@@ -142,7 +148,8 @@ pub fn import(bytes: &[u8]) {
 /// Opens a recording of these bytes, and its session; then once more without its checksums, which
 /// would reject most changes.
 ///
-/// # Panics When an accepted session holds a number that is not finite.
+/// # Panics
+/// When an accepted session holds a number that is not finite.
 pub fn recording(bytes: &[u8]) {
     recorded(bytes.to_vec());
     recorded(without_checksums(bytes));
@@ -240,7 +247,8 @@ fn check_capture(capture: &Capture) {
 
 /// Poses a toy as authored and at moments of each clip, and computes its bounds.
 ///
-/// # Panics When an accepted pose is not finite.
+/// # Panics
+/// When an accepted pose is not finite.
 pub fn check_toy(toy: &Toy) {
     let _ = toy.bounds_of_pose(&Pose::Authored);
     pose(toy, &Pose::Authored, &DMat4::IDENTITY);
@@ -265,7 +273,8 @@ pub fn check_toy(toy: &Toy) {
 
 /// Poses a toy; returns whether that succeeded.
 ///
-/// # Panics When an accepted pose is not finite, or has a normal of another length than 1.
+/// # Panics
+/// When an accepted pose is not finite, or has a normal of another length than 1.
 pub fn pose(toy: &Toy, pose: &Pose, anchor_from_object: &DMat4) -> bool {
     let mut posed = PosedMesh::default();
     if toy.pose(pose, anchor_from_object, &mut posed).is_err() {
@@ -284,7 +293,8 @@ pub fn pose(toy: &Toy, pose: &Pose, anchor_from_object: &DMat4) -> bool {
 
 /// Checks that all positions are finite.
 ///
-/// # Panics When one is not.
+/// # Panics
+/// When one is not.
 pub fn check_finite(positions: &[Vec3]) {
     assert!(positions.iter().all(|position| position.is_finite()));
 }

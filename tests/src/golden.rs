@@ -145,7 +145,8 @@ impl Goldens {
 
     /// Compares `actual` with the golden `name`. Never writes a golden.
     ///
-    /// # Errors When there is no golden, it cannot be read, or a check is not met.
+    /// # Errors
+    /// When there is no golden, it cannot be read, or a check is not met.
     pub fn check(&self, name: &str, actual: &Image, checks: &[Check]) -> Result<Difference, GoldenError> {
         let expected = read_png(&self.path(name))?;
         let pair = Pair {
@@ -164,7 +165,8 @@ impl Goldens {
 
     /// Writes `picture` as the golden `name`. For `bless` alone.
     ///
-    /// # Errors When the system refuses.
+    /// # Errors
+    /// When the system refuses.
     pub fn write(&self, name: &str, picture: &Image) -> Result<(), WriteError> {
         make_folder(&self.folder)?;
         write_png(&self.path(name), picture)
@@ -201,7 +203,8 @@ pub struct Rendered {
 
 /// Makes the picture of a preset's golden.
 ///
-/// # Errors When the bundled session cannot be read, or the core fails.
+/// # Errors
+/// When the bundled session cannot be read, or the core fails.
 pub fn render(core: &mut Core, preset: Preset) -> Result<Rendered, RenderError> {
     let folder = Folder::open(BUNDLED_SESSION)?;
     let session = Capture::open(folder)?;

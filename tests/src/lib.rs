@@ -16,7 +16,8 @@ use desk::files::{BUNDLED_SESSION, Folder};
 
 /// The bundled session.
 ///
-/// # Panics When it cannot be read.
+/// # Panics
+/// When it cannot be read.
 #[must_use]
 pub fn bundled_session() -> Capture {
     let folder = Folder::open(BUNDLED_SESSION).expect("the session comes with the project");
@@ -25,7 +26,8 @@ pub fn bundled_session() -> Capture {
 
 /// A core without any scene, on the fastest adapter.
 ///
-/// # Panics When there is no adapter, with the core's error.
+/// # Panics
+/// When there is no adapter, with the core's error.
 #[must_use]
 pub fn open_core() -> Core {
     let instance = wgpu::Instance::default();

@@ -11,7 +11,8 @@ pub struct Temporary(pub PathBuf);
 impl Temporary {
     /// A folder with `name` in its own.
     ///
-    /// # Panics When it cannot be made.
+    /// # Panics
+    /// When it cannot be made.
     #[must_use]
     pub fn new(name: &str) -> Self {
         static N_MADE: AtomicU32 = AtomicU32::new(0);

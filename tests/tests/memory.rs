@@ -1,4 +1,4 @@
-//! How much memory materials take, in a process of its own: other tests would count as well.
+//! The memory that materials need, in a separate process: other tests would count as well.
 
 #![cfg(target_os = "linux")]
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 
 use bundled::{core, first_input, picture_of, scene};
 
-/// Largest growth by a material beside its textures.
+/// Largest growth per material beside its textures.
 const MAX_MATERIAL_KIB: f64 = 64.0;
 
 fn number(value: &Value) -> usize {
@@ -55,7 +55,8 @@ fn with_materials(n_triangles: usize) -> Toy {
     Toy::from_glb("toy.glb", &container(json.to_string().as_bytes(), bin)).unwrap()
 }
 
-/// The most memory in MiB that this process has held so far with a picture of the toy, and its objects on the device.
+/// The largest memory in MiB that this process has held so far with a picture of the toy, and the
+/// toy's objects on the device.
 fn shown(toy: Toy) -> (f64, u64) {
     let mut core = core();
     let objects = |core: &app_core::Core| core.n_created().iter().map(|(_, n)| n).sum::<u64>();
@@ -68,7 +69,7 @@ fn shown(toy: Toy) -> (f64, u64) {
 
 #[test]
 fn a_material_takes_little_beside_its_textures() {
-    // Once for what every scene takes, pipelines among it.
+    // Run once for the resources of every scene, such as pipelines.
     shown(with_materials(usize::MAX / 3));
     let (few_mib, n_few_objects) = shown(with_materials(usize::MAX / 3));
     let many = with_materials(1);

@@ -1,4 +1,4 @@
-//! The printed card, which ARCore follows as an image.
+//! The printed card, which ARCore tracks as an image.
 
 use std::ffi::CStr;
 
@@ -10,13 +10,13 @@ use super::status::{Failure, NOTHING};
 
 const NAME: &CStr = c"card";
 
-/// Images to look for: the card alone.
+/// Database of the images to detect: the card alone.
 pub(super) fn database(
     api: &Functions,
     session: &Owned<ArSession>,
 ) -> Result<Owned<ArAugmentedImageDatabase>, Failure> {
     let raw = session.as_ptr();
-    // SAFETY: the session lives, and what it creates is ours to destroy.
+    // SAFETY: the session lives, and the created object is ours to destroy.
     let database = unsafe {
         Owned::new(
             |place| (api.ArAugmentedImageDatabase_create)(raw, place),
@@ -29,7 +29,8 @@ pub(super) fn database(
     let (codes, mut index) = (pattern.codes.as_ptr(), 0);
     #[allow(clippy::cast_possible_truncation, reason = "15 cm")]
     let width_m = PATTERN_M as f32;
-    // SAFETY: session and database live, the name ends with a zero, and the codes are rows of so many pixels without padding.
+    // SAFETY: session and database live, the name ends with a zero, and the codes are rows with
+    // this number of pixels without padding.
     Failure::check(unsafe {
         let (database, name) = (database.as_ptr(), NAME.as_ptr());
         let add = api.ArAugmentedImageDatabase_addImageWithPhysicalSize;

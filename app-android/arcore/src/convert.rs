@@ -1,13 +1,15 @@
-//! ARCore's conventions turned into ours. The only file that knows ARCore's axes.
+//! Conversion of ARCore's conventions to ours. The only file that knows ARCore's axes.
 //!
-//! Ours: `world` is right-handed, in metres, +Y up. `camera` has +X right, +Y up and looks along -Z in the unrotated
-//! sensor image. `camera_rdf` is the same camera with +X right, +Y down, +Z forward. `sensor_px` has its origin at the
-//! top left corner of the sensor image, so that the centre of the first pixel is at (0.5, 0.5).
+//! Ours: `world` is right-handed, in metres, +Y up. `camera` has +X right, +Y up and looks along -Z
+//! in the unrotated sensor image. `camera_rdf` is the same camera with +X right, +Y down, +Z
+//! forward. `sensor_px` has its origin at the top left corner of the sensor image, so that the
+//! centre of the first pixel is at (0.5, 0.5).
 
 use app_core::scene::Intrinsics;
 use glam::{DMat4, DQuat, DVec2, DVec3};
 
-/// How far a unit quaternion in single precision may be from length one (squared), with room for a few roundings.
+/// Tolerance of a unit quaternion's squared length in single precision, with room for a few
+/// roundings.
 const UNIT_TOLERANCE: f64 = 1e-3;
 
 /// Our `world_from_camera` from the seven numbers of `ArPose_getPoseRaw`: `qx qy qz qw tx ty tz`, metres.
@@ -24,11 +26,12 @@ pub fn world_from_camera(pose_raw: [f32; 7]) -> Option<DMat4> {
         .then(|| DMat4::from_rotation_translation(rotation.normalize(), translation_m))
 }
 
-/// Our intrinsics from an `ArCameraIntrinsics`: focal length and principal point in pixels of the same image stream,
-/// `[x, y]` each. `None` unless both lengths are positive and all is finite.
+/// Our intrinsics from an `ArCameraIntrinsics`: focal length and principal point in pixels of the
+/// same image stream, `[x, y]` each. `None` unless both lengths are positive and all numbers are
+/// finite.
 ///
-/// ARCore does not state where in a pixel its coordinates are whole. They are taken as given, which is half a pixel
-/// off should ARCore count from pixel centres.
+/// ARCore does not specify which points of a pixel have integer coordinates. The coordinates are
+/// used unchanged; if ARCore counts from pixel centres, they are wrong by half a pixel.
 pub fn intrinsics(focal_length_px: [f32; 2], principal_point_px: [f32; 2]) -> Option<Intrinsics> {
     let [fx_px, fy_px] = focal_length_px.map(f64::from);
     let [cx_px, cy_px] = principal_point_px.map(f64::from);
@@ -43,8 +46,9 @@ pub fn intrinsics(focal_length_px: [f32; 2], principal_point_px: [f32; 2]) -> Op
     })
 }
 
-/// A plane by its centre pose and its outline, `x` and `z` in turn, in metres about that centre: the rectangle round the
-/// outline, whose own centre becomes the plane's origin. `None` without an outline that is finite and has an area.
+/// A plane from its centre pose and its outline, `x` and `z` in turn, in metres about that centre:
+/// the rectangle around the outline, whose own centre becomes the plane's origin. `None` without a
+/// finite outline with an area.
 pub fn rectangle(world_from_centre: DMat4, outline_m: &[f32]) -> Option<(DMat4, DVec2)> {
     let corners = outline_m
         .chunks_exact(2)
@@ -62,15 +66,16 @@ pub fn rectangle(world_from_centre: DMat4, outline_m: &[f32]) -> Option<(DMat4, 
     })
 }
 
-/// Quarter turns, clockwise, that the sensor's picture is shown by: by the camera's pose in the sensor's axes and in the display's, which
-/// differ by that about the line of sight. `None` if they differ by anything else.
+/// Clockwise quarter turns from the sensor's picture to the shown one, from the camera's pose in
+/// the sensor's axes and in the display's, which differ by a rotation about the line of sight.
+/// `None` if they differ otherwise.
 #[must_use]
 pub fn quarter_turns(of_sensor_raw: [f32; 7], of_display_raw: [f32; 7]) -> Option<u8> {
     let world_from_sensor = world_from_camera(of_sensor_raw)?;
     let sensor_from_display = world_from_sensor.inverse() * world_from_camera(of_display_raw)?;
-    // Where the display's right and up lie in the sensor's picture.
+    // Directions of the display's right and up in the sensor's picture.
     let [right, up] = [DVec3::X, DVec3::Y].map(|axis| sensor_from_display.transform_vector3(axis));
-    // What lies above in the picture is shown at the right after one turn clockwise.
+    // After one clockwise turn, the picture's top is at the right.
     let is_along = |one: DVec3, other: DVec3| one.dot(other) > 0.99;
     let turned = [
         (DVec3::X, DVec3::Y),
@@ -83,7 +88,8 @@ pub fn quarter_turns(of_sensor_raw: [f32; 7], of_display_raw: [f32; 7]) -> Optio
     })
 }
 
-/// The seven numbers of `ArPose_create` of a rigid transform of ours; the inverse of [`world_from_camera`].
+/// The seven numbers of `ArPose_create` for one of our rigid transforms; the inverse of
+/// [`world_from_camera`].
 #[allow(clippy::cast_possible_truncation, reason = "ARCore takes single precision")]
 pub fn pose_raw(rigid: &DMat4) -> [f32; 7] {
     let (_, rotation, translation_m) = rigid.to_scale_rotation_translation();
@@ -162,7 +168,8 @@ mod tests {
             [Some(0), Some(1), Some(2), Some(3)]
         );
         assert_eq!([told(45.0), quarter_turns(raw(0.0), [0.0; 7])], [None, None]);
-        // A display whose right is the picture's above shows the picture turned clockwise, as `Display` has it.
+        // A display whose right is the picture's top shows the picture turned clockwise, as
+        // `Display` defines it.
         let display = app_core::camera_frame::Display {
             quarter_turns: 1,
             ..app_core::camera_frame::Display::default()

@@ -1,4 +1,4 @@
-//! How the camera's picture was exposed, from what Android's camera says of it.
+//! Exposure of the camera's picture, from the metadata of Android's camera.
 
 use app_core::camera_frame::Exposure;
 
@@ -11,7 +11,7 @@ use super::status::Failure;
 const EXPOSURE_TIME: u32 = 14 << 16;
 /// `ACAMERA_SENSOR_SENSITIVITY`: ISO speed, 32 bits.
 const SENSITIVITY: u32 = (14 << 16) + 2;
-/// `ACAMERA_CONTROL_AF_MODE`: a byte, 0 if the lens stays where it is.
+/// `ACAMERA_CONTROL_AF_MODE`: a byte, 0 if the lens stays in place.
 const FOCUS_MODE: u32 = (1 << 16) + 7;
 /// `ACAMERA_TYPE_BYTE`.
 const BYTE: u8 = 0;
@@ -21,14 +21,15 @@ const INT32: u8 = 1;
 const INT64: u8 = 3;
 
 impl Session {
-    /// Of the frame of the last update; none where the camera does not tell.
+    /// Exposure of the last update's frame; `None` if the camera does not report it.
     pub(super) fn exposure(&self) -> Option<Exposure> {
         let metadata = self.metadata()?;
         let (time, speed) = (
             self.entry(&metadata, EXPOSURE_TIME, INT64)?,
             self.entry(&metadata, SENSITIVITY, INT32)?,
         );
-        // SAFETY: both entries have at least one number of the type that was asked for, until the metadata are released.
+        // SAFETY: both entries have at least one number of the requested type, until the metadata
+        // are released.
         let (time_ns, iso) = unsafe {
             (
                 time.cast::<i64>().read_unaligned(),
@@ -41,7 +42,7 @@ impl Session {
         exposure.amount().map(|_| exposure)
     }
 
-    /// Whether the camera moves its lens by itself; none if it does not report it.
+    /// Whether the camera focuses automatically; `None` if it does not report that.
     pub(super) fn focuses_by_itself(&self) -> Option<bool> {
         let metadata = self.metadata()?;
         let mode = self.entry(&metadata, FOCUS_MODE, BYTE)?;
@@ -49,11 +50,11 @@ impl Session {
         Some(unsafe { mode.read() } != 0)
     }
 
-    /// What the camera says of the frame of the last update.
+    /// The camera's metadata for the last update's frame.
     fn metadata(&self) -> Option<Owned<ArImageMetadata>> {
         let (api, raw) = (&self.api, self.raw());
         let mut status = 0;
-        // SAFETY: session and frame live; metadata that were acquired are ours to release.
+        // SAFETY: session and frame live; acquired metadata are ours to release.
         let metadata = unsafe {
             Owned::new(
                 |place| status = (api.ArFrame_acquireImageMetadata)(raw, self.frame.as_ptr(), place),
@@ -64,7 +65,7 @@ impl Session {
         metadata
     }
 
-    /// Where the numbers of an entry are, if there are any of that type.
+    /// Pointer to the numbers of an entry, if there are any of that type.
     fn entry(&self, metadata: &Owned<ArImageMetadata>, tag: u32, kind: u8) -> Option<*const u8> {
         let mut entry = ArImageMetadata_const_entry {
             tag: 0,
@@ -72,7 +73,7 @@ impl Session {
             count: 0,
             data: std::ptr::null(),
         };
-        // SAFETY: session and metadata live, and the entry is a place of ours.
+        // SAFETY: session and metadata live, and the entry is a variable of ours.
         let status = unsafe {
             let get = self.api.ArImageMetadata_getConstEntry;
             get(self.raw(), metadata.as_ptr(), tag, &raw mut entry)

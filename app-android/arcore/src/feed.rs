@@ -1,4 +1,4 @@
-//! The camera as the app asks for it: its commands to the tracker, and what it is told of the tracker.
+//! The camera for the app: the app's commands to the tracker, and the tracker's reports to the app.
 
 use std::time::Duration;
 
@@ -11,22 +11,23 @@ use super::status::{Failure, told};
 use super::tracker::{Geometry, Run, Step, Tracker, Wait};
 use crate::java::JavaHost;
 
-/// Time after which a camera that something else has is asked for again.
+/// Time after which a camera that another app uses is requested again.
 const LOOK: Duration = Duration::from_secs(2);
-/// Starts for which a limit of the camera's pictures is kept: one start after them tries larger ones again.
+/// Number of starts for which a limit on the camera's pictures is kept: the start after them tries
+/// larger ones again.
 const N_STARTS: u32 = 8;
 
-/// A limit of the camera's pictures, as it is kept for later starts.
+/// A limit on the camera's pictures, as it is kept for later starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Limit {
     /// Width and height.
     size_px: [i32; 2],
-    /// Later starts that it is for.
+    /// Number of later starts for which it is valid.
     n_starts: u32,
 }
 
 impl Limit {
-    /// That of a text; none where it says nothing.
+    /// Reads a limit; `None` if the text contains none.
     fn read(text: &str) -> Option<Self> {
         let (size, n_starts) = text.trim().split_once(' ')?;
         let (width, height) = size.split_once('x')?;
@@ -44,27 +45,28 @@ impl Limit {
     }
 }
 
-/// A tracker, where ARCore's library is there.
+/// A tracker, if ARCore's library exists.
 pub struct Feed {
     tracker: Option<Tracker>,
-    /// As the app asked last.
+    /// The app's latest request.
     asked: Option<Run>,
-    /// What the app is waiting for, until frames can come.
+    /// The event that the app waits for, until frames can arrive.
     waiting: Option<Wait>,
-    /// Something else has the camera, and when that was looked at; none before the first look.
+    /// Whether another app uses the camera, and the time of the last attempt to get it; the inner
+    /// value is `None` before the first.
     interrupted: Option<Option<Duration>>,
-    /// Whether the app waits for a camera that something else has.
+    /// Whether the app waits for a camera that another app uses.
     is_wanted: bool,
-    /// As an earlier start has left it, for the starts after this one.
+    /// Limit left by an earlier start, for the starts after this one.
     limit: Option<Limit>,
-    /// As it was last said to be kept.
+    /// Limit as it was last reported for storage.
     kept: Option<Limit>,
-    /// It was said that the card is refused.
+    /// Whether the refusal of the card was reported.
     said_no_card: bool,
 }
 
 impl Feed {
-    /// A feed that was not asked for anything yet.
+    /// A feed before its first request.
     #[must_use]
     pub fn new(api: Option<Functions>) -> Self {
         Self {
@@ -79,7 +81,8 @@ impl Feed {
         }
     }
 
-    /// Takes what [`Feed::take_kept`] returned in an earlier start. A text that says nothing is as none.
+    /// Restores the result of [`Feed::take_kept`] from an earlier start. An invalid text counts as
+    /// empty.
     #[must_use]
     pub fn with_kept(mut self, kept: &str) -> Self {
         if let (Some(limit), Some(tracker)) = (Limit::read(kept), &mut self.tracker) {
@@ -93,7 +96,8 @@ impl Feed {
         self
     }
 
-    /// What is to be kept for later starts, if that has changed: the size of the pictures that come, and for how many starts.
+    /// Text to be stored for later starts, if it has changed: the size of the delivered pictures,
+    /// and the number of starts.
     #[must_use]
     pub fn take_kept(&mut self) -> Option<String> {
         let limited = self.tracker.as_ref().and_then(Tracker::limited_to);
@@ -107,16 +111,16 @@ impl Feed {
         (std::mem::replace(&mut self.kept, limit) != limit).then(|| limit.map_or(String::new(), Limit::text))
     }
 
-    /// What the app is told when it starts, and when it comes to the front.
+    /// The event for the app when it starts, and when it comes to the foreground.
     pub fn come_back(&mut self) -> Option<ShellEvent> {
         if self.tracker.is_none() {
             return Some(without_library());
         }
-        // Whatever had the camera may have let it go.
+        // The other app may have released the camera.
         self.interrupted.take().map(|_| able())
     }
 
-    /// Asks for frames; what the app is told if there will be none.
+    /// Requests frames; returns the app's event if there will be none.
     pub fn run(&mut self, phone: &mut dyn JavaHost, run: Run) -> Option<ShellEvent> {
         self.asked = Some(run);
         self.interrupted = None;
@@ -135,7 +139,7 @@ impl Feed {
         }
     }
 
-    /// Asks for no more.
+    /// Ends the request for frames.
     pub fn pause(&mut self) {
         self.asked = None;
         if let Some(tracker) = &mut self.tracker {
@@ -143,7 +147,8 @@ impl Feed {
         }
     }
 
-    /// Holds a place of the world. Where it cannot be held, frames tell of none, and the app does without.
+    /// Holds a place of the world. If it cannot be held, frames report none, and the app continues
+    /// without it.
     pub fn hold(&mut self, id: u64, world_from_anchor: &DMat4) {
         let held = self
             .tracker
@@ -154,19 +159,20 @@ impl Feed {
         }
     }
 
-    /// Follows the display.
+    /// Follows the display's rotation and size.
     pub fn set_display(&mut self, display: Geometry) {
         if let Some(tracker) = &mut self.tracker {
             tracker.set_display(display);
         }
     }
 
-    /// Whether the app waits for a camera that something else has, which is left alone else.
+    /// Sets whether the app waits for a camera that another app uses; only then is it requested.
     pub fn set_wanted(&mut self, is_wanted: bool) {
         self.is_wanted = is_wanted;
     }
 
-    /// The latest frame, if it is new, or why there will be none. `now` is of a clock that goes on.
+    /// The latest frame, if it is new, or the reason why there will be none. `now` is the time of a
+    /// monotonic clock.
     pub fn poll(&mut self, phone: &mut dyn JavaHost, now: Duration) -> Option<ShellEvent> {
         if let Some(looked) = self.interrupted {
             return self
@@ -194,7 +200,8 @@ impl Feed {
         }
     }
 
-    /// Asks for the camera that something else had, and lets it go again: the app asks for it once that is reported.
+    /// Requests the camera that another app had, and releases it again: the app requests it after
+    /// that is reported.
     fn look_again(
         &mut self,
         phone: &mut dyn JavaHost,
@@ -222,7 +229,7 @@ impl Feed {
                 Some(able())
             }
             Step::Refused(failure) => match self.fail(failure) {
-                // As before.
+                // The state is unchanged.
                 ShellEvent::ArTrouble(ArSession::Interrupted, _) => {
                     self.interrupted = Some(Some(now));
                     None
@@ -245,7 +252,7 @@ impl Feed {
     }
 }
 
-/// What is told of a package without ARCore's library.
+/// The event for a package without ARCore's library.
 fn without_library() -> ShellEvent {
     let words = "This package was made without ARCore, or with one of another version.";
     ShellEvent::ArTrouble(ArSession::Unsupported, words.to_owned())
@@ -255,7 +262,7 @@ fn able() -> ShellEvent {
     ShellEvent::ArSession(ArSession::Able)
 }
 
-/// A run that was begun goes on in its world.
+/// A started run continues in its world.
 fn again(run: Run) -> Run {
     Run {
         is_new_world: false,
@@ -263,7 +270,7 @@ fn again(run: Run) -> Run {
     }
 }
 
-/// With a capital letter.
+/// The error's text with a capital letter.
 fn sentence(error: &FrameError) -> String {
     let words = error.to_string();
     let mut letters = words.chars();

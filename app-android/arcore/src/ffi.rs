@@ -1,7 +1,8 @@
-//! ARCore's C interface, as far as this shell calls it, bound by hand: names and signatures of `arcore_c_api.h` 1.53.
+//! The part of ARCore's C interface that this shell calls, bound by hand: names and signatures of
+//! `arcore_c_api.h` 1.53.
 //!
-//! The library is not linked. Its functions are looked up when it is loaded, so that the app starts on a phone without
-//! ARCore, and so that tests bring functions of their own.
+//! The library is not linked. Its functions are looked up when it is loaded, so that the app starts
+//! on a phone without ARCore, and so that tests can supply functions of their own.
 
 use std::ffi::{CStr, c_char, c_void};
 use std::marker::{PhantomData, PhantomPinned};
@@ -25,20 +26,20 @@ opaque! {
 
 /// `AR_TRACKING_STATE_TRACKING`.
 pub(super) const TRACKING: i32 = 0;
-/// `AR_TRACKING_STATE_STOPPED`: never to come back.
+/// `AR_TRACKING_STATE_STOPPED`: never tracked again.
 pub(super) const STOPPED: i32 = 2;
 
-/// An entry of what a camera says of a picture.
+/// An entry of a camera's metadata of a picture.
 #[allow(non_camel_case_types, reason = "a name of the C interface")]
 #[repr(C)]
 pub struct ArImageMetadata_const_entry {
-    /// What it is.
+    /// Meaning of the entry.
     pub tag: u32,
     /// `ACAMERA_TYPE_*`.
     pub kind: u8,
-    /// How many numbers.
+    /// Number of values.
     pub count: u32,
-    /// The first of them.
+    /// Pointer to the first value.
     pub data: *const u8,
 }
 
@@ -69,7 +70,7 @@ pub struct Signature {
     pub name: &'static str,
     /// Types of its arguments, in Rust.
     pub arguments: &'static [&'static str],
-    /// Type of what it returns, in Rust; empty for none.
+    /// Return type in Rust; empty for none.
     pub returns: &'static str,
 }
 
@@ -85,7 +86,7 @@ macro_rules! functions {
             )*
         }
 
-        /// What the table holds.
+        /// Signatures of the table's functions.
         pub const SIGNATURES: &[Signature] = &[$(
             Signature {
                 name: stringify!($name),
@@ -95,13 +96,14 @@ macro_rules! functions {
         )*];
 
         impl Functions {
-            /// Looks every function up.
+            /// Looks up every function.
             ///
             /// # Errors
-            /// The first that `symbol` has no address of.
+            /// The first function for which `symbol` has no address.
             ///
             /// # Safety
-            /// Each address that is not null is that of the C function of that name, for as long as the table is used.
+            /// Each address that is not null is that of the C function of that name, for as long as
+            /// the table is used.
             pub unsafe fn look_up(
                 mut symbol: impl FnMut(&CStr) -> *const c_void,
             ) -> Result<Self, MissingFunction> {
@@ -114,7 +116,8 @@ macro_rules! functions {
                         if address.is_null() {
                             return Err(MissingFunction { name });
                         }
-                        // SAFETY: by this function's own contract, the address is that of a function of this signature.
+                        // SAFETY: by this function's own contract, the address is that of a
+                        // function of this signature.
                         unsafe {
                             std::mem::transmute::<
                                 *const c_void,

@@ -1,4 +1,4 @@
-//! What one frame of ARCore holds, copied into plain values of ours.
+//! The content of one ARCore frame, copied into plain values of ours.
 
 use app_core::camera_frame::{
     CameraFrame, CameraImage, CodeRange, Display, LumaCoefficients, PlanarImage, Plane, PlaneError, Planes,
@@ -20,9 +20,9 @@ use crate::convert;
 const YUV_420: i32 = 0x23;
 /// `AR_TRACKABLE_AUGMENTED_IMAGE`.
 const IMAGES: i32 = 0x4152_0104;
-/// `AR_AUGMENTED_IMAGE_TRACKING_METHOD_FULL_TRACKING`: it is seen in this frame.
+/// `AR_AUGMENTED_IMAGE_TRACKING_METHOD_FULL_TRACKING`: the image is visible in this frame.
 const IS_SEEN: i32 = 1;
-/// What Android's pictures for the processor are by default; ARCore does not tell.
+/// Android's default encoding of pictures for the processor; ARCore does not report it.
 const ENCODING: YcbcrEncoding = YcbcrEncoding {
     coefficients: LumaCoefficients::Bt601,
     range: CodeRange::Full,
@@ -30,35 +30,36 @@ const ENCODING: YcbcrEncoding = YcbcrEncoding {
 /// Why a frame could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum FrameError {
-    /// ARCore says why.
+    /// ARCore reports the reason.
     #[error(transparent)]
     Failed(#[from] Failure),
-    /// No picture of luma and chroma.
+    /// The picture does not consist of luma and chroma.
     #[error("the camera's picture has format {0:#x}, not YUV_420_888")]
     Format(i32),
-    /// Fewer planes, or more.
+    /// The number of planes is wrong.
     #[error("the camera's picture has {0} planes, not 3")]
     Count(i32),
-    /// Planes that do not hold their picture.
+    /// The planes do not contain their picture.
     #[error(transparent)]
     Planes(#[from] PlaneError),
-    /// Numbers that no camera has.
+    /// The camera's numbers are impossible.
     #[error("the camera's focal length is {0:?} px, its picture {1:?} px")]
     Camera([f32; 2], [i32; 2]),
-    /// None came in any mode of the camera.
-    #[error("the camera gives no picture, of whatever size")]
+    /// No picture arrived in any mode of the camera.
+    #[error("the camera delivers no picture in any size")]
     NoPictures,
 }
 
 /// Nanoseconds in a second.
 const NS: i64 = 1_000_000_000;
-/// The clocks that ARCore may tell times by, which it does not say: they differ by the time that the phone slept.
+/// The possible clocks of ARCore's times, which it does not specify: they differ by the time that
+/// the phone slept.
 #[cfg(any(target_os = "android", target_os = "linux"))]
 const CLOCKS: &[ClockId] = &[ClockId::Boottime, ClockId::Monotonic];
 #[cfg(not(any(target_os = "android", target_os = "linux")))]
 const CLOCKS: &[ClockId] = &[ClockId::Monotonic];
 
-/// How old a picture is, by the clock that it can be of.
+/// Age of a picture, by the only clock that fits.
 fn age_ms(stamp: Stamp) -> Option<f64> {
     let times = CLOCKS.iter().map(|clock| clock_gettime(*clock));
     times
@@ -67,22 +68,22 @@ fn age_ms(stamp: Stamp) -> Option<f64> {
 }
 
 impl Session {
-    /// When the frame of the last update was taken; 0 before there is one.
+    /// Time of the last update's frame; 0 before the first.
     pub(super) fn time_ns(&self) -> i64 {
         let mut time_ns = 0;
-        // SAFETY: session and frame live, and the time is a place of ours.
+        // SAFETY: session and frame live, and the time is a variable of ours.
         unsafe { (self.api.ArFrame_getTimestamp)(self.raw(), self.frame.as_ptr(), &raw mut time_ns) };
         time_ns
     }
 
-    /// The frame of the last update; none where its picture is not there, as at the start and under load.
-    ///
+    /// The frame of the last update; `None` if its picture is missing, as at the start and under
+    /// load.
     pub(super) fn read(&self, stamp: Stamp) -> Result<Option<CameraFrame>, FrameError> {
         let Some(image) = self.image()? else {
             return Ok(None);
         };
         let api = &self.api;
-        // SAFETY: session and frame live; a camera that was acquired is ours to release.
+        // SAFETY: session and frame live; an acquired camera is ours to release.
         let camera: Option<Owned<ArCamera>> = unsafe {
             Owned::new(
                 |place| (api.ArFrame_acquireCamera)(self.raw(), self.frame.as_ptr(), place),
@@ -91,7 +92,7 @@ impl Session {
         };
         let camera = camera.ok_or(Failure(-2))?;
         let (mut state, mut reason) = (STOPPED, 0);
-        // SAFETY: session, camera and pose live, and the numbers are places of ours.
+        // SAFETY: session, camera and pose live, and the numbers are variables of ours.
         unsafe {
             (api.ArCamera_getTrackingState)(self.raw(), camera.as_ptr(), &raw mut state);
             (api.ArCamera_getTrackingFailureReason)(self.raw(), camera.as_ptr(), &raw mut reason);
@@ -118,7 +119,8 @@ impl Session {
             planes: if is_tracking { self.planes() } else { Vec::new() }.into(),
             anchors: self.held().filter(|_| is_tracking).into_iter().collect(),
             world_from_card: if is_tracking { self.card() } else { None },
-            // ARCore's would cost it time with each picture, and helped no session that was measured.
+            // ARCore's estimate would cost time with each picture, and improved none of the
+            // measured sessions.
             light_estimate: None,
             display: Display {
                 quarter_turns: self.quarter_turns(),
@@ -127,7 +129,8 @@ impl Session {
         }))
     }
 
-    /// Learns how the sensor lies in the phone, by the camera's pose as the display shows it beside that of the sensor.
+    /// Determines the rotation of the sensor in the phone, from the camera's pose in the display's
+    /// axes and in the sensor's.
     fn follow_turns(&self, camera: &Owned<ArCamera>) {
         let of_sensor = self.pose_raw(&self.pose);
         // SAFETY: session, camera and pose live.
@@ -142,7 +145,7 @@ impl Session {
 
     pub(super) fn pose_raw(&self, pose: &Owned<ArPose>) -> [f32; 7] {
         let mut numbers = [0.0; 7];
-        // SAFETY: session and pose live, and seven numbers are what the function writes.
+        // SAFETY: session and pose live, and the function writes seven numbers.
         unsafe { (self.api.ArPose_getPoseRaw)(self.raw(), pose.as_ptr(), numbers.as_mut_ptr()) };
         numbers
     }
@@ -150,7 +153,7 @@ impl Session {
     fn intrinsics(&self, camera: &Owned<ArCamera>, size_px: [u32; 2]) -> Result<Intrinsics, FrameError> {
         let ([mut fx, mut fy], [mut cx, mut cy], [mut width, mut height]) = ([0.0; 2], [0.0; 2], [0; 2]);
         let (api, raw, intrinsics) = (&self.api, self.raw(), self.intrinsics.as_ptr());
-        // SAFETY: session, camera and intrinsics live, and the numbers are places of ours.
+        // SAFETY: session, camera and intrinsics live, and the numbers are variables of ours.
         unsafe {
             (api.ArCamera_getImageIntrinsics)(raw, camera.as_ptr(), intrinsics);
             (api.ArCameraIntrinsics_getFocalLength)(raw, intrinsics, &raw mut fx, &raw mut fy);
@@ -166,7 +169,7 @@ impl Session {
     fn image(&self) -> Result<Option<CameraImage>, FrameError> {
         let api = &self.api;
         let mut status = 0;
-        // SAFETY: session and frame live; an image that was acquired is ours to release.
+        // SAFETY: session and frame live; an acquired image is ours to release.
         let image: Option<Owned<ArImage>> = unsafe {
             Owned::new(
                 |place| {
@@ -181,7 +184,7 @@ impl Session {
         }
         let image = image.ok_or(Failure(-2))?;
         let ([mut width, mut height], mut format, mut n_planes) = ([0; 2], 0, 0);
-        // SAFETY: session and image live, and the numbers are places of ours.
+        // SAFETY: session and image live, and the numbers are variables of ours.
         unsafe {
             (api.ArImage_getWidth)(self.raw(), image.as_ptr(), &raw mut width);
             (api.ArImage_getHeight)(self.raw(), image.as_ptr(), &raw mut height);
@@ -196,7 +199,7 @@ impl Session {
         }
         let [luma, blue, red] = [0, 1, 2].map(|index| self.plane(&image, index));
         let planes = Planes {
-            // A negative side is refused with those that are too long.
+            // A negative side is refused like an excessive one.
             size_px: [width, height].map(|side| u32::try_from(side).unwrap_or(0)),
             luma,
             blue,
@@ -206,11 +209,12 @@ impl Session {
         Ok(Some(PlanarImage::new(&planes)?.into()))
     }
 
-    /// One component, for as long as the image is held. What makes no sense becomes a plane of nothing.
+    /// One component, for as long as the image is held. Invalid data become an empty plane.
     fn plane<'a>(&self, image: &'a Owned<ArImage>, index: i32) -> Plane<'a> {
         let (mut data, mut n_bytes, mut row_stride, mut pixel_stride) = (std::ptr::null(), 0, 0, 0);
         let (api, raw, image) = (&self.api, self.raw(), image.as_ptr());
-        // SAFETY: session and image live, the image has three planes, and all are places of ours.
+        // SAFETY: session and image live, the image has three planes, and all outputs are variables
+        // of ours.
         unsafe {
             (api.ArImage_getPlaneData)(raw, image, index, &raw mut data, &raw mut n_bytes);
             (api.ArImage_getPlaneRowStride)(raw, image, index, &raw mut row_stride);
@@ -221,7 +225,7 @@ impl Session {
         let bytes = if data.is_null() {
             &[]
         } else {
-            // SAFETY: ARCore says that so many bytes are there, and they are until the image is released.
+            // SAFETY: ARCore guarantees this number of bytes until the image is released.
             unsafe { std::slice::from_raw_parts(data, n_bytes) }
         };
         Plane {
@@ -231,7 +235,7 @@ impl Session {
         }
     }
 
-    /// Where the card is, while it is seen.
+    /// Pose of the card, while it is visible.
     fn card(&self) -> Option<DMat4> {
         let mut found = self.trackables_of(IMAGES);
         found.find_map(|trackable| self.pose_of_card(&trackable))
@@ -239,16 +243,16 @@ impl Session {
 
     fn pose_of_card(&self, trackable: &Owned<ArTrackable>) -> Option<DMat4> {
         let (api, raw) = (&self.api, self.raw());
-        // The list was asked for images alone, which are trackables in C by a cast.
+        // The list contains only images, which are trackables in C by a cast.
         let image: *const ArAugmentedImage = trackable.as_ptr().cast_const().cast();
         let (mut state, mut method) = (STOPPED, 0);
-        // SAFETY: session, image and pose live, and the numbers are places of ours.
+        // SAFETY: session, image and pose live, and the numbers are variables of ours.
         unsafe {
             (api.ArTrackable_getTrackingState)(raw, trackable.as_ptr(), &raw mut state);
             (api.ArAugmentedImage_getTrackingMethod)(raw, image, &raw mut method);
             (api.ArAugmentedImage_getCenterPose)(raw, image, self.pose.as_ptr());
         }
-        // A pose is one in the same numbers, whatever it is of.
+        // A pose has the same numbers for every kind of object.
         let world_from_card = convert::world_from_camera(self.pose_raw(&self.pose));
         world_from_card.filter(|_| state == TRACKING && method == IS_SEEN)
     }

@@ -1,4 +1,5 @@
-//! Names, signatures and numbers against ARCore's own header, which is not part of the project.
+//! Comparison of names, signatures and numbers with ARCore's own header, which is not part of the
+//! project.
 
 use std::env;
 use std::fs;
@@ -6,7 +7,7 @@ use std::fs;
 use super::ffi::SIGNATURES;
 use super::status::STATUSES;
 
-/// A type of C as the table writes it.
+/// The Rust form, as in the table, of a type of C.
 fn in_rust(c: &str) -> String {
     let n_stars = c.matches('*').count();
     let is_const = c.contains("const ");
@@ -21,7 +22,7 @@ fn in_rust(c: &str) -> String {
         "void" => "c_void",
         name => name,
     };
-    // What is constant is what the innermost pointer points to.
+    // A `const` applies to the target of the innermost pointer.
     let inner = match (n_stars, is_const) {
         (0, _) => String::new(),
         (_, true) => "*const ".to_owned(),
@@ -30,14 +31,14 @@ fn in_rust(c: &str) -> String {
     format!("{}{inner}{name}", "*mut ".repeat(n_stars.saturating_sub(1)))
 }
 
-/// Type of a parameter: all but its name.
+/// Type of a parameter, without its name.
 fn parameter(c: &str) -> String {
     let c = c.trim();
     let end = c.rfind(|letter: char| !(letter.is_alphanumeric() || letter == '_'));
     in_rust(&c[..end.map_or(0, |end| end + 1)])
 }
 
-/// Prototypes without comments: what a function returns, and its arguments.
+/// A function's prototype without comments: its return type, and its arguments.
 fn prototype(header: &str, name: &str) -> Option<(String, Vec<String>)> {
     let at = header.find(&format!(" {name}("))?;
     let returns = header[..at].rsplit(['\n', ';', '}']).next()?.trim();
@@ -57,7 +58,7 @@ fn without_comments(header: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// What of the table, and of the table of statuses, a header does not have.
+/// Entries of the table, and of the table of statuses, that a header does not contain.
 fn differences(header: &str) -> Vec<String> {
     let header = without_comments(header);
     let mut differences = Vec::new();

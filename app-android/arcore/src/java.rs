@@ -1,4 +1,4 @@
-//! What ARCore is called with.
+//! Java pointers for calls of ARCore.
 
 use std::ffi::c_void;
 
@@ -11,7 +11,7 @@ pub struct Java {
     pub activity: *mut c_void,
 }
 
-/// Whoever knows them.
+/// A provider of these pointers.
 pub trait JavaHost {
     /// The pointers, valid on this thread until the next call.
     fn java(&mut self) -> Java;

@@ -1,8 +1,8 @@
-//! Where the phone is, by ARCore: a session from its installation to its frames.
+//! The phone's position by ARCore: a session from its installation to its frames.
 //!
-//! All of it is plain Rust over a table of C functions ([`ffi::Functions`]). On a phone the table is that of the loaded
-//! library; in tests it is a fake's, so that nothing here runs for the first time on a phone. `convert` holds everything that knows
-//! ARCore's axes and pixel rules.
+//! All of it is plain Rust over a table of C functions ([`ffi::Functions`]). On a phone the table
+//! is that of the loaded library; in tests it is a fake's, so that no code here runs for the first
+//! time on a phone. `convert` contains all knowledge of ARCore's axes and pixel rules.
 
 pub mod convert;
 pub mod feed;

@@ -13,13 +13,13 @@ unsafe extern "C" {
     fn dlsym(library: *mut c_void, name: *const c_char) -> *mut c_void;
 }
 
-/// Why ARCore's functions are not there.
+/// The reason why ARCore's functions are missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LoadError {
-    /// The package was made without it.
+    /// The package was built without it.
     #[error("the app was packaged without ARCore's library")]
     NoLibrary,
-    /// It is not the one that the app was made for.
+    /// Its version differs from the one for which the app was built.
     #[error(transparent)]
     Function(#[from] MissingFunction),
 }
@@ -27,13 +27,15 @@ pub enum LoadError {
 /// Loads the library for as long as the process lives, and looks up its functions.
 ///
 /// # Errors
-/// Where the library or one of its functions is missing.
+/// If the library or one of its functions is missing.
 pub fn load() -> Result<Functions, LoadError> {
-    // SAFETY: the name ends with a zero. What runs while the library is loaded is Google's own, made for that.
+    // SAFETY: the name ends with a zero. The code that runs while the library is loaded is Google's
+    // own, made for that.
     let library = unsafe { dlopen(NAME.as_ptr(), NOW) };
     if library.is_null() {
         return Err(LoadError::NoLibrary);
     }
-    // SAFETY: the library is never closed, and its functions are those of its header, which the table is compared with.
+    // SAFETY: the library is never closed, and its functions are those of its header, with which
+    // the table is compared.
     Ok(unsafe { Functions::look_up(|name| dlsym(library, name.as_ptr()).cast_const()) }?)
 }

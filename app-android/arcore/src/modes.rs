@@ -1,32 +1,33 @@
-//! Which of its modes the camera is set to: the largest picture that comes.
+//! The choice of the camera's mode: the largest picture that is delivered.
 //!
-//! Not every phone delivers the pictures that it lists: one with a Snapdragon 662 freezes at 1920 x 1080 and runs at 1280 x 720
-//! (arcore-android-sdk issue 1251). So the modes are an order in which they are tried.
+//! Not every phone delivers all pictures that it lists: one with a Snapdragon 662 freezes at 1920 x
+//! 1080 and runs at 1280 x 720 (arcore-android-sdk issue 1251). Therefore the modes are tried in an
+//! order.
 
 use super::ffi::{ArCameraConfig, ArCameraConfigFilter, ArCameraConfigList, ArSession, Functions};
 use super::owned::Owned;
 use super::status::{Failure, NOTHING};
 
-/// `AR_CAMERA_CONFIG_FACING_DIRECTION_BACK`: away from whoever holds the phone.
+/// `AR_CAMERA_CONFIG_FACING_DIRECTION_BACK`: away from the person.
 const BACK: i32 = 0;
 /// `AR_CAMERA_CONFIG_TARGET_FPS_30`.
 const AT_30_HZ: u32 = 1;
 /// `AR_CAMERA_CONFIG_DEPTH_SENSOR_USAGE_DO_NOT_USE`.
 const WITHOUT_DEPTH: u32 = 2;
 
-/// Most pixels of a camera's picture that is asked for, along its longer side.
+/// Maximum size of a requested picture, in pixels along its longer side.
 const MAX_SIDE_PX: i32 = 1920;
-/// Frames a second beyond which a phone grows hot.
+/// Frame rate above which a phone becomes hot.
 const MAX_HZ: i32 = 30;
 
-/// What a camera can be set to.
+/// A mode of the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CameraMode {
     /// Width and height of the picture that the processor gets.
     pub size_px: [i32; 2],
-    /// Most frames a second.
+    /// Maximum frame rate.
     pub hz: i32,
-    /// Whether it is the camera away from whoever holds the phone.
+    /// Whether the camera faces away from the person.
     pub faces_away: bool,
 }
 
@@ -40,9 +41,10 @@ fn n_pixels([width, height]: [i32; 2]) -> i64 {
     i64::from(width) * i64::from(height)
 }
 
-/// The modes in the order in which they are tried, one for each size: the largest picture within 1920 pixels first, then smaller ones, and
-/// what is larger last, the smallest first; of one size the mode nearest to 30 Hz. None that is larger than `at_most_px`, which a phone
-/// was found not to deliver, unless all are.
+/// The modes in the order in which they are tried, one for each size: first the largest picture
+/// within 1920 pixels, then smaller ones, and finally larger ones, the smallest of them first; for
+/// each size the mode nearest to 30 Hz. Modes larger than `at_most_px`, which a phone did not
+/// deliver, are left out, unless there are no others.
 #[must_use]
 pub fn order_of(modes: &[CameraMode], at_most_px: Option<[i32; 2]>) -> Vec<usize> {
     let mut order: Vec<(usize, &CameraMode)> = modes
@@ -73,25 +75,26 @@ pub fn order_of(modes: &[CameraMode], at_most_px: Option<[i32; 2]>) -> Vec<usize
     }
 }
 
-/// A session, and the functions that it is asked by.
+/// A session, and the functions for its queries.
 pub(super) type Of<'a> = (&'a Functions, &'a Owned<ArSession>);
 
-/// The modes that a session has, as they are tried one after the other.
+/// The modes of a session, in the order in which they are tried.
 pub(super) struct Modes {
     list: Owned<ArCameraConfigList>,
     mode: Owned<ArCameraConfig>,
     modes: Vec<CameraMode>,
-    /// Those that are still to be tried.
+    /// Modes not yet tried.
     left: std::vec::IntoIter<usize>,
-    /// That which is used; none if the camera stays as ARCore has it.
+    /// The mode in use; `None` if the camera stays in ARCore's default mode.
     pub(super) used: Option<CameraMode>,
 }
 
 impl Modes {
-    /// Those of a camera away from the person, at 30 Hz and without a depth sensor; all of them if there is none.
+    /// Modes of a camera that faces away from the person, at 30 Hz and without a depth sensor; all
+    /// modes if there is none.
     pub(super) fn of((api, session): Of<'_>, at_most_px: Option<[i32; 2]>) -> Result<Self, Failure> {
         let raw = session.as_ptr();
-        // SAFETY: the session lives, and what it creates is ours to destroy.
+        // SAFETY: the session lives, and the created objects are ours to destroy.
         let (list, mode) = unsafe {
             (
                 Owned::new(
@@ -124,7 +127,7 @@ impl Modes {
 
     fn listed(&self, (api, session): Of<'_>, is_filtered: bool) -> Result<Vec<CameraMode>, Failure> {
         let raw = session.as_ptr();
-        // SAFETY: the session lives, and what it creates is ours to destroy.
+        // SAFETY: the session lives, and the created object is ours to destroy.
         let filter: Option<Owned<ArCameraConfigFilter>> = unsafe {
             Owned::new(
                 |place| (api.ArCameraConfigFilter_create)(raw, place),
@@ -133,7 +136,7 @@ impl Modes {
         };
         let filter = filter.ok_or(NOTHING)?;
         let mut n_modes = 0;
-        // SAFETY: session, filter and list live, and the count is a place of ours.
+        // SAFETY: session, filter and list live, and the count is a variable of ours.
         unsafe {
             if is_filtered {
                 (api.ArCameraConfigFilter_setFacingDirection)(raw, filter.as_ptr(), BACK);
@@ -148,7 +151,7 @@ impl Modes {
             .collect())
     }
 
-    /// Takes a mode of the list by its number, which is below the list's size.
+    /// Reads a mode of the list by its index, which is below the list's size.
     fn get(&self, (api, session): Of<'_>, index: i32) {
         // SAFETY: session, list and mode live, and the index is below the list's size.
         unsafe {
@@ -161,7 +164,7 @@ impl Modes {
         self.get((api, session), index);
         let ([mut width, mut height], [mut slowest, mut hz], mut facing) = ([0; 2], [0; 2], BACK);
         let (raw, config) = (session.as_ptr(), self.mode.as_ptr());
-        // SAFETY: session and mode live, and the numbers are places of ours.
+        // SAFETY: session and mode live, and the numbers are variables of ours.
         unsafe {
             (api.ArCameraConfig_getImageDimensions)(raw, config, &raw mut width, &raw mut height);
             (api.ArCameraConfig_getFpsRange)(raw, config, &raw mut slowest, &raw mut hz);
@@ -174,7 +177,7 @@ impl Modes {
         }
     }
 
-    /// Sets the camera of a session that is paused to the next mode; whether there is one.
+    /// Sets the camera of a paused session to the next mode; returns whether there is one.
     pub(super) fn next(&mut self, (api, session): Of<'_>) -> Result<bool, Failure> {
         let Some(index) = self.left.next() else {
             return Ok(false);

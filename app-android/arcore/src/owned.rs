@@ -1,18 +1,19 @@
-//! Objects of ARCore that are given back when they are dropped.
+//! Objects of ARCore that are released when they are dropped.
 
 use std::ptr::NonNull;
 
-/// An object that was created or acquired, and the function that it is given back with.
+/// An object that was created or acquired, and the function that releases it.
 pub(super) struct Owned<T> {
     object: NonNull<T>,
     give_back: unsafe extern "C" fn(*mut T),
 }
 
 impl<T> Owned<T> {
-    /// What `create` put in the place that it was given; none if that is nothing.
+    /// The object that `create` wrote to its output; `None` if it is null.
     ///
     /// # Safety
-    /// `create` leaves its place alone, or puts an object there that nobody else gives back and that `give_back` takes.
+    /// `create` leaves its output unchanged, or writes an object there that nothing else releases
+    /// and that `give_back` accepts.
     pub(super) unsafe fn new(
         create: impl FnOnce(&mut *mut T),
         give_back: unsafe extern "C" fn(*mut T),
@@ -29,7 +30,7 @@ impl<T> Owned<T> {
 
 impl<T> Drop for Owned<T> {
     fn drop(&mut self) {
-        // SAFETY: by the contract of `new`, the object is ours, and this is the one time that it is given back.
+        // SAFETY: by the contract of `new`, the object is ours, and it is released only here.
         unsafe { (self.give_back)(self.object.as_ptr()) }
     }
 }

@@ -1,4 +1,4 @@
-//! One session of ARCore: its objects, how it is configured, and the calls that may fail.
+//! One session of ARCore: its objects, its configuration, and the calls that may fail.
 
 use std::cell::Cell;
 
@@ -18,21 +18,23 @@ const LATEST_IMAGE: i32 = 1;
 const NO_PLANES: i32 = 0;
 /// `AR_PLANE_FINDING_MODE_HORIZONTAL`: tables.
 const LEVEL_PLANES: i32 = 1;
-/// `AR_TEXTURE_UPDATE_MODE_EXPOSE_HARDWARE_BUFFER`: the one mode without OpenGL.
+/// `AR_TEXTURE_UPDATE_MODE_EXPOSE_HARDWARE_BUFFER`: the only mode without OpenGL.
 const WITHOUT_GL: i32 = 1;
 /// `AR_LIGHT_ESTIMATION_MODE_DISABLED`.
 const NO_LIGHT: ArLightEstimationMode = 0;
 /// `AR_FOCUS_MODE_FIXED`: to a few metres.
 const FIXED_FOCUS: ArFocusMode = 0;
-/// `AR_FOCUS_MODE_AUTO`: a toy stands nearer than a fixed focus reaches.
+/// `AR_FOCUS_MODE_AUTO`: a toy is nearer than the range of a fixed focus.
 const AUTO_FOCUS: ArFocusMode = 1;
 
-/// What a session can do without, as bits: all of it is asked for at first, and less if ARCore refuses the configuration.
+/// Optional parts of a session, as bits: all of them are requested at first, and fewer if ARCore
+/// refuses the configuration.
 const CARD: u8 = 1;
 const FOCUS: u8 = 2;
 const ALL: u8 = CARD | FOCUS;
 
-/// The parts of what is wished for, in the order in which they are tried: all of it, then one thing less at a time, the card first.
+/// Subsets of the wanted parts, in the order in which they are tried: all, then one part fewer at a
+/// time, first without the card.
 fn less_and_less(wished: u8) -> Vec<u8> {
     let mut parts: Vec<u8> = (0..=ALL).filter(|part| part & !wished == 0).collect();
     parts.sort_by_key(|part| {
@@ -42,42 +44,44 @@ fn less_and_less(wished: u8) -> Vec<u8> {
     parts
 }
 
-/// What is looked for in the camera's picture.
+/// Objects that are detected in the camera's picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Finds {
     pub(super) planes: bool,
     pub(super) card: bool,
 }
 
-/// An anchor and the number that it was asked for by.
+/// An anchor and its requested number.
 pub(super) struct HeldAnchor {
     pub(super) id: u64,
     pub(super) anchor: Owned<ArAnchor>,
 }
 
-/// A session with the objects that each of its frames is read into. They are given back before it, in this order.
+/// A session with the objects into which each of its frames is read. They are released before it,
+/// in this order.
 pub(super) struct Session {
     pub(super) anchor: Option<HeldAnchor>,
     pub(super) trackables: Owned<ArTrackableList>,
     pub(super) intrinsics: Owned<ArCameraIntrinsics>,
     pub(super) pose: Owned<ArPose>,
     pub(super) frame: Owned<ArFrame>,
-    /// What the card is known by; none if nobody has one, or ARCore does not take it.
+    /// The card's image; `None` without a card, or if ARCore refuses it.
     card: Option<Owned<ArAugmentedImageDatabase>>,
     modes: Modes,
     session: Owned<ArSession>,
     pub(super) api: Functions,
     finds: Finds,
-    /// What ARCore was found to refuse.
+    /// Parts that ARCore refused.
     refused: u8,
     focuses: bool,
     /// `Surface.ROTATION_*`.
     rotation: Cell<i32>,
-    /// Quarter turns of the picture if the display is not rotated: how the sensor lies in the phone.
+    /// Quarter turns of the picture if the display is not rotated: the rotation of the sensor in
+    /// the phone.
     sensor_turns: Cell<u8>,
 }
 
-/// Of the sensors of nearly all phones.
+/// The value for the sensors of nearly all phones.
 const USUAL_TURNS: u8 = 1;
 
 #[allow(
@@ -92,7 +96,7 @@ fn quarter(turns: i32) -> u8 {
 impl Session {
     /// Creates and configures a session, which is then paused.
     ///
-    /// Pictures are no larger than `at_most_px`, if the phone was found not to deliver such.
+    /// Pictures are no larger than `at_most_px`, if the phone did not deliver larger ones.
     pub(super) fn create(
         api: Functions,
         java: Java,
@@ -100,8 +104,8 @@ impl Session {
         at_most_px: Option<[i32; 2]>,
     ) -> Result<Self, Failure> {
         let mut status = 0;
-        // SAFETY: the pointers are those of this thread and of a living activity, as the shell has them from Android; a
-        // session that was created is ours to destroy.
+        // SAFETY: the pointers are those of this thread and of a living activity, as the shell got
+        // them from Android; a created session is ours to destroy.
         let session = unsafe {
             Owned::new(
                 |place| status = (api.ArSession_create)(java.env, java.activity, place),
@@ -113,11 +117,11 @@ impl Session {
         let raw = session.as_ptr();
         macro_rules! create {
             ($create:ident, $destroy:ident) => {
-                // SAFETY: the session lives, and what it creates is ours to destroy.
+                // SAFETY: the session lives, and the created object is ours to destroy.
                 unsafe { Owned::new(|place| (api.$create)(raw, place), api.$destroy) }.ok_or(NOTHING)?
             };
         }
-        // SAFETY: as above; no pose is given, which stands for the identity.
+        // SAFETY: as above; a null pose is the identity.
         let pose = unsafe {
             let identity = std::ptr::null();
             Owned::new(
@@ -150,7 +154,8 @@ impl Session {
         self.session.as_ptr()
     }
 
-    /// Configures what is wished, and less of it if ARCore refuses; what it has refused is not wished again.
+    /// Configures the wanted parts, and fewer of them if ARCore refuses; refused parts are not
+    /// requested again.
     fn configure(&mut self) -> Result<(), Failure> {
         if self.finds.card && self.card.is_none() && self.refused & CARD == 0 {
             match card::database(&self.api, &self.session) {
@@ -183,7 +188,7 @@ impl Session {
 
     fn configure_with(&self, part: u8) -> Result<(), Failure> {
         let (api, raw) = (&self.api, self.raw());
-        // SAFETY: the session lives, and what it creates is ours to destroy.
+        // SAFETY: the session lives, and the created object is ours to destroy.
         let config: Option<Owned<ArConfig>> =
             unsafe { Owned::new(|place| (api.ArConfig_create)(raw, place), api.ArConfig_destroy) };
         let config = config.ok_or(NOTHING)?;
@@ -212,7 +217,7 @@ impl Session {
         })
     }
 
-    /// Looks for this from now on, and for nothing else; what was found stays.
+    /// Detects these objects from now on, and no others; objects found before stay.
     pub(super) fn find(&mut self, finds: Finds) -> Result<(), Failure> {
         if self.finds == finds {
             return Ok(());
@@ -221,33 +226,35 @@ impl Session {
         self.configure()
     }
 
-    /// Whether the card is wished for and was refused.
+    /// Whether the card is wanted and was refused.
     pub(super) fn lacks_card(&self) -> bool {
         self.finds.card && self.refused & CARD != 0
     }
 
-    /// Whether the camera was asked to focus by itself and says that it does not, as some phones until they are paused and resumed
-    /// (arcore-android-sdk issues 1300 and 1543).
+    /// Whether the camera does not focus automatically although that was requested, as on some
+    /// phones until they are paused and resumed (arcore-android-sdk issues 1300 and 1543).
     pub(super) fn is_focus_stuck(&self) -> bool {
         self.focuses && self.focuses_by_itself() == Some(false)
     }
 
-    /// Sets the camera of a paused session to the next smaller of its modes; whether there is one.
+    /// Sets the camera of a paused session to the next smaller of its modes; returns whether there
+    /// is one.
     pub(super) fn next_mode(&mut self) -> Result<bool, Failure> {
         self.modes.next((&self.api, &self.session))
     }
 
-    /// Width and height of the camera's picture, as it was chosen.
+    /// Chosen width and height of the camera's picture.
     pub(super) fn mode_px(&self) -> Option<[i32; 2]> {
         Some(self.modes.used?.size_px)
     }
 
-    /// Quarter turns that the picture is shown by, as far as the session knows.
+    /// Quarter turns of the shown picture, as far as they are known.
     pub(super) fn quarter_turns(&self) -> u8 {
         quarter(i32::from(self.sensor_turns.get()) - self.rotation.get())
     }
 
-    /// The picture is shown by so many turns now: a display that is turned on is held against how the sensor lies.
+    /// Derives the rotation of the sensor from the present quarter turns of the picture and the
+    /// display's rotation.
     pub(super) fn learn_turns(&self, turns: u8) {
         self.sensor_turns
             .set(quarter(i32::from(turns) + self.rotation.get()));
@@ -263,13 +270,13 @@ impl Session {
         Failure::check(unsafe { (self.api.ArSession_pause)(self.raw()) })
     }
 
-    /// Lets the session look at the camera's latest frame.
+    /// Makes the session process the camera's latest frame.
     pub(super) fn update(&self) -> Result<(), Failure> {
         // SAFETY: session and frame live.
         Failure::check(unsafe { (self.api.ArSession_update)(self.raw(), self.frame.as_ptr()) })
     }
 
-    /// Tells the display's quarter turns, as `Surface.ROTATION_*` counts them, and its size.
+    /// Sets the display's quarter turns, in the numbers of `Surface.ROTATION_*`, and its size.
     pub(super) fn set_display(&self, quarter_turns: i32, [width, height]: [i32; 2]) {
         self.rotation.set(quarter_turns);
         // SAFETY: the session lives.

@@ -1,4 +1,4 @@
-//! What ARCore answers, in words for the person who holds the phone.
+//! ARCore's results, in words for the person who holds the phone.
 
 use app_core::app::{ArSession, Permission, ShellEvent};
 use app_core::camera_frame::Tracking;
@@ -7,7 +7,7 @@ use super::ffi::{ArAvailability, ArStatus, ArTrackingFailureReason};
 
 /// `AR_SUCCESS`.
 pub const SUCCESS: ArStatus = 0;
-/// The failure of a function that made nothing and says nothing.
+/// The failure of a function that created nothing and reported no status.
 pub(super) const NOTHING: Failure = Failure(-2);
 /// `AR_ERROR_UNSUPPORTED_CONFIGURATION`.
 pub const UNSUPPORTED_CONFIGURATION: ArStatus = -8;
@@ -23,10 +23,10 @@ pub const NOT_YET_AVAILABLE: ArStatus = -12;
 /// `AR_ERROR_CAMERA_NOT_AVAILABLE`.
 pub const CAMERA_NOT_AVAILABLE: ArStatus = -13;
 
-/// What can be done about a failure.
+/// The remedy for a failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
-    /// Come back to the app, and it tries again.
+    /// Return to the app, which then tries again.
     Return,
     /// Allow the camera in the phone's settings.
     AllowCamera,
@@ -34,14 +34,14 @@ pub enum Remedy {
     Install,
     /// Update this app.
     UpdateApp,
-    /// Nothing, on this phone.
+    /// None on this phone.
     None,
-    /// An error of this app: its log is to be sent.
+    /// An error of this app: the person should send its log.
     Report,
 }
 
 impl Remedy {
-    /// In words.
+    /// Text for the person.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -55,7 +55,7 @@ impl Remedy {
     }
 }
 
-/// Every `ArStatus` but success: its number, its name in C, what to tell, and what can be done.
+/// Every `ArStatus` but success: its number, its name in C, the message, and the remedy.
 #[rustfmt::skip]
 pub const STATUSES: &[(ArStatus, &str, &str, Remedy)] = &[
     (-1, "AR_ERROR_INVALID_ARGUMENT", "The app asked ARCore for something that makes no sense.", Remedy::Report),
@@ -63,9 +63,9 @@ pub const STATUSES: &[(ArStatus, &str, &str, Remedy)] = &[
     (-3, "AR_ERROR_SESSION_PAUSED", "Tracking is paused.", Remedy::Return),
     (-4, "AR_ERROR_SESSION_NOT_PAUSED", "The app changed tracking while it was running.", Remedy::Report),
     (-5, "AR_ERROR_NOT_TRACKING", "The phone does not know where it is. Move it slowly over the table.", Remedy::Return),
-    (-6, "AR_ERROR_TEXTURE_NOT_SET", "The app asked for the camera's picture in a way that it cannot be given.", Remedy::Report),
+    (-6, "AR_ERROR_TEXTURE_NOT_SET", "The app requested the camera's picture in an unsupported form.", Remedy::Report),
     (-7, "AR_ERROR_MISSING_GL_CONTEXT", "ARCore asks for OpenGL, which this app does not use.", Remedy::Report),
-    (UNSUPPORTED_CONFIGURATION, "AR_ERROR_UNSUPPORTED_CONFIGURATION", "This phone's ARCore lacks what the app needs.", Remedy::None),
+    (UNSUPPORTED_CONFIGURATION, "AR_ERROR_UNSUPPORTED_CONFIGURATION", "This phone's ARCore lacks a feature that the app needs.", Remedy::None),
     (PERMISSION_NOT_GRANTED, "AR_ERROR_CAMERA_PERMISSION_NOT_GRANTED", "The app may not use the camera.", Remedy::AllowCamera),
     (DEADLINE_EXCEEDED, "AR_ERROR_DEADLINE_EXCEEDED", "A picture of the camera came too late.", Remedy::Return),
     (RESOURCE_EXHAUSTED, "AR_ERROR_RESOURCE_EXHAUSTED", "The camera has no room for another picture.", Remedy::Return),
@@ -82,8 +82,8 @@ pub const STATUSES: &[(ArStatus, &str, &str, Remedy)] = &[
     (-22, "AR_ERROR_GOOGLE_PLAY_SERVICES_LOCATION_LIBRARY_NOT_LINKED", "ARCore expects a library for locations, which this app does not use.", Remedy::Report),
     (-23, "AR_ERROR_RECORDING_FAILED", "ARCore's recording failed.", Remedy::Report),
     (-24, "AR_ERROR_PLAYBACK_FAILED", "ARCore's playback failed.", Remedy::Report),
-    (-25, "AR_ERROR_SESSION_UNSUPPORTED", "ARCore's session cannot do what the app asked for.", Remedy::Report),
-    (-26, "AR_ERROR_METADATA_NOT_FOUND", "The camera does not tell how its picture was taken.", Remedy::Report),
+    (-25, "AR_ERROR_SESSION_UNSUPPORTED", "ARCore's session does not support the app's request.", Remedy::Report),
+    (-26, "AR_ERROR_METADATA_NOT_FOUND", "The camera does not report the metadata of its picture.", Remedy::Report),
     (-100, "AR_UNAVAILABLE_ARCORE_NOT_INSTALLED", "Google Play Services for AR is not installed.", Remedy::Install),
     (-101, "AR_UNAVAILABLE_DEVICE_NOT_COMPATIBLE", "This phone cannot run ARCore.", Remedy::None),
     (-103, "AR_UNAVAILABLE_APK_TOO_OLD", "Google Play Services for AR is too old.", Remedy::Install),
@@ -91,7 +91,7 @@ pub const STATUSES: &[(ArStatus, &str, &str, Remedy)] = &[
     (-105, "AR_UNAVAILABLE_USER_DECLINED_INSTALLATION", "Without Google Play Services for AR the app cannot see the table.", Remedy::Install),
 ];
 
-/// An answer of ARCore other than success.
+/// A result of ARCore other than success.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Failure(pub ArStatus);
 
@@ -109,7 +109,7 @@ impl Failure {
         STATUSES.iter().find(|entry| entry.0 == self.0)
     }
 
-    /// What is said of it, and what helps.
+    /// Message and remedy.
     #[must_use]
     pub fn words(self) -> String {
         let told = match self.entry() {
@@ -122,7 +122,7 @@ impl Failure {
         }
     }
 
-    /// What can be done about it.
+    /// The remedy.
     #[must_use]
     pub fn remedy(self) -> Remedy {
         self.entry().map_or(Remedy::Report, |entry| entry.3)
@@ -144,22 +144,22 @@ impl std::fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// Whether ARCore is there.
+/// Availability of ARCore.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Availability {
     /// It can be used.
     Installed,
-    /// It, or a newer one, has to be installed.
+    /// It must be installed, or updated.
     ToInstall,
-    /// It is being looked for: to be asked again.
+    /// The check is running: to be repeated.
     Checking,
-    /// Nobody knows, as without a network: an install is offered.
+    /// Unknown, for instance without a network: an installation is offered.
     Unknown,
-    /// Never on this phone.
+    /// ARCore does not support this phone.
     NotCapable,
 }
 
-/// What `ArCoreApk_checkAvailability` says. A number that is not known counts as not known.
+/// Meaning of the result of `ArCoreApk_checkAvailability`. Any other number counts as unknown.
 #[must_use]
 pub fn availability(number: ArAvailability) -> Availability {
     match number {
@@ -171,28 +171,28 @@ pub fn availability(number: ArAvailability) -> Availability {
     }
 }
 
-/// How well the camera is followed, by `ArTrackingFailureReason` while ARCore does not track it.
+/// Tracking state by `ArTrackingFailureReason`, while ARCore does not track the camera.
 #[must_use]
 pub fn tracking_without_pose(reason: ArTrackingFailureReason) -> Tracking {
     match reason {
-        // A bad state of its own: the place is looked for again.
+        // An internal bad state: ARCore relocalises.
         1 => Tracking::Relocalising,
         2 => Tracking::TooDark,
         3 => Tracking::TooFast,
         4 => Tracking::TooPlain,
-        // None, as at the start; 5, the camera is not there; and what later versions add.
+        // None, as at the start; 5, the camera is unavailable; and reasons that later versions add.
         _ => Tracking::Starting,
     }
 }
 
-/// What the app is told of a failure that ends tracking.
+/// The app's event for a failure that ends tracking.
 #[must_use]
 pub fn told(failure: Failure) -> ShellEvent {
     match (failure, failure.remedy()) {
         (Failure(PERMISSION_NOT_GRANTED), _) => ShellEvent::Permission(Permission::Denied),
         (Failure(CAMERA_NOT_AVAILABLE), _) => {
-            // It is looked for again by itself.
-            let words = "Another app uses the camera. Close it, and it goes on here.";
+            // The app requests it again by itself.
+            let words = "Another app uses the camera. Close it to continue here.";
             ShellEvent::ArTrouble(ArSession::Interrupted, words.to_owned())
         }
         (_, Remedy::None | Remedy::UpdateApp) => {

@@ -1,13 +1,15 @@
-//! From a phone without ARCore to a tracked frame: what is asked for, in which order, and what each refusal leads to.
+//! From a phone without ARCore to a tracked frame: the requests, their order, and the consequence
+//! of each refusal.
 //!
-//! | after `run` | what comes next |
+//! | after `run` | next |
 //! | --- | --- |
 //! | [`Step::Ready`] | `update` |
 //! | [`Step::Waiting`] for an answer about ARCore | `run` again, in a moment |
-//! | [`Step::Waiting`] for an install | Android's own screen is in front: `pause`, then `run` |
+//! | [`Step::Waiting`] for an installation | Android's own screen is in front: `pause`, then `run` |
 //! | [`Step::Refused`] | `run`, when the person tries again |
 //!
-//! The camera's permission is the app's concern: it asks for frames only where it was given.
+//! The camera's permission is the app's concern: it requests frames only if the permission was
+//! given.
 
 use std::fmt;
 use std::time::Duration;
@@ -28,38 +30,38 @@ const NOT_COMPATIBLE: Failure = Failure(-101);
 /// `AR_ERROR_FATAL`.
 const FATAL: Failure = Failure(-2);
 
-/// How frames are asked for.
+/// A request for frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// Whether level planes are looked for.
+    /// Whether horizontal planes are detected.
     pub finds_planes: bool,
-    /// Whether the printed card is, which takes ARCore longer with each picture.
+    /// Whether the printed card is detected, for which ARCore needs more time with each picture.
     pub finds_card: bool,
     /// Whether the world begins anew.
     pub is_new_world: bool,
 }
 
-/// What `run` came to.
+/// Result of `run`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Frames can be asked for.
+    /// Frames can be requested.
     Ready,
-    /// Something else comes first.
+    /// Another step comes first.
     Waiting(Wait),
     /// There will be no frames before the next `run`.
     Refused(Failure),
 }
 
-/// What is waited for.
+/// The event that is awaited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wait {
-    /// ARCore is being looked for.
+    /// The check for ARCore.
     Answer,
     /// The store's screen.
     Install,
 }
 
-/// Either of what keeps a session from beginning.
+/// The reasons why a session cannot begin.
 enum Halt {
     Wait(Wait),
     Refused(Failure),
@@ -71,7 +73,7 @@ impl From<Failure> for Halt {
     }
 }
 
-/// How the display lies, as ARCore is told.
+/// The display's rotation and size, for ARCore.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Geometry {
     /// `Surface.ROTATION_*`.
@@ -80,36 +82,36 @@ pub struct Geometry {
     pub size_px: [i32; 2],
 }
 
-/// Pictures that the camera has not delivered for so long are given up.
+/// Time after which a camera that delivers no pictures is given up.
 const PATIENCE: Duration = Duration::from_secs(3);
-/// And only if they were asked for so often since: a loop that stood still has waited for nothing.
+/// Minimum number of updates in that time: a loop that stood still has not really waited.
 const N_LOOKS: u32 = 8;
-/// Pictures after which a camera that was asked to focus by itself has begun to.
+/// Number of pictures after which autofocus, if requested, must have started.
 const N_FOCUSED: u32 = 10;
 
-/// What has come of the pictures that were asked for.
+/// The delivery of the requested pictures.
 #[derive(Clone, Copy, Debug, Default)]
 struct Watch {
-    /// When the camera was begun, or the latest picture came.
+    /// Time of the camera's start, or of the latest picture.
     since: Option<Duration>,
     /// Updates without a picture since then.
     n_looks: u32,
-    /// Pictures since it was begun.
+    /// Number of pictures since the start.
     n_pictures: u32,
-    /// It was begun anew as it was, and has not run well since.
+    /// Whether the camera was restarted unchanged, and has not run well since.
     is_second_try: bool,
-    /// It was begun anew for its focus, once in a session.
+    /// Whether the camera was restarted for its focus, which happens once in a session.
     has_refocused: bool,
 }
 
 impl Watch {
-    /// The camera is begun.
+    /// Records a start of the camera.
     fn begin(&mut self) {
         (self.since, self.n_looks, self.n_pictures) = (None, 0, 0);
     }
 }
 
-/// Keeps a session and reads its frames.
+/// Owns a session and reads its frames.
 pub struct Tracker {
     api: Functions,
     /// Dropped with the tracker, while the library of `api` is still loaded.
@@ -118,13 +120,13 @@ pub struct Tracker {
     has_asked_for_install: bool,
     display: Option<Geometry>,
     watch: Watch,
-    /// Pictures are no larger, since larger ones did not come.
+    /// Limit on the pictures' size, since larger ones were not delivered.
     at_most_px: Option<[i32; 2]>,
-    /// The same once such pictures have come.
+    /// The same once such pictures have arrived.
     limited_px: Option<[i32; 2]>,
     latest_ns: i64,
     n_frames: u64,
-    /// Each session has a world of its own.
+    /// Number of sessions; each has a world of its own.
     n_sessions: u32,
     n_missed: u64,
 }
@@ -149,29 +151,30 @@ impl Tracker {
         }
     }
 
-    /// As an earlier start has found: pictures that are larger do not come.
+    /// Sets the limit of an earlier start: larger pictures are not delivered.
     pub fn limit(&mut self, at_most_px: [i32; 2]) {
         (self.at_most_px, self.limited_px) = (Some(at_most_px), Some(at_most_px));
     }
 
-    /// Width and height of the pictures that come if larger ones did not, for later starts.
+    /// Width and height of the delivered pictures if larger ones were not delivered, for later
+    /// starts.
     #[must_use]
     pub fn limited_to(&self) -> Option<[i32; 2]> {
         self.limited_px
     }
 
-    /// Frames whose pictures were not there when they were asked for.
+    /// Number of frames whose pictures were missing when they were requested.
     #[must_use]
     pub fn n_missed(&self) -> u64 {
         self.n_missed
     }
 
-    /// Goes as far towards frames as it can.
+    /// Advances towards frames as far as possible.
     pub fn run(&mut self, phone: &mut dyn JavaHost, run: Run) -> Step {
         if run.is_new_world {
             self.pause();
             self.session = None;
-            // The person starts over, and may think otherwise of what was declined.
+            // The person starts over, and may now accept an installation that was declined.
             self.has_asked_for_install = false;
         }
         let finds = Finds {
@@ -185,10 +188,10 @@ impl Tracker {
         }
     }
 
-    /// Holds a place of the world, in place of the one before.
+    /// Holds a place of the world instead of the previous one.
     ///
     /// # Errors
-    /// Where ARCore refuses: then none is held.
+    /// If ARCore refuses: then none is held.
     pub fn hold(&mut self, id: u64, world_from_anchor: &DMat4) -> Result<(), Failure> {
         match &mut self.session {
             Some(session) => session.hold(id, world_from_anchor),
@@ -196,13 +199,13 @@ impl Tracker {
         }
     }
 
-    /// Whether the card is asked for and ARCore refuses it.
+    /// Whether the card is requested and ARCore refuses it.
     #[must_use]
     pub fn lacks_card(&self) -> bool {
         self.session.as_ref().is_some_and(Session::lacks_card)
     }
 
-    /// Lets the camera go. The session stays.
+    /// Releases the camera. The session stays.
     pub fn pause(&mut self) {
         let running = self.session.as_ref().filter(|_| self.is_running);
         if running.is_some_and(|session| session.pause().is_err()) {
@@ -212,7 +215,7 @@ impl Tracker {
         self.is_running = false;
     }
 
-    /// Follows the display.
+    /// Follows the display's rotation and size.
     pub fn set_display(&mut self, display: Geometry) {
         if self.display != Some(display) {
             self.display = Some(display);
@@ -220,11 +223,13 @@ impl Tracker {
         }
     }
 
-    /// The camera's latest frame; none if there is no later one than the last, or none whose picture is there. `now` is of any clock that
-    /// goes on: a camera whose pictures do not come is begun anew, then set to smaller ones.
+    /// The camera's latest frame; `None` if there is none after the last, or if its picture is
+    /// missing. `now` is the time of any monotonic clock: a camera that delivers no pictures is
+    /// restarted, then set to smaller ones.
     ///
     /// # Errors
-    /// What ARCore or the frame says. After a fatal failure the next `run` begins a new session.
+    /// The error of ARCore or of the frame. After a fatal failure the next `run` begins a new
+    /// session.
     pub fn update(&mut self, now: Duration) -> Result<Option<CameraFrame>, FrameError> {
         if !self.is_running {
             return Ok(None);
@@ -262,7 +267,8 @@ impl Tracker {
         Ok(())
     }
 
-    /// No picture has come for too long: the camera is begun anew, once as it was, since a start can be slow, then with the next mode.
+    /// Restarts a camera that has delivered no picture for too long: once unchanged, since a start
+    /// can be slow, then with the next mode.
     fn begin_smaller(&mut self) -> Result<(), FrameError> {
         if !std::mem::replace(&mut self.watch.is_second_try, true) {
             eprintln!("arcore: the camera's pictures do not come: it is begun anew");
@@ -276,14 +282,14 @@ impl Tracker {
             );
             return Ok(());
         }
-        // Whatever is smaller does not come either: a later session may begin with the largest.
+        // Smaller pictures are not delivered either: a later session may begin with the largest.
         (self.at_most_px, self.limited_px) = (None, None);
         self.session = None;
         self.is_running = false;
         Err(FrameError::NoPictures)
     }
 
-    /// Pauses the session, changes it, and resumes it if there was something to change.
+    /// Pauses the session, changes it, and resumes it if it was changed.
     fn begin_anew(
         &mut self,
         change: impl FnOnce(&mut Session) -> Result<bool, Failure>,
@@ -363,7 +369,7 @@ impl Tracker {
 
     fn ensure_installed(&mut self, Java { env, activity }: Java) -> Result<(), Halt> {
         let mut answer = 0;
-        // SAFETY: both pointers are valid now, and the answer is a place of ours.
+        // SAFETY: both pointers are valid now, and the result is a variable of ours.
         unsafe { (self.api.ArCoreApk_checkAvailability)(env, activity, &raw mut answer) };
         match availability(answer) {
             Availability::Installed => return Ok(()),
@@ -371,7 +377,7 @@ impl Tracker {
             Availability::NotCapable => return Err(NOT_COMPATIBLE.into()),
             Availability::ToInstall | Availability::Unknown => {}
         }
-        // A person who has said no is asked again only on starting over.
+        // A person who has declined is asked again only on starting over.
         let is_first = i32::from(!self.has_asked_for_install);
         self.has_asked_for_install = true;
         let mut outcome = INSTALLED;

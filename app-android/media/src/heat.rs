@@ -1,4 +1,5 @@
-//! How hot the phone is, by functions of Android 11 that are looked up while the app runs: older phones lack them.
+//! The phone's temperature state, by functions of Android 11 that are looked up while the app runs,
+//! since older phones lack them.
 
 use std::ffi::{c_char, c_int, c_void};
 use std::ptr::NonNull;
@@ -24,7 +25,7 @@ pub struct Thermometer {
 }
 
 impl Thermometer {
-    /// None before Android 11.
+    /// Returns `None` before Android 11.
     #[must_use]
     pub fn find() -> Option<Self> {
         // SAFETY: the name ends with a zero; the system's own library is loaded already.
@@ -42,7 +43,7 @@ impl Thermometer {
                 std::mem::transmute::<*mut c_void, Status>(status.as_ptr()),
             )
         };
-        // SAFETY: it takes nothing.
+        // SAFETY: it has no arguments.
         let manager = NonNull::new(unsafe { acquire() })?;
         Some(Self { manager, status })
     }

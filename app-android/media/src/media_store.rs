@@ -1,5 +1,5 @@
-//! Copies of files where other apps find them: Android's media store, since Android 10 without a permission; and the question what to
-//! do with them.
+//! Copies of files that other apps can find: Android's media store, since Android 10 without a
+//! permission; and the dialog for sharing them.
 
 use std::fs::File;
 use std::io;
@@ -18,7 +18,8 @@ const STREAM: &str = "android.intent.extra.STREAM";
 /// `Intent.FLAG_GRANT_READ_URI_PERMISSION`.
 const MAY_READ: i32 = 1;
 
-/// Copies a file into the store; its address there. An exception where there is no such store, or no room.
+/// Copies a file into the store and returns its address there. An exception if there is no such
+/// store, or no space.
 pub fn copy<'local>(env: &mut Env<'local>, activity: &JObject<'_>, file: &Path) -> Result<JObject<'local>> {
     let stored = stored(file);
     let resolver = env
@@ -73,7 +74,7 @@ pub fn copy<'local>(env: &mut Env<'local>, activity: &JObject<'_>, file: &Path) 
     let descriptor = env
         .call_method(&opened, jni_str!("detachFd"), jni_sig!("()I"), &[])?
         .i()?;
-    // SAFETY: the descriptor is open, and Java gave it away.
+    // SAFETY: the descriptor is open, and Java has detached it.
     let mut copy = File::from(unsafe { OwnedFd::from_raw_fd(descriptor) });
     if let Err(error) = File::open(file).and_then(|mut file| io::copy(&mut file, &mut copy)) {
         eprintln!("app-android: {} is not copied whole: {error}", file.display());

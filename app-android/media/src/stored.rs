@@ -1,8 +1,8 @@
-//! How Android's media store knows a file.
+//! A file's entry in Android's media store.
 
 use std::path::Path;
 
-/// How Android's media store knows a file.
+/// A file's entry in Android's media store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stored {
     /// MIME type.
@@ -13,7 +13,7 @@ pub struct Stored {
     pub folder: &'static str,
 }
 
-/// By the name's extension. What is no photo and no video is a download.
+/// Chosen by the name's extension. A file that is neither a photo nor a video is a download.
 #[must_use]
 pub fn stored(file: &Path) -> Stored {
     const PHOTO: [&str; 2] = [

@@ -1,4 +1,4 @@
-//! Videos by the phone's own encoder: H.264 in an MP4 file, which every player takes.
+//! Videos by the phone's own encoder: H.264 in an MP4 file, which every player supports.
 
 use std::fs::File;
 use std::io;
@@ -22,24 +22,25 @@ use ndk_sys::{
 
 use crate::yuv::Layout;
 
-/// The encoder, as the one that is asked first.
+/// The format of the encoder that is tried first.
 pub const H264: VideoFormat = VideoFormat {
     extension: "mp4",
     begin,
 };
 
 const AVC: &str = "video/avc";
-/// `COLOR_FormatYUV420SemiPlanar` and `COLOR_FormatYUV420Planar`: each phone has one of both at least.
+/// `COLOR_FormatYUV420SemiPlanar` and `COLOR_FormatYUV420Planar`: each phone supports at least one
+/// of them.
 const COLOURS: [i32; 2] = [21, 19];
 /// `COLOR_STANDARD_BT709`, `COLOR_RANGE_LIMITED`, `COLOR_TRANSFER_SDR_VIDEO`.
 const BT709: i32 = 1;
 const LIMITED: i32 = 2;
 const SDR: i32 = 3;
-/// Bits a second for a pixel.
+/// Bits per second for a pixel.
 const BITS_PER_PIXEL: i32 = 4;
-/// Seconds from one picture that stands for itself to the next.
+/// Seconds between key frames.
 const KEY_INTERVAL_S: i32 = 1;
-/// The encoder is given up where it is busy for longer.
+/// Time after which a busy encoder is given up.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 fn begin(path: &Path, size_px: [u32; 2]) -> io::Result<Box<dyn VideoEncoder>> {
@@ -52,7 +53,8 @@ fn begin(path: &Path, size_px: [u32; 2]) -> io::Result<Box<dyn VideoEncoder>> {
     Ok(Box::new(Encoder { codec, layout, muxer }))
 }
 
-/// A running encoder for pictures in a colour format, with the layout that it has for them; none where the phone has no such.
+/// A running encoder for pictures in a colour format, with its layout for them; `None` if the phone
+/// has none.
 fn started(colour: i32, size_px: [usize; 2]) -> Option<(MediaCodec, Layout)> {
     let [columns, rows] = [i32::try_from(size_px[0]).ok()?, i32::try_from(size_px[1]).ok()?];
     let mut format = MediaFormat::new();
@@ -95,7 +97,7 @@ struct Encoder {
 }
 
 impl Encoder {
-    /// Hands over a picture, or the end.
+    /// Submits a picture, or the end.
     fn put(&mut self, picture: Option<&Image>, since_s: f64) -> io::Result<()> {
         let waiting = self.codec.dequeue_input_buffer(PATIENCE).map_err(told)?;
         let DequeuedInputBufferResult::Buffer(mut buffer) = waiting else {
@@ -124,7 +126,7 @@ impl Encoder {
             .map_err(told)
     }
 
-    /// Writes what the encoder has ready; true where that was the last of it.
+    /// Writes the encoder's output; returns true at its end.
     fn take(&mut self, wait: Duration) -> io::Result<bool> {
         loop {
             match self.codec.dequeue_output_buffer(wait).map_err(told)? {
@@ -172,7 +174,7 @@ impl VideoEncoder for Encoder {
     }
 }
 
-/// An MP4 file with one track, which begins when the encoder tells its format.
+/// An MP4 file with one track, which begins when the encoder reports its format.
 struct Muxer {
     muxer: NonNull<AMediaMuxer>,
     track: Option<usize>,
@@ -182,7 +184,7 @@ struct Muxer {
 
 impl Muxer {
     fn begin(file: File) -> io::Result<Self> {
-        // SAFETY: the file is open, and stays so while there is the muxer.
+        // SAFETY: the file is open, and stays open while the muxer exists.
         let muxer =
             unsafe { AMediaMuxer_new(file.as_raw_fd(), OutputFormat::AMEDIAMUXER_OUTPUT_FORMAT_MPEG_4) };
         let muxer = NonNull::new(muxer).ok_or(io::ErrorKind::Other)?;
@@ -194,10 +196,10 @@ impl Muxer {
     }
 
     fn start(&mut self, format: &MediaFormat) -> io::Result<()> {
-        // SAFETY: both live; a muxer that was started refuses another track.
+        // SAFETY: both live; a started muxer refuses another track.
         let track = unsafe { AMediaMuxer_addTrack(self.muxer.as_ptr(), format.as_ptr()) };
         self.track = Some(usize::try_from(track).map_err(io::Error::other)?);
-        // SAFETY: it has its one track.
+        // SAFETY: it has its only track.
         checked(unsafe { AMediaMuxer_start(self.muxer.as_ptr()) })
     }
 
@@ -207,19 +209,19 @@ impl Muxer {
         if info.offset < 0 || i64::try_from(data.len()).map_or(true, |length| end > length) {
             return Err(io::ErrorKind::InvalidData.into());
         }
-        // SAFETY: started, of that track, and the bytes that are told lie within the data.
+        // SAFETY: it is started, with that track, and the given range lies within the data.
         checked(unsafe { AMediaMuxer_writeSampleData(self.muxer.as_ptr(), track, data.as_ptr(), info) })
     }
 
     fn finish(self) -> io::Result<()> {
-        // SAFETY: it lives; one that was not started refuses.
+        // SAFETY: it lives; a muxer that was not started refuses.
         checked(unsafe { AMediaMuxer_stop(self.muxer.as_ptr()) })
     }
 }
 
 impl Drop for Muxer {
     fn drop(&mut self) {
-        // SAFETY: it is used no more.
+        // SAFETY: it is not used afterwards.
         unsafe { AMediaMuxer_delete(self.muxer.as_ptr()) };
     }
 }

@@ -1,15 +1,16 @@
-//! Pictures in the layouts that Android's video encoders take: YCbCr by BT.709, video range, colour at half the size.
+//! Pictures in the layouts of Android's video encoders: YCbCr by BT.709, video range, chroma at
+//! half the size.
 
-/// Where an encoder wants the samples of a picture, in bytes.
+/// The layout of a picture's samples for an encoder, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// Columns and rows, both even.
     pub size_px: [usize; 2],
-    /// From one row of luma to the next.
+    /// Distance between rows of luma.
     pub stride: usize,
-    /// Rows of luma, with those that are none of the picture's.
+    /// Number of rows of luma, including padding.
     pub slice_height: usize,
-    /// Cb and Cr by turns in one plane (NV12), or in two planes (I420).
+    /// Whether Cb and Cr are interleaved in one plane (NV12), or in two planes (I420).
     pub is_interleaved: bool,
 }
 
@@ -18,12 +19,12 @@ const KR: f32 = 0.2126;
 const KB: f32 = 0.0722;
 
 impl Layout {
-    /// Bytes of a picture.
+    /// Number of bytes of a picture.
     #[must_use]
     pub fn n_bytes(&self) -> usize {
         let [columns, rows] = self.size_px;
         let chroma_rows = rows / 2;
-        // The last row ends where its samples do, as encoders count.
+        // The last row ends with its samples, as encoders count.
         let chroma = if self.is_interleaved {
             (chroma_rows - 1) * self.stride + columns
         } else {
@@ -32,7 +33,7 @@ impl Layout {
         self.stride * self.slice_height + chroma
     }
 
-    /// Where Cb and Cr of a block of two by two pixels go.
+    /// Positions of Cb and Cr of a block of two by two pixels.
     fn chroma_at(&self, column: usize, row: usize) -> [usize; 2] {
         let begin = self.stride * self.slice_height;
         if self.is_interleaved {
@@ -44,8 +45,8 @@ impl Layout {
         [cb, cb + plane]
     }
 
-    /// Writes a picture of `row_px` columns, red, green, blue and alpha, of which what is beyond the layout's size is left out.
-    /// False where one of both is too short.
+    /// Writes a picture of `row_px` columns, red, green, blue and alpha; pixels beyond the layout's
+    /// size are left out. Returns false if either buffer is too short.
     pub fn fill(&self, rgba: &[u8], row_px: usize, bytes: &mut [u8]) -> bool {
         let [columns, rows] = self.size_px;
         if bytes.len() < self.n_bytes() || row_px < columns || rgba.len() < 4 * row_px * rows {
@@ -100,7 +101,8 @@ fn code(value: f32) -> u8 {
 mod tests {
     use super::*;
 
-    /// Codes of the primaries in BT.709's video range, as in any table of test signals at full amplitude.
+    /// Codes of the primaries in BT.709's video range, as in any table of test signals at full
+    /// amplitude.
     const KNOWN: [([u8; 3], [u8; 3]); 6] = [
         ([255, 255, 255], [235, 128, 128]),
         ([0, 0, 0], [16, 128, 128]),
@@ -128,7 +130,8 @@ mod tests {
 
     #[test]
     fn samples_lie_where_the_encoder_looks_for_them() {
-        // Four columns of which the last two are left out, and rows that are black but for the last two, which are red.
+        // Four columns, the last two of which are left out, and rows that are black but for the
+        // last two, which are red.
         let mut rgba = [0, 0, 0, 255].repeat(4 * 2);
         rgba.extend([255, 0, 0, 255].repeat(4 * 2));
         let layout = Layout {

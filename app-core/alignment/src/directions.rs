@@ -24,7 +24,8 @@ impl LightSearch {
     /// The scores for the toy in the input's place; `None` if too little of the receivers is
     /// visible.
     ///
-    /// # Errors As [`Aligner::align`](super::Aligner::align).
+    /// # Errors
+    /// As [`Aligner::align`](super::Aligner::align).
     pub fn of(scene: &Scene, input: &FrameInput) -> Result<Option<Self>, AlignError> {
         check(scene, input)?;
         let photograph = Photograph::new(scene, input, None);

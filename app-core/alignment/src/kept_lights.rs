@@ -87,7 +87,8 @@ impl KeptLights {
         }
     }
 
-    /// Whether so much of visible shadows is unexplained that other lights must have cast them.
+    /// Whether the unexplained part of visible shadows is so large that other lights must have cast
+    /// them.
     pub(super) fn leaves_too_much(watched: Watched) -> bool {
         watched.shadows >= LEAST_SHADOWS && watched.unexplained > MOST_UNEXPLAINED
     }

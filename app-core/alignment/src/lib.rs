@@ -12,6 +12,9 @@
 //! physical pose ─► shape ─────────────┴► pose ─► model ─► lights ─► things ─► Alignment
 //! ```
 //!
+//! Where the receiver that the toy stands on reflects the toy, that is found as well, once a session, and shadows are read without it
+//! (`lights/reflection`).
+//!
 //! The softness of the photograph, relative to its plate and at the toy's outline, is measured as well (`softness`).
 //!
 //! On request, the **focal length** or the **scale** of the world is estimated first, from toy and shadow together
@@ -34,8 +37,12 @@ mod adapted;
 mod camera;
 mod directions;
 mod error;
+mod found;
+mod found_planes;
+mod gloss;
 mod hand;
 mod kept_lights;
+mod kept_reflection;
 mod laid;
 mod light_search;
 mod lights;
@@ -72,24 +79,26 @@ use glam::DMat4;
 use crate::probe::ProbeReport;
 use adapted::MOST_ADAPTED_PX;
 use app_scene::frame::FrameInput;
-use app_scene::scene::{Camera, Light, Plate, Scene};
-use app_scene::sharpness::Sharpness;
+use app_scene::gloss::Gloss;
+use app_scene::scene::{Light, Plate, Scene};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 use kept_lights::KeptLights;
+use kept_reflection::KeptReflection;
 use photograph::{MOST_OUTLINE_PX, Photograph};
-use picture::Mask;
 use ratio::{Ratio, Unknown};
 use view::{AlignedView, Seen};
 
 pub use directions::LightSearch;
 pub use error::AlignError;
+pub use found::Alignment;
 pub use no_light::NoLight;
 pub use observer::Observer;
 pub use outlines::Outlines;
 pub use report::{
     AlignmentReport, AssumedLight, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment,
-    LightDeviation, ModelAlignment, PoseAlignment, PoseDeviation, RatioAlignment, RatioOutcome, Stand,
+    LightDeviation, ModelAlignment, PlaneAlignment, PoseAlignment, PoseDeviation, RatioAlignment,
+    RatioOutcome, Stand,
 };
 pub use silhouette::Silhouette;
 pub use standing_search::{Newcomer, StandingPose, StandingSearch};
@@ -106,59 +115,6 @@ const MOST_ALIGNED_PLATES: usize = 32;
 /// still the tracker's, and for the pose.
 const CAMERA_GROWN: f64 = 0.05;
 const POSE_GROWN: f64 = 0.01;
-
-/// Camera, toy and lights of a frame, estimated from its picture.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Alignment {
-    /// The camera: as given if it was not corrected.
-    pub camera: Camera,
-    /// Transform of the real toy, from object space to world: as given if it was not corrected.
-    pub world_from_object: DMat4,
-    /// The lights; `None` if the given ones stay.
-    pub lights: Option<Arc<[Light]>>,
-    /// The scene to set before this frame is shown, if it changed: its plates' cameras were corrected, its plates were
-    /// relit, its toy was adapted, or its receivers were fitted under the toy. `None` if the previous frame's scene
-    /// stays, which for the first frame is the one that the [`Aligner`] was made with.
-    pub scene: Option<Arc<Scene>>,
-    /// Other things in the picture; `None` if they cannot be detected.
-    pub things: Option<Things>,
-    /// The softness of the picture.
-    pub sharpness: Sharpness,
-    /// The report.
-    pub report: AlignmentReport,
-    /// Failures of parts of the alignment.
-    pub warnings: Vec<AlignmentWarning>,
-}
-
-impl Alignment {
-    /// An input as given, without any estimate.
-    #[must_use]
-    pub fn new(input: &FrameInput) -> Self {
-        Self {
-            camera: input.camera,
-            world_from_object: input.world_from_object,
-            lights: None,
-            scene: None,
-            things: input.things.clone(),
-            sharpness: input.sharpness,
-            report: AlignmentReport::default(),
-            warnings: Vec::new(),
-        }
-    }
-
-    /// The input, corrected.
-    #[must_use]
-    pub fn applied_to(&self, input: &FrameInput) -> FrameInput {
-        input
-            .clone()
-            .with_camera(self.camera)
-            .with_world_from_object(self.world_from_object)
-            .with_lights(self.lights.clone().or_else(|| input.lights.clone()))
-            .with_things(self.things.clone())
-            .with_sharpness(self.sharpness)
-    }
-}
 
 /// Aligns the frames of one scene, one after the other.
 ///
@@ -183,9 +139,15 @@ pub struct Aligner {
     lights: Option<KeptLights>,
     /// The things in the latest view.
     things: Option<Things>,
+    /// The reflection of the receiver under the toy, once it was searched.
+    reflection: KeptReflection,
+    /// Planes of things on the table.
+    planes: found_planes::FoundPlanes,
     /// Whether the scene's plates were relit.
     is_relit: bool,
     are_shadows_withheld: bool,
+    /// How glossy the toy is, by the first view that shows it in its place.
+    gloss: Option<Gloss>,
     /// The adapted model, once there is one.
     model: Option<ModelAlignment>,
     /// Number of attempts to adapt the model.
@@ -209,6 +171,9 @@ impl Aligner {
             held: None,
             lights: None,
             things: None,
+            gloss: None,
+            reflection: KeptReflection::default(),
+            planes: found_planes::FoundPlanes::default(),
             is_relit: false,
             are_shadows_withheld: false,
             model: None,
@@ -253,8 +218,9 @@ impl Aligner {
     /// counted once; the loss of the shadows must fall by a twenty-fifth and to less than a tenth of the loss without
     /// lights, and a light must move visibly. If the picture shows the toy nowhere near, the input's pose stays.
     ///
-    /// # Errors When a value of the scene or of the input is invalid, a picture is not of the scene's size, or the toy
-    /// cannot be posed.
+    /// # Errors
+    /// When a value of the scene or of the input is invalid, a picture is not of the scene's size,
+    /// or the toy cannot be posed.
     pub fn align(&mut self, input: &FrameInput) -> Result<Alignment, AlignError> {
         error::check(&self.scene, input)?;
         let given = input.lights_in(&self.scene);
@@ -348,7 +314,8 @@ impl Aligner {
     /// Estimates the distortion of the lens of a frame and its plates, as if they were a pinhole's: two radial terms.
     /// Remove it from all photographs before aligning them (`Capture::open_with_lens` of a session).
     ///
-    /// # Errors As [`Self::align`].
+    /// # Errors
+    /// As [`Self::align`].
     pub fn lens(&self, input: &FrameInput) -> Result<LensAlignment, AlignError> {
         error::check(&self.scene, input)?;
         let given = input.lights_in(&self.scene);
@@ -400,23 +367,6 @@ impl Aligner {
         })
     }
 
-    /// The pixels of a view that must not be read.
-    fn withheld(
-        &self,
-        input: &FrameInput,
-        (camera, grown): (&Camera, f64),
-        lights: Option<&KeptLights>,
-    ) -> Result<Option<Mask>, ToyError> {
-        let Some(lights) = lights.filter(|_| self.are_shadows_withheld) else {
-            return Ok(None);
-        };
-        let placed = input
-            .clone()
-            .with_camera(*camera)
-            .with_world_from_object(self.held.unwrap_or(input.world_from_object));
-        withheld::shadows(&self.scene, &placed, lights.in_use(), grown).map(Some)
-    }
-
     /// Corrects the cameras of the first plates once, each relative to those before it.
     fn align_plates(&mut self) {
         if std::mem::replace(&mut self.are_plates_aligned, true) {
@@ -458,6 +408,7 @@ impl Aligner {
             unexplained: lights.and_then(KeptLights::unexplained),
             probe: self.probe.clone().filter(|_| discovered.is_some()),
             is_relit: self.is_relit,
+            planes: self.planes.report.clone(),
         };
         let applied = lights.and_then(|lights| lights.applied.clone());
         let off = report.pose.filter(|pose| pose.shown_px() > MOST_OUTLINE_PX);
@@ -493,6 +444,8 @@ impl Aligner {
             scene: (!Arc::ptr_eq(&told, &self.scene)).then(|| Arc::clone(&self.scene)),
             things: self.things.clone(),
             sharpness: view.map_or(input.sharpness, |view| view.sharpness),
+            gloss: self.gloss.unwrap_or(input.gloss),
+            reflection: self.reflection.found.map(|found| found.reflection),
             report,
             warnings: warnings.collect(),
         }

@@ -19,6 +19,14 @@ use app_scene::toy::ToyError;
 /// means another toy.
 const DISCOVERY_OUTLINE_PX: f64 = 1.5;
 
+/// What was seen beside the toy.
+enum Looked {
+    /// Things, where there are any.
+    Things(Option<Things>),
+    /// Planes of things: the view with these among the receivers.
+    Planes(Box<Seen>),
+}
+
 impl Aligner {
     /// The lights in a view, as far as it constrains them.
     pub(super) fn find_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
@@ -158,27 +166,48 @@ impl Aligner {
         // If the toy's pose is wrong, the picture shows the place behind it, as if a thing stood in
         // front of the toy.
         let are_told = !self.are_shadows_withheld && seen.view.is_trusted(MOST_OUTLINE_PX);
+        let as_it_is = seen;
+        let is_looked_for = self.look_for_reflection(seen, &known)?;
+        let freed = self.freed_of_reflection(seen)?;
+        let seen = freed.as_ref().unwrap_or(seen);
         let things = if !are_told {
             None
         } else {
-            seen.photograph.things(&self.scene, &seen.input, &known)?
+            match self.look_for_things(&known, seen)? {
+                Looked::Things(things) => things,
+                Looked::Planes(again) => return self.look_at_lights(kept, given, &again),
+            }
         };
         let clear = things.as_ref().map(|things| seen.clear_of(things));
         let looked_at = clear.as_ref().unwrap_or(seen);
         let before = Arc::clone(&self.scene);
+        let are_kept = kept.is_some();
         let lights = match kept {
             Some(kept) => self.watch_lights(kept, looked_at)?,
-            None => self.find_lights(given, looked_at)?,
+            None => self.find_lights(Arc::clone(&given), looked_at)?,
         };
+        if is_looked_for && lights.in_use() != &*known {
+            self.look_again(as_it_is, lights.in_use())?;
+        }
         let things = if !are_told || lights.in_use() == &*known {
             things
         } else {
             // Plates may have been relit.
             let is_same = Arc::ptr_eq(&before, &self.scene);
             let relit = (!is_same).then(|| Seen::again(&self.scene, seen.view.clone(), &seen.input));
-            let photograph = &relit.as_ref().unwrap_or(seen).photograph;
-            photograph.things(&self.scene, &seen.input, lights.in_use())?
+            let relit = relit.as_ref().unwrap_or(as_it_is);
+            let freed = self.freed_of_reflection(relit)?;
+            match self.look_for_things(lights.in_use(), freed.as_ref().unwrap_or(relit))? {
+                Looked::Things(things) => things,
+                Looked::Planes(again) => {
+                    return self.look_at_lights(are_kept.then_some(lights), given, &again);
+                }
+            }
         };
+        if are_told && self.gloss.is_none() {
+            let toy = &seen.input.world_from_object;
+            self.gloss = Some(looked_at.photograph.gloss(&self.scene, toy, lights.in_use())?);
+        }
         // Equal marks stay identical, so that nothing is learned anew.
         let is_same = |known: &Things| things.as_ref().is_some_and(|things| things.is_like(known));
         if !self.things.as_ref().is_some_and(is_same) {
@@ -187,8 +216,25 @@ impl Aligner {
         Ok(lights)
     }
 
-    /// Lights that explain a view in place of those of the plates, and the scene with relit plates;
-    /// `None` if they do not explain it as well.
+    /// Things that stand beside the toy in given lights; or, once planes of some are found, the view with these among the receivers.
+    fn look_for_things(&mut self, lights: &[Light], seen: &Seen) -> Result<Looked, ToyError> {
+        let wants_planes = self.planes.are_wanted();
+        let sighted = seen
+            .photograph
+            .things(&self.scene, &seen.input, lights, wants_planes)?;
+        if !wants_planes || sighted.things.is_none() || !self.planes.take(sighted.planes) {
+            return Ok(Looked::Things(sighted.things));
+        }
+        self.planes.add_to(&mut self.scene);
+        Ok(Looked::Planes(Box::new(Seen::again(
+            &self.scene,
+            seen.view.clone(),
+            &seen.input,
+        ))))
+    }
+
+    /// Lights that explain a view in place of those that were there when the plates were taken, and the scene with plates in their
+    /// light; none where they do not explain it as well.
     fn relight(&self, kept: &KeptLights, seen: &Seen) -> Result<Option<(KeptLights, Arc<Scene>)>, ToyError> {
         let Some(plates) = seen.photograph.relit_plates(&self.scene, &seen.input)? else {
             return Ok(None);

@@ -21,8 +21,8 @@ impl fmt::Display for NoLight {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::PoseUnknown => "the toy's pose is not known well enough",
-            Self::ReceiversUnseen => "too little of the receivers is seen beside the toy",
-            Self::NoneDominant => "none stands out of the surroundings, or too little of its shadow is seen",
+            Self::ReceiversUnseen => "too little of the receivers is visible beside the toy",
+            Self::NoneDominant => "no light stands out, or too little of its shadow is visible",
         })
     }
 }

@@ -1,20 +1,31 @@
 //! Observes a photograph's other properties if camera, toy and lights stay as given.
 
-use super::error::{self, AlignError};
-use super::photograph::Photograph;
-use app_scene::frame::FrameInput;
-use app_scene::scene::Scene;
+use std::sync::Arc;
 
-/// Observes frames that are shown as given.
+use super::error::{self, AlignError};
+use super::found_planes::FoundPlanes;
+use super::lights::FoundReflection;
+use super::photograph::Photograph;
+use super::report::PlaneAlignment;
+use app_scene::frame::FrameInput;
+use app_scene::gloss::Gloss;
+use app_scene::scene::Scene;
+use app_scene::sharpness::Spread;
+
+/// Observes frames of one scene that are shown as given.
 #[derive(Debug, Default)]
 pub struct Observer {
     latest: Option<FrameInput>,
+    /// How glossy the toy is, once that was looked for.
+    gloss: Option<Gloss>,
+    planes: FoundPlanes,
 }
 
 impl Observer {
     /// A frame with its observations. The same frame as the one before costs nothing.
     ///
-    /// # Errors As [`Aligner::align`](crate::Aligner::align).
+    /// # Errors
+    /// As [`Aligner::align`](crate::Aligner::align).
     pub fn observed(&mut self, scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
         error::check(scene, input)?;
         let latest = self.latest.as_ref().filter(|latest| {
@@ -27,19 +38,81 @@ impl Observer {
             Some(latest) => input
                 .clone()
                 .with_things(latest.things.clone())
-                .with_sharpness(latest.sharpness),
-            None => observed(scene, input)?,
+                .with_sharpness(latest.sharpness)
+                .with_reflection(latest.reflection)
+                .with_gloss(latest.gloss),
+            None => self.look(scene, input)?,
         };
         self.latest = Some(observed.clone());
         Ok(observed)
     }
+
+    /// Planes of things that were found in the frames so far.
+    #[must_use]
+    pub fn planes(&self) -> &[PlaneAlignment] {
+        &self.planes.report
+    }
+
+    /// A scene with these planes among its receivers: the one to give to the core.
+    #[must_use]
+    pub fn scene(&self, scene: &Scene) -> Scene {
+        let mut scene = Arc::new(scene.clone());
+        self.planes.add_to(&mut scene);
+        Arc::unwrap_or_clone(scene)
+    }
+
+    fn look(&mut self, scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
+        let known = self.scene(scene);
+        let photograph = Photograph::new(&known, input, None);
+        let sharpness = photograph.sharpness_as_given(&known, &input.world_from_object)?;
+        let lights = input.lights_in(&known);
+        // The reflection is that of the receiver under the toy, which found planes do not change.
+        let reflection = photograph
+            .with_plate_as_soft(sharpness.plate_spread)
+            .reflection(&known, input, &lights)?;
+        let look = Look {
+            input,
+            plate_spread: sharpness.plate_spread,
+            reflection: reflection.as_ref(),
+        };
+        let mut photograph = look.photograph(&known)?;
+        let wants_planes = self.planes.are_wanted();
+        let sighted = photograph.things(&known, input, &lights, wants_planes)?;
+        let mut things = sighted.things;
+        if wants_planes && things.is_some() && self.planes.take(sighted.planes) {
+            let known = self.scene(scene);
+            photograph = look.photograph(&known)?;
+            things = photograph.things(&known, input, &lights, false)?.things;
+        }
+        let gloss = match self.gloss {
+            Some(gloss) => gloss,
+            None => {
+                let clear = things.as_ref().map(|things| photograph.clear_of(things));
+                let photograph = clear.as_ref().unwrap_or(&photograph);
+                photograph.gloss(scene, &input.world_from_object, &lights)?
+            }
+        };
+        self.gloss = Some(gloss);
+        let input = input.clone().with_things(things).with_sharpness(sharpness);
+        let reflection = reflection.map(|found| found.reflection);
+        Ok(input.with_reflection(reflection).with_gloss(gloss))
+    }
 }
 
-fn observed(scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
-    let photograph = Photograph::new(scene, input, None);
-    let sharpness = photograph.sharpness_as_given(scene, &input.world_from_object)?;
-    // Things are detected against an equally soft plate.
-    let photograph = photograph.with_plate_as_soft(sharpness.plate_spread);
-    let things = photograph.things(scene, input, &input.lights_in(scene))?;
-    Ok(input.clone().with_things(things).with_sharpness(sharpness))
+/// The conditions in which a frame is looked at.
+struct Look<'a> {
+    input: &'a FrameInput,
+    plate_spread: Spread,
+    reflection: Option<&'a FoundReflection>,
+}
+
+impl Look<'_> {
+    /// The frame beside an equally soft plate, both as if the receiver under the toy were matt.
+    fn photograph(&self, scene: &Scene) -> Result<Photograph, AlignError> {
+        let photograph = Photograph::new(scene, self.input, None).with_plate_as_soft(self.plate_spread);
+        Ok(match self.reflection {
+            Some(found) => photograph.freed_of(scene, self.input, found)?,
+            None => photograph,
+        })
+    }
 }

@@ -24,7 +24,8 @@ pub struct Outlines {
 impl Outlines {
     /// The outlines for a frame's input.
     ///
-    /// # Errors As [`Aligner::align`](super::Aligner::align).
+    /// # Errors
+    /// As [`Aligner::align`](super::Aligner::align).
     pub fn of(scene: &Scene, input: &FrameInput) -> Result<Self, AlignError> {
         check(scene, input)?;
         let camera_from_world = input.camera.world_from_camera.inverse();

@@ -81,6 +81,17 @@ impl Picture {
         Some(sum)
     }
 
+    /// Adds light to a pixel that is known; nothing becomes darker than black.
+    pub(super) fn add(&mut self, at: IVec2, light: Color) {
+        if let Some(pixel) = index_in(self.size_px, at).and_then(|index| self.pixels.get_mut(index)) {
+            for (channel, light) in pixel.iter_mut().zip(light) {
+                // What is unknown stays so.
+                let sum = *channel + light;
+                *channel = if sum < 0.0 { 0.0 } else { sum };
+            }
+        }
+    }
+
     /// Spread by a Gaussian, whose deviation is in pixels; what is near to the border, or to what is unknown, is unknown.
     pub(super) fn spread(&self, deviation_px: f64) -> Self {
         let weights = gaussian(deviation_px);
@@ -213,6 +224,15 @@ impl Pyramid {
                 *pixel = UNKNOWN;
             }
         }
+        let mut levels = vec![level];
+        for above in 0..Self::SMALLEST {
+            levels.push(levels[above].halved());
+        }
+        Self { levels, ..*self }
+    }
+
+    /// With another largest level, of the same size.
+    pub(super) fn with_largest(&self, level: Level) -> Self {
         let mut levels = vec![level];
         for above in 0..Self::SMALLEST {
             levels.push(levels[above].halved());

@@ -5,7 +5,7 @@ use glam::{DMat4, DVec2, DVec3, IVec2};
 use super::picture::{Picture, UNKNOWN, places};
 use super::pose::Plane;
 use app_scene::geometry::nearest_receivers::nearest_receivers;
-use app_scene::scene::{Camera, Intrinsics, MAX_RECEIVERS, Plate, Receiver};
+use app_scene::scene::{Camera, Intrinsics, MAX_RECEIVERS, Plate, Receiver, Surface};
 
 /// Tolerance for equal cameras' matrices.
 pub(super) const SAME_CAMERA: f64 = 1e-9;
@@ -35,8 +35,31 @@ impl SeenReceiver {
         }
     }
 
-    /// Its plane in camera space, if the lowest of `points` is within `most_m` of it; rounded to 32
-    /// bits, as poses are.
+    /// A plane of some size about its origin.
+    pub(super) fn of_size(plane_from_camera: DMat4, half_extent_m: DVec2) -> Self {
+        Self {
+            plane_from_camera,
+            half_extent_m,
+        }
+    }
+
+    /// The receiver in the world.
+    pub(super) fn receiver(&self, name: String, world_from_camera: &DMat4) -> Receiver {
+        Receiver {
+            name,
+            world_from_plane: *world_from_camera * self.plane_from_camera.inverse(),
+            half_extent_m: self.half_extent_m,
+            surface: Surface::Textured,
+        }
+    }
+
+    /// The point in camera space that a pixel shows of it; none where it shows none.
+    pub(super) fn point_at(&self, k: &Intrinsics, at: IVec2) -> Option<DVec3> {
+        let ray = ray(k, at);
+        self.depth_m(ray).map(|depth_m| depth_m * ray)
+    }
+
+    /// Its plane in camera space, where the lowest of points is within a distance of it; rounded to 32 bits, as poses are.
     pub(super) fn plane_under(&self, points: &[DVec3], most_m: f64) -> Option<Plane> {
         let heights_m = points
             .iter()
@@ -75,14 +98,19 @@ pub(super) fn up(receivers: &[SeenReceiver]) -> DVec3 {
     })
 }
 
-/// The nearest receiver at a pixel: its index, and the point in camera space.
-pub(super) fn receiver_at(receivers: &[SeenReceiver], k: &Intrinsics, at: IVec2) -> Option<(usize, DVec3)> {
+/// Through a pixel's centre, of depth 1.
+fn ray(k: &Intrinsics, at: IVec2) -> DVec3 {
     let centre = at.as_dvec2() + 0.5;
-    let ray = DVec3::new(
+    DVec3::new(
         (centre.x - k.cx_px) / k.fx_px,
         -(centre.y - k.cy_px) / k.fy_px,
         -1.0,
-    );
+    )
+}
+
+/// The nearest receiver that a pixel shows: its index, and the point in camera space.
+pub(super) fn receiver_at(receivers: &[SeenReceiver], k: &Intrinsics, at: IVec2) -> Option<(usize, DVec3)> {
+    let ray = ray(k, at);
     let hits = receivers.iter().enumerate();
     let hits = hits.filter_map(|(index, receiver)| Some((index, receiver.depth_m(ray)?)));
     let nearest = hits.min_by(|(_, a), (_, b)| a.total_cmp(b));

@@ -52,6 +52,36 @@ pub struct AlignmentReport {
     pub unexplained: Option<f64>,
     /// Whether plates were relit, since lights were moved or switched on.
     pub is_relit: bool,
+    /// Planes of things on the receivers that were found by the toy's shadow on them: the scene has them as receivers.
+    pub planes: Vec<PlaneAlignment>,
+}
+
+/// A plane of a thing that stands on a receiver, by the toy's shadow on it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PlaneAlignment {
+    /// Of its middle above that receiver, in metres.
+    pub height_m: f64,
+    /// Between both, in radians.
+    pub tilt_rad: f64,
+    /// Half the sides of its rectangle, in metres.
+    pub half_extent_m: [f64; 2],
+    /// Mean squared difference from what the thing shows, in plates: of that receiver, and of this plane.
+    pub losses: [f64; 2],
+}
+
+impl fmt::Display for PlaneAlignment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, z] = self.half_extent_m.map(|half_m| 2e2 * half_m);
+        write!(f, "a plane {:.0} mm above the receiver", 1e3 * self.height_m)?;
+        if self.tilt_rad > 0.0 {
+            write!(
+                f,
+                " in its middle, tilted by {:.0} degrees",
+                self.tilt_rad.to_degrees()
+            )?;
+        }
+        write!(f, ", {x:.0} x {z:.0} cm")
+    }
 }
 
 /// The camera, estimated from the receivers in the plates.
@@ -71,7 +101,7 @@ pub struct CameraAlignment {
     pub errors: [f64; 2],
 }
 
-/// The toy's pose, by its outline, and by its texture if its model has one.
+/// The toy's pose, estimated from its outline, and from its texture if its model has one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseAlignment {
     /// Whether the toy is shown in another place than given: at the estimate, which improves the
@@ -101,8 +131,9 @@ pub struct PoseAlignment {
     /// Whether that is within the usual error of camera pictures: if not, the model, before it was
     /// adapted, differs from this toy.
     pub is_of_model: bool,
-    /// Correlation of the texture of the toy's model with the picture's, between -1 and 1, where the toy was found; none if the toy has no
-    /// texture, or another one than its model, and the pose is by the outline alone.
+    /// Correlation of the model's texture with the picture's at the estimated pose, up to 1;
+    /// `None` without a texture or if the picture shows another one: the pose is then estimated
+    /// from the outline alone.
     pub texture_correlation: Option<f64>,
     /// Standard deviation of the spread that lens and focus give the outline, in pixels; 0 where it is sharp.
     pub spread_px: f64,

@@ -93,7 +93,8 @@ pub struct ToySearch {
 /// Plates may be hand-held: up to 10 cm and 6 degrees from the photograph. The first receiver is an
 /// approximate table.
 ///
-/// # Errors As [`Aligner::align`](crate::Aligner::align).
+/// # Errors
+/// As [`Aligner::align`](crate::Aligner::align).
 pub fn find_toy(
     scene: &Scene,
     input: &FrameInput,

@@ -2,6 +2,7 @@
 
 use glam::DMat4;
 
+use super::lights::FoundReflection;
 use super::photograph::Photograph;
 use super::report::{CameraAlignment, PoseAlignment};
 use app_scene::camera_frame::CameraImage;
@@ -9,6 +10,7 @@ use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Scene};
 use app_scene::sharpness::Sharpness;
 use app_scene::things::Things;
+use app_scene::toy::ToyError;
 
 /// A view with its photograph.
 pub(super) struct Seen {
@@ -48,6 +50,15 @@ impl Seen {
 }
 
 impl Seen {
+    /// The same view, as if the receiver that the toy stands on were matt.
+    pub(super) fn freed_of(&self, scene: &Scene, found: &FoundReflection) -> Result<Self, ToyError> {
+        Ok(Self {
+            view: self.view.clone(),
+            photograph: self.photograph.freed_of(scene, &self.input, found)?,
+            input: self.input.clone(),
+        })
+    }
+
     /// The same view, with unknown pixels at things and at wrong parts of the plate.
     pub(super) fn clear_of(&self, things: &Things) -> Self {
         Self {

@@ -69,7 +69,7 @@ impl fmt::Display for AlignmentWarning {
             ),
             Self::ListUnexplained { unexplained } => write!(
                 f,
-                "{:.0} % of the toy's shadow is not where the listed lights cast it, and none are found that do: check the list, and whether something that is no listed receiver lies under the shadow",
+                "{:.0} % of the toy's shadow is not where the listed lights cast it, and no lights are found that do: check the list, and whether the shadow falls on an object that is not listed as a receiver",
                 100.0 * unexplained
             ),
             Self::LightsChanged { unexplained } => write!(

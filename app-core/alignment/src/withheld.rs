@@ -2,26 +2,42 @@
 
 use glam::{DVec2, UVec2};
 
+use super::Aligner;
+use super::kept_lights::KeptLights;
 use super::lights::flat_shadows;
 use super::picture::Mask;
 use super::raster::{Rasterizer, project};
 use super::receivers::SeenReceiver;
 use super::shape::Shape;
 use app_scene::frame::FrameInput;
-use app_scene::scene::{Light, Scene};
+use app_scene::scene::{Camera, Light, Scene};
 use app_scene::toy::ToyError;
 
 /// Number of points around the rim of a light whose shadows are united.
 const N_RIM: u8 = 16;
 
+impl Aligner {
+    /// The pixels of a view that must not be read.
+    pub(super) fn withheld(
+        &self,
+        input: &FrameInput,
+        (camera, grown): (&Camera, f64),
+        lights: Option<&KeptLights>,
+    ) -> Result<Option<Mask>, ToyError> {
+        let Some(lights) = lights.filter(|_| self.are_shadows_withheld) else {
+            return Ok(None);
+        };
+        let placed = input
+            .clone()
+            .with_camera(*camera)
+            .with_world_from_object(self.held.unwrap_or(input.world_from_object));
+        shadows(&self.scene, &placed, lights.in_use(), grown).map(Some)
+    }
+}
+
 /// All shadows of the toy in the input's place, grown in all directions by a fraction of the
 /// picture's width, so that they cover nearby places of toy and camera.
-pub(super) fn shadows(
-    scene: &Scene,
-    input: &FrameInput,
-    lights: &[Light],
-    grown: f64,
-) -> Result<Mask, ToyError> {
+fn shadows(scene: &Scene, input: &FrameInput, lights: &[Light], grown: f64) -> Result<Mask, ToyError> {
     let camera_from_world = input.camera.world_from_camera.inverse();
     let shape = Shape::new(scene, &(camera_from_world * input.world_from_object))?;
     let toy_in_world = input.world_from_object.w_axis.truncate();

@@ -1,4 +1,4 @@
-//! The toy's file and the photograph, made of numbers.
+//! The toy's file and the photograph, computed from numbers.
 
 use app_core::glam::DVec3;
 use app_core::scene::{Camera, Image};
@@ -10,7 +10,8 @@ pub(crate) const TO_LIGHT: DVec3 = DVec3::new(-0.48, 0.8, 0.36);
 /// Two corners of the toy, in metres. The table's height is 0.
 const FROM_M: DVec3 = DVec3::new(-0.04, 0.0, -0.02);
 const TO_M: DVec3 = DVec3::new(0.04, 0.08, 0.02);
-/// Corners of triangles, counter-clockwise seen from outside. The bits of a corner choose from [`FROM_M`] and [`TO_M`].
+/// Corners of triangles, counter-clockwise seen from outside. The bits of a corner select from
+/// [`FROM_M`] and [`TO_M`].
 const TRIANGLES: &str = "046 062 137 175 015 054 267 273 023 031 457 476";
 
 /// A box as a binary glTF file: eight corners, twelve triangles, one node.
@@ -33,7 +34,7 @@ pub(crate) fn box_glb() -> Vec<u8> {
         FROM_M.to_array(),
         TO_M.to_array(),
     );
-    // A header and two chunks, each of whole words.
+    // A header and two chunks, each padded to whole words.
     json.push_str(&" ".repeat(json.len().next_multiple_of(4) - json.len()));
     let word = |n: usize| u32::try_from(n).unwrap_or(u32::MAX).to_le_bytes();
     let header = [*b"glTF", word(2), word(28 + json.len() + bin.len())].concat();
@@ -42,7 +43,7 @@ pub(crate) fn box_glb() -> Vec<u8> {
     [header, json_chunk, bin_chunk].concat()
 }
 
-/// What the camera sees: a grey table, a blue box, and the shadow of the box.
+/// The camera's picture: a grey table, a blue box, and the shadow of the box.
 pub(crate) fn photograph(camera: &Camera) -> Image {
     let [width_px, height_px] = SIZE_PX;
     let (lens, eye) = (camera.intrinsics, camera.world_from_camera.w_axis.truncate());
@@ -65,7 +66,7 @@ pub(crate) fn photograph(camera: &Camera) -> Image {
     }
 }
 
-/// Whether a ray meets the box: somewhere on its way it lies between all three pairs of sides.
+/// Whether a ray hits the box: at some point it lies between all three pairs of sides.
 fn is_box_hit(origin: DVec3, ray: DVec3) -> bool {
     let (one, other) = ((FROM_M - origin) / ray, (TO_M - origin) / ray);
     one.min(other).max_element().max(0.0) < one.max(other).min_element()

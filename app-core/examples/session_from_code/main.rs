@@ -1,4 +1,5 @@
-//! A scene made of plain values, without any file: a box on a table under a distant lamp, "photographed" by rays.
+//! A scene of plain values, without any file: a box on a table under a distant lamp, "photographed"
+//! by rays.
 //!
 //! `cargo run -p app-core --example session_from_code`
 
@@ -28,7 +29,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
         world_from_camera: DMat4::from_translation(DVec3::new(0.05, 0.3, 0.35))
             * DMat4::from_rotation_x(-0.66),
     };
-    // What stays the same: toy, place of the toy, what catches shadows, lights.
+    // The constant part: the toy and its pose, the receivers of its shadow, lights.
     let table = Receiver {
         name: "table".to_owned(),
         world_from_plane: DMat4::IDENTITY,
@@ -44,7 +45,8 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let mut turned = toy.authored_transform(node)?.ok_or("authored as a matrix")?;
     turned.rotation = DQuat::from_rotation_y(0.8);
 
-    // What each frame brings: the photograph, where camera and toy are in it, and the pose to be shown.
+    // The part of each frame: the photograph, the poses of camera and toy in it, and the pose to be
+    // shown.
     let pose = Pose::Nodes(Arc::new(NodePose {
         parent_from_node: vec![(node, turned)],
         morph_weights: Vec::new(),

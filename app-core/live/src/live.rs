@@ -1,7 +1,7 @@
-//! An app that is seen: its logic, its interface and the core that draws both.
+//! An app with its picture: its logic, its interface and the core that draws both.
 //!
-//! A shell owns one [`Live`]. It hands over what the platform tells and where fingers are, asks for a picture whenever the screen
-//! wants one, and does what it is then asked for.
+//! A shell owns one [`Live`]. It passes on the platform's reports and touches, requests a picture
+//! whenever the screen wants one, and executes the returned commands.
 
 mod profiler;
 
@@ -29,37 +29,37 @@ pub struct Live {
     app: App,
     interface: Interface,
     core: Core,
-    /// As the shell has it.
+    /// The shell's choice.
     chosen: Preset,
-    /// That which is used.
+    /// The preset in use.
     preset: Preset,
-    /// What is still to be compiled: a pass a picture.
+    /// Remaining compilation: one pass per picture.
     warm_up: Option<WarmUp>,
     painter: Option<Painter>,
-    /// The scene that the core has for the preset.
+    /// The core's scene for the preset.
     scene: Option<Arc<Scene>>,
     display: Display,
     warnings: Vec<Warning>,
-    /// Frames a second that are aimed at.
+    /// Target frame rate.
     target_fps: Option<u32>,
     governor: Option<Governor>,
-    /// Why `fast` takes the place of `balanced`: all that could be turned down was, and did not suffice.
+    /// The reason why `fast` replaces `balanced`: the whole quality ladder was not enough.
     lowered: Option<Exhausted>,
-    /// The toy that was shown then.
+    /// The toy at that time.
     lowered_toy: Option<Arc<Toy>>,
     /// Seconds for which a phone that was too warm has been cool.
     cool_s: f64,
     profiler: Profiler,
     n_warm_ups: u32,
-    /// Of the latest picture.
+    /// Time of the latest picture.
     time_s: f64,
 }
 
-/// A phone that was too warm for a preset has it again when it was cool for so long.
+/// Time for which a phone must be cool before it gets back a preset for which it was too warm.
 const COOL_S: f64 = 120.0;
 
 impl Live {
-    /// An app that draws with `core`, and a toy to begin with.
+    /// An app that draws with `core`, and with an initial toy.
     #[must_use]
     pub fn new(core: Core, toy: Arc<Toy>, preset: Preset) -> Self {
         Self {
@@ -84,52 +84,55 @@ impl Live {
         }
     }
 
-    /// Aims at so many frames a second from now on, by turning settings of preset `balanced` down if pictures take too long, and in the end
-    /// by `fast` in its place; the others stay as they are.
+    /// Sets the target frame rate: settings of preset `balanced` are reduced if pictures take too
+    /// long, and finally `fast` replaces it; the other presets stay unchanged.
     pub fn set_target_fps(&mut self, fps: u32) {
         self.target_fps = Some(fps);
         self.govern_preset();
     }
 
-    /// Times frames by a clock of the shell's from now on: for [`Live::times`], for what is shown of times, and for recordings.
+    /// Times frames by a clock of the shell's from now on: for [`Live::times`], for the display of
+    /// times, and for recordings.
     pub fn set_clock(&mut self, clock: Clock) {
         self.profiler.set_clock(clock, &mut self.core);
     }
 
-    /// The times of the latest frames in which the toy moved; none without a clock.
+    /// The times of the latest frames in which the toy moved; `None` without a clock.
     #[must_use]
     pub fn times(&self) -> Option<&Profile> {
         self.profiler.profile()
     }
 
-    /// Goes on with another device, where the one before was lost.
+    /// Continues with another device after the previous one was lost.
     pub fn reopen(&mut self, mut core: Core) {
         self.warm_up = Some(core.warm_up(self.preset));
         self.profiler.reopen(&mut core);
         self.core = core;
         self.painter = None;
-        // Another device knows none of its textures.
+        // Another device has none of its textures.
         self.interface = Interface::default();
         self.scene = None;
     }
 
-    /// As [`Core::replace_shaders`]; the scene is set again with the next picture. With other shaders than those that are built in, the
-    /// device draws no test picture. A core that is [reopened](Live::reopen) begins with those that are built in.
+    /// Like [`Core::replace_shaders`]; the scene is set again with the next picture. With shaders
+    /// other than the built-in ones the device draws no test picture. A core that is
+    /// [reopened](Live::reopen) begins with the built-in ones.
     ///
     /// # Errors
-    /// When the device refuses a pass: shaders and picture stay as they were.
+    /// If the device refuses a pass: shaders and picture then stay unchanged.
     pub fn replace_shaders(&mut self, texts: ShaderTexts) -> Result<(), CoreError> {
         self.core.replace_shaders(texts)?;
         self.scene = None;
         Ok(())
     }
 
-    /// A shell begins with what may lead to a picture, such as reading the camera's. The times of pictures begin here, if it says so.
+    /// Starts the time of a picture before [`Live::present`], for a shell that first does other
+    /// work for it, such as reading the camera's picture.
     pub fn begin_picture(&mut self) {
         self.profiler.begin_early();
     }
 
-    /// Takes what happened, and returns what is to be done.
+    /// Processes an event, and returns the resulting commands.
     #[must_use]
     pub fn event(&mut self, event: ShellEvent) -> Vec<ShellCommand> {
         if let ShellEvent::Frame(frame) = &event {
@@ -138,7 +141,7 @@ impl Live {
         self.app.event(event)
     }
 
-    /// A finger, or a mouse as one.
+    /// Processes a touch, or a mouse in its place.
     pub fn touch(&mut self, touch: Touch) {
         self.interface.touch(touch);
     }
@@ -148,10 +151,12 @@ impl Live {
         self.interface.wheel(steps);
     }
 
-    /// Draws on the core's surface at `time_s`, which goes on from call to call, and returns what is to be done.
+    /// Draws on the core's surface at `time_s`, which must increase from call to call, and returns
+    /// the resulting commands.
     ///
     /// # Errors
-    /// When the surface or the device is lost: a shell tells [`GraphicsState::Lost`] and brings another core.
+    /// If the surface or the device is lost: a shell then reports [`GraphicsState::Lost`] and
+    /// supplies another core.
     pub fn present(&mut self, screen: &Screen, time_s: f64) -> Result<Vec<ShellCommand>, CoreError> {
         let (commands, painting) = self.prepare(screen, time_s)?;
         let (painter, interface) = (&mut self.painter, &mut self.interface);
@@ -162,10 +167,10 @@ impl Live {
         Ok(commands)
     }
 
-    /// The same on a target of the caller's, whose format takes sRGB codes as they are.
+    /// The same on a target of the caller's, whose format stores sRGB codes unchanged.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// If the device is lost.
     pub fn draw_on(
         &mut self,
         target: &wgpu::Texture,
@@ -178,17 +183,17 @@ impl Live {
             Err(CoreError::NoScene) => LoadOp::Clear(wgpu::Color::BLACK),
             Err(error) => return Err(error),
         };
-        // Nothing is painted where costs are only counted.
+        // Nothing is painted if costs are only counted.
         if let Some(canvas) = self.core.canvas(target) {
             paint(&mut self.painter, &mut self.interface, &canvas, &painting, below);
         }
         Ok(commands)
     }
 
-    /// The same on a screen that nobody sees, and what it then shows.
+    /// The same on an off-screen target, whose picture is returned.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// If the device is lost.
     pub fn screenshot(
         &mut self,
         screen: &Screen,
@@ -211,13 +216,14 @@ impl Live {
         self.core.read_picture()
     }
 
-    /// What a screen reader finds in the latest picture.
+    /// The elements of the latest picture for a screen reader.
     #[must_use]
     pub fn widgets(&self) -> &[Widget] {
         self.interface.widgets()
     }
 
-    /// The phone's own way back, such as a button or a gesture: what is to be done; none if it leads out of the app.
+    /// The phone's own way back, such as a button or a gesture. Returns the commands; `None` if it
+    /// leaves the app.
     #[must_use]
     pub fn back(&mut self) -> Option<Vec<ShellCommand>> {
         if self.interface.close_menu() {
@@ -227,20 +233,21 @@ impl Live {
         Some(self.app.event(ShellEvent::User(action)))
     }
 
-    /// Says this on the first screen, by the terms of what the app runs on.
+    /// Shows this text on the first screen, as required by the terms of the platform's services.
     pub fn disclose(&mut self, words: &'static str) {
         self.app.disclose(words);
     }
 
-    /// Pictures a second that are worth drawing: as many as are aimed at, or fewer if the governor says so; none if no number was
-    /// aimed at.
+    /// Frame rate worth drawing: the target, or less if the governor has reduced it; `None` without
+    /// a target.
     #[must_use]
     pub fn frames_per_s(&self) -> Option<u32> {
         let governed = self.governor.as_ref().map(Governor::frames_per_second);
         governed.or(self.target_fps)
     }
 
-    /// How often all that a preset needs was compiled: what the driver keeps of it has grown if this has.
+    /// Number of times that all passes of a preset were compiled: if it has grown, so has the
+    /// content of the driver's cache.
     #[must_use]
     pub fn n_warm_ups(&self) -> u32 {
         self.n_warm_ups
@@ -252,7 +259,7 @@ impl Live {
         &self.core
     }
 
-    /// The preset that is used.
+    /// The preset in use.
     #[must_use]
     pub fn preset(&self) -> Preset {
         self.preset
@@ -264,18 +271,18 @@ impl Live {
         &self.app
     }
 
-    /// The core, to give it a surface or take it away.
+    /// The core, for setting or removing its surface.
     pub fn core_mut(&mut self) -> &mut Core {
         &mut self.core
     }
 
-    /// What the core warned of with the latest frame.
+    /// The core's warnings for the latest frame.
     #[must_use]
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
 
-    /// What the person does with the interface, and the picture below it.
+    /// Processes the person's input to the interface, and makes the picture below it.
     fn prepare(&mut self, screen: &Screen, time_s: f64) -> Result<(Vec<ShellCommand>, Painting), CoreError> {
         self.profiler.begin_picture();
         let mut commands = self.follow_preset();
@@ -307,11 +314,11 @@ impl Live {
         Ok(commands)
     }
 
-    /// Uses another preset where the app wants one.
+    /// Changes to another preset if the app wants one.
     fn follow_preset(&mut self) -> Vec<ShellCommand> {
         let is_same_toy = |toy: &Arc<Toy>| Arc::ptr_eq(toy, self.app.toy());
         if self.lowered == Some(Exhausted::Slow) && !self.lowered_toy.as_ref().is_some_and(is_same_toy) {
-            // Another toy may be a cheaper one.
+            // Another toy may be cheaper.
             self.lowered = None;
             self.govern_preset();
         }
@@ -330,13 +337,13 @@ impl Live {
         self.app.event(ShellEvent::Graphics(GraphicsState::Starting))
     }
 
-    /// The governor of the preset that is used.
+    /// Creates the governor of the preset in use.
     fn govern_preset(&mut self) {
         let target_fps = self.target_fps.filter(|_| self.preset == Preset::Balanced);
         self.governor = target_fps.map(|fps| Governor::new(BALANCED_QUALITY_LADDER, fps));
     }
 
-    /// Has the device draw its test picture, once for each driver and version of this crate.
+    /// Makes the device draw its test picture, once for each driver and version of this crate.
     fn test_device(&mut self) -> Option<WorkCommand> {
         let version = env!("CARGO_PKG_VERSION");
         let device = format!("{version} {} {}", self.preset, self.core.adapter_name());
@@ -348,7 +355,7 @@ impl Live {
         self.scene = None;
         let words = match &tested {
             Ok(off) => format!(
-                "{:.2} codes off where it is worst, {:.3} in the mean",
+                "{:.2} codes off in its worst block, {:.3} on average",
                 off.worst_codes, off.mean_codes
             ),
             Err(error) => error.to_string(),
@@ -358,7 +365,7 @@ impl Live {
         self.app.self_tested(&device, outcome)
     }
 
-    /// Turns settings down or up by how long pictures take while the toy moves.
+    /// Reduces or restores settings by the duration of pictures while the toy moves.
     fn govern(&mut self, time_s: f64) -> Result<(), CoreError> {
         let interval_ms = 1e3 * (time_s - self.time_s);
         self.cool_down(time_s - self.time_s);
@@ -367,7 +374,7 @@ impl Live {
             .app
             .frames_per_s()
             .min(self.frames_per_s().unwrap_or(u32::MAX));
-        // The device may be quick, and still nobody sees all that the camera has.
+        // The device may be fast although not all pictures of the camera are shown.
         let is_late = self.profiler.has_dropped() && interval_ms > LATE * 1e3 / f64::from(shown_fps.max(1));
         let is_moving = self.scene.is_some() && matches!(self.app.show(), Show::Toy { .. });
         let Some(governor) = self.governor.as_mut().filter(|_| is_moving) else {
@@ -375,7 +382,8 @@ impl Live {
         };
         let turned = governor.take(&Measured {
             gpu_ms: self.profiler.gpu_ms(),
-            // A shell that draws a picture for each of the camera's waits for that; it is not the device that takes so long.
+            // A shell that draws one picture per camera picture waits for the camera; that time is
+            // not the device's.
             interval_ms: self
                 .profiler
                 .busy_ms()
@@ -394,7 +402,7 @@ impl Live {
         Ok(())
     }
 
-    /// Goes back to the preset that was chosen, if heat alone has lowered it and has gone.
+    /// Returns to the chosen preset, if heat alone has lowered it and has passed.
     fn cool_down(&mut self, elapsed_s: f64) {
         let is_cooling = self.lowered == Some(Exhausted::Warm) && self.app.thermal() == Thermal::Nominal;
         self.cool_s = if is_cooling { self.cool_s + elapsed_s } else { 0.0 };
@@ -404,7 +412,7 @@ impl Live {
         }
     }
 
-    /// Whether it is one of the moving toy.
+    /// Returns whether the picture is one of the moving toy.
     fn make_picture(&mut self) -> Result<bool, CoreError> {
         match self.app.show() {
             Show::Nothing => self.profiler.interrupt(),

@@ -1,27 +1,29 @@
-//! The ledger of a frame: what its passes must cost on any device, summed up and set in columns.
+//! The ledger of a frame: the device-independent cost of its passes, summed and arranged in
+//! columns.
 //!
-//! Its entries are the passes of a [`FrameReport`], whose work a recorder counts from the descriptors that it records
-//! with; [`Core::counting`](crate::Core::counting) makes such reports without a device.
+//! Its entries are the passes of a [`FrameReport`], whose work a recorder counts from its
+//! descriptors; [`Core::counting`](crate::Core::counting) makes such reports without a device.
 
 use crate::frame::FrameReport;
 use crate::gpu::{PassGroup, PassRun, Work};
 
-/// Bytes of a mebibyte.
+/// Number of bytes of a mebibyte.
 const MEBIBYTE: f64 = 1048576.0;
-/// Bytes of a pixel of the screen.
+/// Number of bytes of a screen pixel.
 const SCREEN_PIXEL_BYTES: u64 = 4;
 
-/// What a frame costs.
+/// The cost of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ledger {
-    /// Width and height of the screen that copies are stated in.
+    /// Width and height of the screen, the unit of copies.
     screen_px: [u32; 2],
     entries: Vec<PassRun>,
     uploaded_bytes: u64,
 }
 
 impl Ledger {
-    /// Of a frame on a screen of `screen_px` pixels; `present` is what showing it there costs, where it is shown.
+    /// The ledger of a frame on a screen of `screen_px` pixels; `present` is the cost of presenting
+    /// it there, if it is presented.
     #[must_use]
     pub fn new(report: &FrameReport, screen_px: [u32; 2], present: Option<Work>) -> Self {
         let shown = present.map(|work| PassRun {
@@ -49,13 +51,13 @@ impl Ledger {
         self.entries.iter().map(|run| run.work).sum()
     }
 
-    /// Bytes that the processor hands over, which are written once: camera picture, pose, uniforms.
+    /// Bytes that the processor transfers, which are written once: camera picture, pose, uniforms.
     #[must_use]
     pub fn uploaded_bytes(&self) -> u64 {
         self.uploaded_bytes
     }
 
-    /// Bytes that the device moves, with those that the processor hands over.
+    /// Bytes that the device moves, including those that the processor transfers.
     #[must_use]
     pub fn bytes_moved(&self) -> u64 {
         self.total().bytes_moved() + self.uploaded_bytes
@@ -67,7 +69,7 @@ impl Ledger {
         mebibytes(self.bytes_moved())
     }
 
-    /// Copies of the screen: each is a read and a write of all of its pixels, of four bytes.
+    /// Number of copies of the screen: each reads and writes all of its pixels, of four bytes.
     #[must_use]
     pub fn copies(&self, bytes: u64) -> f64 {
         let [width, height] = self.screen_px.map(u64::from);
@@ -75,14 +77,14 @@ impl Ledger {
         bytes as f64 / copy.max(1) as f64
     }
 
-    /// Copies of the screen that the frame costs in all.
+    /// The frame's cost in copies of the screen.
     #[must_use]
     pub fn copies_moved(&self) -> f64 {
         self.copies(self.bytes_moved())
     }
 
-    /// A row for each pass, then one for what the processor hands over and one for all, under a head: pass, runs,
-    /// triangles, vertices, mebibytes read and written, copies of the screen.
+    /// A row for each pass, then one for the processor's transfers and one for the total, under a
+    /// head: pass, runs, triangles, vertices, mebibytes read and written, copies of the screen.
     #[must_use]
     pub fn rows(&self) -> Vec<[String; 7]> {
         let head = [

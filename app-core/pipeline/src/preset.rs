@@ -9,23 +9,24 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Preset {
-    /// A shadow of constant strength, as AR products ship it.
+    /// A shadow of constant strength, as AR products draw it.
     Flat,
     /// The published method: warp, ring search, box filter, PCSS.
     Paper,
-    /// As `balanced`, with half the points of a wide light, half the positions of the outline, one sample a pixel within it, and a
-    /// hard shadow of the toy on itself: for devices that cannot afford it.
+    /// Like `balanced`, with half the points of a wide light, half the positions of the outline,
+    /// one sample per pixel within it, and a hard shadow of the toy on itself: for devices too slow
+    /// for `balanced`.
     Fast,
     /// The default.
     #[default]
     Balanced,
-    /// As `balanced`, with a finer picture of the toy and less noise in the shadow: for pictures rather than for a
-    /// live view.
+    /// Like `balanced`, with a finer picture of the toy and less noise in the shadow: for pictures
+    /// rather than for a live view.
     Best,
 }
 
 impl Preset {
-    /// Every preset there is.
+    /// All presets.
     pub const ALL: &[Self] = &[Self::Flat, Self::Paper, Self::Fast, Self::Balanced, Self::Best];
 
     /// The name on the command line.
@@ -60,8 +61,10 @@ impl Preset {
 ///
 /// Mean errors over four frames of six sessions with exact input, in 8-bit codes:
 ///
-/// - 64, 32, 16 points over each light: shadow 1.53, 1.60, 1.77, up to half as much again under a wide light; 64 where a
-///   penumbra is wider than 32 pixels or no wider than 4, else 32: 1.55, and half of the triangles of four sessions' shadows;
+/// - 64, 32, 16 points over each light: shadow 1.53, 1.60, 1.77, up to half as much again under a
+///   wide light; 64 if a
+///   penumbra is wider than 32 pixels or at most 4 wide, else 32: 1.55, and half of the triangles
+///   of four sessions' shadows;
 /// - 16, 8, 4 points for the toy's shadow on itself: toy 3.91, 3.93, 3.93, edge 4.54, 4.57, 4.57;
 /// - own shapes and simplified ones: shadow 1.53 and 1.53, toy 3.91 and 3.91, edge 4.56 and 4.54.
 pub const BALANCED: ModelSettings = ModelSettings {
@@ -82,7 +85,8 @@ pub const BALANCED: ModelSettings = ModelSettings {
 
 /// Settings of `fast`.
 ///
-/// Mean errors of the same frames, shadow, toy and edge, and triangles of a new pose of the stag (3,667 of its own):
+/// Mean errors of the same frames, shadow, toy and edge, and triangles of a new pose of the stag
+/// (3,667 of its own):
 ///
 /// | points | directions | ambient divisor | errors | triangles |
 /// | --- | --- | --- | --- | --- |
@@ -92,13 +96,16 @@ pub const BALANCED: ModelSettings = ModelSettings {
 /// | 16 | 32 | 8 | 1.83, 3.97, 4.63 | 226,086 |
 /// | 16 | 16 | 8 | 1.92, 3.98, 4.70 | 212,054 |
 ///
-/// Of these 32, 32 and 8 are taken. Two frames of each session, with 32 positions of the outline and 4 points for the toy's shadow
-/// on itself: 1.66, 3.73, 4.57, and 283,249 triangles; with 16 and 1, which are taken: 1.66, 3.84, 5.02, and 216,840. Casters
-/// within 3 pixels rather than 1, too: the same errors, and 180,472. Of one sample a pixel rather than four: 1.66, 4.62, 5.33, and
-/// 5.22 with 16 positions that are a lattice of their own; the toy's flicker 5.8 rather than 4.6, and half of the time that the
-/// toy's draw takes on a processor. Casters within 4 pixels: the bundled session's shadow 1.2 in place of 1.0.
+/// Of these, 32, 32 and 8 are used. Two frames of each session, with 32 positions of the outline
+/// and 4 points for the toy's shadow on itself: 1.66, 3.73, 4.57, and 283,249 triangles; with 16
+/// and 1, which are used: 1.66, 3.84, 5.02, and 216,840. With casters within 3 pixels rather than 1
+/// as well: the same errors, and 180,472. With one sample per pixel rather than four: 1.66, 4.62,
+/// 5.33, and 5.22 with 16 positions that are a lattice of their own; the toy's flicker is 5.8
+/// rather than 4.6, and the toy's draw takes half of the time on a processor. Casters within 4
+/// pixels: the bundled session's shadow 1.2 in place of 1.0.
 ///
-/// Of 16 points too few fall into each quarter of a pixel to be a sample of the light, and soft shadows have steps.
+/// Of 16 points too few fall into each quarter of a pixel to be a sample of the light, and soft
+/// shadows have steps.
 pub const FAST: ModelSettings = ModelSettings {
     n_light_points: 32,
     n_ambient_directions: 32,
@@ -123,16 +130,20 @@ pub const BEST: ModelSettings = ModelSettings {
     ..BALANCED
 };
 
-/// The constants that the papers leave open, tuned for the lowest mean shadow RMSE over four sessions of the bundled
-/// toy (`tests/make/session.py`: the bundled one, `bulb-uniform`, `area-wood` and `bulb-tiles`), one after the other:
+/// The constants that the papers leave open, tuned for the lowest mean shadow RMSE over four
+/// sessions of the bundled toy (`tests/make/session.py`: the bundled one, `bulb-uniform`,
+/// `area-wood` and `bulb-tiles`), one after the other:
 ///
 /// - box radius 4, 20, 40 px: 2.66, 2.30, 2.30, with a margin of 3 px and a seam of 4 px;
 /// - margin 1, 3, 6 px: 2.35, 2.30, 2.32, with a box of 20 px;
 /// - seam 8, 4, 1 px: 2.43, 2.32, 2.26, with a margin of 6 px; a margin of 4 px then gave 2.24;
-/// - box radius 30 px: 2.23; 32 directions instead of 16: the same; twice the blocker taps or four times the filter
+/// - box radius 30 px: 2.23; 32 directions instead of 16: the same; twice the blocker taps or four
+///   times the filter
 ///   taps: the same within 0.01;
-/// - kernel of PCSS round on the receiver, slanted with the light, slanted but for the search of blockers: 2.47,
-///   2.35, 2.27 on `area-wood`; blockers searched no farther than 0.6 of the widest penumbra there: 2.54;
+/// - kernel of PCSS round on the receiver, slanted with the light, slanted except for the search
+///   for blockers: 2.47,
+///   2.35, 2.27 on `area-wood`; blockers searched no farther than 0.6 of the widest penumbra there:
+///   2.54;
 /// - `flat`, ratio 0.35, 0.40, 0.50: 5.50, 4.38, 9.18.
 pub const BASELINE: BaselineSettings = BaselineSettings {
     constant_ratio: None,
@@ -152,7 +163,7 @@ pub const BASELINE: BaselineSettings = BaselineSettings {
 pub enum Settings {
     /// The additive model of the receiver: see the architecture.
     Model(ModelSettings),
-    /// The published method as a baseline, or its simplest stand-in.
+    /// The published method as a baseline, or its simplest variant.
     Baseline(BaselineSettings),
 }
 
@@ -161,7 +172,7 @@ pub enum Settings {
 pub struct ModelSettings {
     /// Points over each light: 16, 32 or 64.
     pub n_light_points: usize,
-    /// The same of a light whose penumbra is no wider in pixels than this, and no hard edge.
+    /// The same for a light whose penumbra is at most this wide in pixels, but not a hard edge.
     pub n_narrow_light_points: usize,
     /// Directions of ambient light: 16, 32 or 64.
     pub n_ambient_directions: usize,
@@ -171,41 +182,46 @@ pub struct ModelSettings {
     ///
     /// The outline has its samples from `coverage`: more draws smooth the edges within the toy.
     pub n_toy_draws: u32,
-    /// Samples a pixel of each draw: 4, or 1 of a single draw.
+    /// Samples per pixel of each draw: 4, or 1 for a single draw.
     pub n_toy_samples: u32,
-    /// Positions within a pixel that the shown toy's coverage is counted over, 32 or 16.
+    /// Number of positions within a pixel at which the shown toy's coverage is sampled, 32 or 16.
     pub n_coverage_positions: u32,
-    /// Points of each light from which the toy's shadow on itself is drawn, of those on the receiver; up to 16.
+    /// Number of a light's points, among those for the receiver, from which the toy's shadow on
+    /// itself is drawn; up to 16.
     pub n_self_shadow_points: usize,
     /// Texels along each side of one such depth map.
     pub self_shadow_tile_px: u32,
-    /// The farthest that what casts a light's shadow may be from the toy's shape, in pixels at the toy: a shadow is seen from farther
-    /// away. Without it the toy's own shape casts all shadows, that of the ambient light too.
+    /// Largest distance of a shadow caster's shape from the toy's shape, in pixels at the toy; a
+    /// shadow is farther from the camera. Without it the toy's own shape casts all shadows, that of
+    /// the ambient light too.
     pub caster_px: Option<u32>,
     /// Whether the real shadow is denoised, so that it is no noisier than the new one beside it.
     pub is_noise_removed: bool,
-    /// Whether the plate is always kept finer than codes, not only where it was estimated or brought to another exposure.
+    /// Whether the plate always has more precision than codes, not only where it was estimated or
+    /// converted to another exposure.
     pub is_plate_fine: bool,
-    /// Whether the real shadow is withheld from all but the first fits, and the physical pose made like any other:
-    /// see [`Inspect::withhold_shadow`](crate::core::inspect::Inspect::withhold_shadow). No preset does so.
+    /// Whether the real shadow is withheld from all but the first fits, and the physical pose drawn
+    /// like any other: see
+    /// [`Inspect::withhold_shadow`](crate::core::inspect::Inspect::withhold_shadow). No preset does
+    /// so.
     pub is_shadow_withheld: bool,
 }
 
 /// The constants that the papers leave open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaselineSettings {
-    /// Shadow over plate where no light reaches, for shadows of constant strength, each light's the same; without it
-    /// the real shadow is sampled.
+    /// Ratio of the shadow to the plate in full shadow, for shadows of constant strength, the same
+    /// for each light; without it the real shadow is sampled.
     pub constant_ratio: Option<f32>,
-    /// Distance kept from the edges of the eligible shadow.
+    /// Distance from the edges of the eligible shadow.
     pub eligible_margin_px: i32,
     /// Distance between rings.
     pub ring_step_px: f32,
-    /// Candidates of a ring.
+    /// Number of candidates per ring.
     pub n_ring_directions: u32,
-    /// Rings until the search gives up, if it has not left the region before.
+    /// Number of rings after which the search ends, if it has not left the region before.
     pub n_rings: u32,
-    /// Half the side of the box filter, without its middle.
+    /// Half the side of the box filter, without its centre.
     pub box_radius_px: i32,
     /// Width of the linear interpolation around the cropped masks.
     pub seam_px: i32,
@@ -215,7 +231,7 @@ pub struct BaselineSettings {
     pub n_filter_taps: u32,
 }
 
-/// A setting that cannot be.
+/// A setting with an impossible value.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("settings, {field}: {value} is not {needed}")]
 pub struct SettingsError {
@@ -223,7 +239,7 @@ pub struct SettingsError {
     pub field: &'static str,
     /// Its value.
     pub value: f64,
-    /// The values that it may have, in words.
+    /// The permitted values, in words.
     pub needed: &'static str,
 }
 
@@ -241,10 +257,10 @@ impl From<Preset> for Settings {
 }
 
 impl Settings {
-    /// Refuses what shaders and their uniforms have no room for.
+    /// Checks the limits of shaders and their uniforms.
     ///
     /// # Errors
-    /// When a setting is out of its range.
+    /// If a setting is out of its range.
     pub fn check(&self) -> Result<(), SettingsError> {
         match self {
             Self::Model(settings) => settings.check(),
@@ -337,11 +353,11 @@ impl BaselineSettings {
 
 /// A preset name that does not exist.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("preset \"{asked}\" is not built; there are {known}")]
+#[error("preset \"{asked}\" does not exist; choose one of {known}")]
 pub struct UnknownPreset {
-    /// The name that was asked for.
+    /// The requested name.
     pub asked: String,
-    /// The names that exist.
+    /// The existing names.
     pub known: String,
 }
 

@@ -1,17 +1,22 @@
-//! Profiles: how long the stages and passes of frames took, in one format from wherever they come.
+//! Profiles: the times of frames' stages and passes, in one format for all sources.
 //!
-//! A profile is a trace in Chrome's format, which Perfetto (<https://ui.perfetto.dev>) and `chrome://tracing` open as it is: JSON with
-//! `traceEvents`, of which those of phase `X` are scopes with a beginning `ts` and a length `dur` in microseconds, and
-//! `otherData` with what was measured on what.
+//! A profile is a trace in Chrome's format, which Perfetto (<https://ui.perfetto.dev>) and
+//! `chrome://tracing` open directly: JSON with `traceEvents`, of which those of phase `X` are
+//! scopes with a beginning `ts` and a length `dur` in microseconds, and `otherData` with the
+//! measured session and device.
 //!
-//! - Process 1, thread 1, *processor*: a scope `frame` for each frame, within it its stages and, beside those of the core, what the
-//!   caller timed itself, such as `align`.
-//! - Thread 2, *device*: a scope for each pass that was timed. A device tells how long passes took rather than when, so they
-//!   are laid end to end from the frame's beginning on.
+//! - Process 1, thread 1, *processor*: a scope `frame` for each frame, within it its stages and,
+//!   beside those of the core, the
+//!   stages that the caller timed itself, such as `align`.
+//! - Thread 2, *device*: a scope for each timed pass. A device measures the duration of passes
+//!   rather than their beginning, so they
+//!   are placed end to end from the frame's beginning on.
 //!
-//! `args` of a frame has its `number`, its `kind` (`pose`, `picture`, `view` or `scene`), the `interval_ms` to the frame before where that
-//! is known, `camera_to_present_ms` from the camera's picture until the frame that shows it was handed to the device, the number of camera
-//! pictures since the frame before that were `dropped`, the `heat` as the phone names it, and what is `turned_down`; that of a pass its `path`, `runs`, `triangles` and `bytes`.
+//! `args` of a frame has its `number`, its `kind` (`pose`, `picture`, `view` or `scene`), the
+//! `interval_ms` to the previous frame if that is known, `camera_to_present_ms` from the camera's
+//! picture until the frame that shows it was submitted to the device, the number of camera pictures
+//! since the previous frame that were `dropped`, the `heat` in the phone's own term, and the
+//! settings that are `turned_down`; that of a pass its `path`, `runs`, `triangles` and `bytes`.
 //!
 //! Source: "Trace Event Format", the Chromium project.
 
@@ -20,37 +25,37 @@ use serde::{Deserialize, Serialize};
 use crate::frame::FrameReport;
 use crate::gpu::{PassTime, StageTime};
 
-/// Version of the format: another one may mean something else by the same names.
+/// Version of the format: the names may have other meanings in another one.
 pub const VERSION: u32 = 1;
 
-/// A trace, as it is written and read. Events of other phases are read over.
+/// A trace, as it is written and read. Events of other phases are ignored.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Profile {
     /// Scopes, and the names of threads.
     #[serde(rename = "traceEvents")]
     pub events: Vec<Event>,
-    /// How viewers show lengths.
+    /// Unit in which viewers show lengths.
     #[serde(rename = "displayTimeUnit", default = "milliseconds")]
     pub unit: String,
-    /// What was measured.
+    /// Description of the measurement.
     #[serde(rename = "otherData")]
     pub about: About,
 }
 
-/// What was measured, on what.
+/// Description of the measurement: session, preset and device.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct About {
     /// [`VERSION`].
     pub version: u32,
-    /// Of the session or the app's scene.
+    /// Name of the session or of the app's scene.
     pub session: String,
     /// Name of the preset.
     pub preset: String,
-    /// Of the device and its driver.
+    /// Name of the device and its driver.
     pub device: String,
     /// Width and height of the camera's picture.
     pub picture_px: [u32; 2],
-    /// Width and height of the screen that it is shown on, where it is shown.
+    /// Width and height of the screen on which the picture is shown, if it is shown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub screen_px: Option<[u32; 2]>,
 }
@@ -60,7 +65,7 @@ pub struct About {
 pub struct Event {
     /// Name of the scope.
     pub name: String,
-    /// `X` for a scope, `M` for what a thread is called.
+    /// `X` for a scope, `M` for the name of a thread.
     pub ph: String,
     /// Beginning, microseconds.
     #[serde(default)]
@@ -74,12 +79,12 @@ pub struct Event {
     /// Thread.
     #[serde(default)]
     pub tid: u32,
-    /// What else is known.
+    /// Further values.
     #[serde(default)]
     pub args: Args,
 }
 
-/// What is known of a scope beside its time; see the module.
+/// Values of a scope beside its time; see the module.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 #[allow(missing_docs, reason = "described in the module's words")]
@@ -117,23 +122,23 @@ pub const DEVICE: u32 = 2;
 /// Name of the scope around a frame.
 pub const FRAME: &str = "frame";
 
-/// A frame, as far as the caller knows it.
+/// A frame with the values that the caller knows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame<'a> {
-    /// When it began, by the clock of its stages.
+    /// Beginning of the frame, by the clock of its stages.
     pub begin_ms: f64,
-    /// Its whole time on the processor.
+    /// Total time on the processor.
     pub cpu_ms: f64,
-    /// What the caller timed itself.
+    /// Stages that the caller timed itself.
     pub further_stages: &'a [StageTime],
     /// Device times of its passes.
     pub pass_times: &'a [PassTime],
-    /// Its number, kind, interval and heat, and what is turned down.
+    /// Number, kind, interval and heat, and the settings that are turned down.
     pub args: Args,
 }
 
 impl Profile {
-    /// Without frames.
+    /// A profile without frames.
     #[must_use]
     pub fn new(about: About) -> Self {
         let thread = |tid: u32, name: &str| Event {
@@ -158,7 +163,7 @@ impl Profile {
         }
     }
 
-    /// Adds a frame: its stages and passes as the report has them, and what else is known.
+    /// Adds a frame: the stages and passes of the report, and further values.
     pub fn add(&mut self, report: &FrameReport, frame: Frame<'_>) {
         let begin = frame.begin_ms;
         self.events
@@ -185,7 +190,7 @@ impl Profile {
         }
     }
 
-    /// How many frames are in it.
+    /// Number of frames.
     pub fn n_frames(&self) -> usize {
         self.frame_places().count()
     }
@@ -201,7 +206,7 @@ impl Profile {
         });
     }
 
-    /// Whether the same was measured on the same.
+    /// Whether the profile is of the same measurement.
     pub fn is_about(&self, about: &About) -> bool {
         let version = self.about.version;
         self.about
@@ -211,14 +216,14 @@ impl Profile {
             }
     }
 
-    /// Where scopes of frames stand; all of a frame's stand behind it.
+    /// Indices of the frames' scopes; all other scopes of a frame follow its own.
     fn frame_places(&self) -> impl Iterator<Item = usize> {
         let events = self.events.iter().enumerate();
         let frames = events.filter(|(_, event)| event.ph == "X" && event.name == FRAME);
         frames.map(|(place, _)| place)
     }
 
-    /// The scopes of a thread, with the number of the frame that each is of.
+    /// The scopes of a thread, with the number of each scope's frame.
     pub fn scopes(&self, tid: u32) -> impl Iterator<Item = &Event> {
         let of_thread = move |event: &&Event| event.ph == "X" && event.tid == tid;
         self.events.iter().filter(of_thread)

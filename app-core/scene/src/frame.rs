@@ -5,7 +5,9 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use crate::camera_frame::CameraImage;
+use crate::gloss::Gloss;
 use crate::grain::Grain;
+use crate::reflection::Reflection;
 use crate::scene::check;
 use crate::scene::{Camera, InputError, Light, LightEstimate, Pose, Scene};
 use crate::shadow_style::ShadowStyle;
@@ -39,6 +41,12 @@ pub struct FrameInput {
     /// Measured softness of the picture, which is applied to everything that is composed into it.
     /// Alignment measures it.
     pub sharpness: Sharpness,
+    /// How glossy the real toy is, where that was measured: its highlights are then moved as reflections, and else as paint. It is the
+    /// toy's, not the picture's: with another one all is learned anew. Alignment measures it; presets of the model alone go by it.
+    pub gloss: Gloss,
+    /// How the receiver that the toy stands on reflects; none where it is matt, as far as is known. Alignment measures it. Presets of
+    /// the model alone go by it, and only beside fewer lights than shadows are moved of.
+    pub reflection: Option<Reflection>,
     /// The pose to show.
     pub shown_pose: Pose,
     /// The place to show the toy, if it differs from the real toy's: by the rules of
@@ -70,6 +78,8 @@ impl FrameInput {
             light_estimate: None,
             things: None,
             sharpness: Sharpness::SHARP,
+            gloss: Gloss::NONE,
+            reflection: None,
             shown_pose: Pose::default(),
             world_from_shown: None,
             effect: 1.0,
@@ -134,6 +144,20 @@ impl FrameInput {
         self
     }
 
+    /// Sets how glossy the toy is.
+    #[must_use]
+    pub fn with_gloss(mut self, gloss: Gloss) -> Self {
+        self.gloss = gloss;
+        self
+    }
+
+    /// Sets how the receiver that the toy stands on reflects.
+    #[must_use]
+    pub fn with_reflection(mut self, reflection: Option<Reflection>) -> Self {
+        self.reflection = reflection;
+        self
+    }
+
     /// Sets the pose to show.
     #[must_use]
     pub fn with_shown_pose(mut self, pose: Pose) -> Self {
@@ -192,6 +216,9 @@ impl FrameInput {
             light.check(&format!("lights[{index}]"))?;
         }
         self.sharpness.check("sharpness")?;
+        self.gloss.check("gloss")?;
+        self.reflection
+            .map_or(Ok(()), |reflection| reflection.check("reflection"))?;
         self.shadow_style.check("shadow_style")?;
         if let Some(things) = &self.things {
             let [width_px, height_px] = things.size_px().to_array();

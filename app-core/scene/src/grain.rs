@@ -114,7 +114,8 @@ impl Grain {
 
     /// Checks the values.
     ///
-    /// # Errors When a variance is not from 0 to 1, or a correlation is out of range.
+    /// # Errors
+    /// When a variance is not from 0 to 1, or a correlation is out of range.
     pub fn check(&self) -> Result<(), InputError> {
         let noises = [("frame", self.frame), ("plate", self.plate)];
         for (picture, noise) in noises {

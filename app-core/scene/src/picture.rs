@@ -18,9 +18,13 @@ pub fn kind(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
         });
     }
     let is_tiff = bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*");
-    let known: [(bool, (&str, &str)); 8] = [
+    let known: [(bool, (&str, &str)); 9] = [
         (is_tiff && is_dng(bytes), ("a raw photograph (DNG)", DEVELOP)),
         (is_tiff, ("TIFF or a raw photograph", SAVE)),
+        (
+            bytes.starts_with(b"FUJIFILM"),
+            ("a raw photograph (RAF)", DEVELOP),
+        ),
         (
             bytes.starts_with(b"\xabKTX 20"),
             (

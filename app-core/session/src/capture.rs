@@ -104,7 +104,8 @@ impl Capture {
 
     /// Opens the capture with the given lens, or as a pinhole's, whatever its index states.
     ///
-    /// # Errors As [`Self::open`], and if the lens folds a picture.
+    /// # Errors
+    /// As [`Self::open`], and if the lens folds a picture.
     pub fn open_with_lens(
         files: impl Files + 'static,
         distortion: Option<Distortion>,

@@ -14,7 +14,8 @@ pub trait Files: Send + Sync {
     /// `path` is relative to the session, with `/` between its parts. An implementation calls
     /// [`check_path`] and makes sure that links do not lead out of the session.
     ///
-    /// # Errors When the path is refused, or the file is missing, unreadable or larger than
+    /// # Errors
+    /// When the path is refused, or the file is missing, unreadable or larger than
     /// `max_bytes`.
     fn read(&self, path: &str, max_bytes: u64) -> Result<Vec<u8>, FileError>;
 }

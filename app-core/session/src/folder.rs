@@ -54,8 +54,9 @@ impl Folder {
 
     /// Paths of its files and of those in its folders, with `/` between their parts.
     ///
-    /// # Errors When one is a link, which could lead out of it, has a name that is no text, or a
-    /// folder cannot be read.
+    /// # Errors
+    /// When one is a link, which could lead out of it, has a name that is not valid text, or a folder
+    /// cannot be read.
     pub fn paths(&self) -> Result<Vec<String>, FolderError> {
         let mut paths = Vec::new();
         let mut folders = vec![String::new()];
@@ -70,7 +71,7 @@ impl Folder {
                     return Err(error(io::Error::other("is a link")));
                 }
                 let name = entry.file_name().into_string();
-                let name = name.map_err(|_| error(io::Error::other("its name is no text")))?;
+                let name = name.map_err(|_| error(io::Error::other("its name is not valid text")))?;
                 let path = format!("{folder}{name}");
                 if kind.is_dir() {
                     folders.push(path + "/");

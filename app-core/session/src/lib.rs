@@ -4,7 +4,6 @@
 //! available at once and frames that are fetched one by one. Bytes come through [`Files`], so this
 //! crate opens no file itself, except in the `Folder` of the feature `fs`.
 //!
-//!
 #![doc = include_str!("../../doc/session.md")]
 #![forbid(unsafe_code)]
 
@@ -58,7 +57,8 @@ pub trait Session {
     /// Checks the picture files of `frames` without decoding them: whether each exists, is of a
     /// supported format and has the session's size. Call it before long work.
     ///
-    /// # Errors When there are no such frames, or a picture of one cannot be read.
+    /// # Errors
+    /// When there are no such frames, or a picture of one cannot be read.
     fn check_pictures(&self, _frames: Range<usize>) -> Result<(), SessionError> {
         Ok(())
     }
@@ -66,7 +66,8 @@ pub trait Session {
     /// The photograph of the frame `index` as its camera took it, distortion included:
     /// [`SessionFrame::image`] if the session has no lens.
     ///
-    /// # Errors As [`Session::frame`].
+    /// # Errors
+    /// As [`Session::frame`].
     fn photograph(&self, index: usize) -> Result<Arc<Image>, SessionError> {
         Ok(self.frame(index)?.image)
     }
@@ -74,7 +75,8 @@ pub trait Session {
     /// The lens of [`Session::photograph`] of the frame `index`, which is removed from
     /// [`SessionFrame::image`]; `None` if the session has none.
     ///
-    /// # Errors When there is no such frame.
+    /// # Errors
+    /// When there is no such frame.
     fn lens(&self, _index: usize) -> Result<Option<Lens>, SessionError> {
         Ok(None)
     }
@@ -121,7 +123,8 @@ impl From<&SessionFrame> for FrameInput {
 pub trait GroundTruth {
     /// Fetches the truth of the frame `index`, or `None` if the session has none.
     ///
-    /// # Errors When there is no such frame, or its pictures cannot be read.
+    /// # Errors
+    /// When there is no such frame, or its pictures cannot be read.
     fn truth(&self, index: usize) -> Result<Option<Truth>, SessionError>;
 }
 

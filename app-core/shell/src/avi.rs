@@ -1,6 +1,7 @@
 //! A video of JPEG pictures at a constant rate: Motion JPEG in an AVI file.
 //!
-//! Source: Microsoft, «AVI RIFF File Reference», of which this is the part with one stream and an index.
+//! Source: Microsoft, «AVI RIFF File Reference», of which this is the part with one stream and an
+//! index.
 
 use std::io::{self, Seek, SeekFrom, Write};
 
@@ -12,11 +13,11 @@ const KEY_FRAME: u32 = 0x10;
 const MAIN_BYTES: u32 = 56;
 const STREAM_BYTES: u32 = 56;
 const FORMAT_BYTES: u32 = 40;
-/// Name and length before the contents of a chunk.
+/// Name and length before the content of a chunk.
 const HEAD_BYTES: u32 = 8;
-/// From the file's begin to the type of the list of pictures.
+/// Offset from the beginning of the file to the type of the list of pictures.
 const MOVIE_AT: u32 = 12 + HEAD_BYTES + list_bytes() + HEAD_BYTES;
-/// A file does not grow beyond: players count its bytes in 31 bits.
+/// Maximum size of a file: players count its bytes in 31 bits.
 const MAX_BYTES: u32 = 1 << 30;
 
 /// Contents of the list `hdrl`.
@@ -25,15 +26,15 @@ const fn list_bytes() -> u32 {
     4 + HEAD_BYTES + MAIN_BYTES + HEAD_BYTES + stream
 }
 
-/// Writes one video; [`Avi::finish`] makes it whole.
+/// Writes one video; [`Avi::finish`] completes it.
 #[derive(Debug)]
 pub(crate) struct Avi<W> {
     file: W,
     size_px: [u32; 2],
     hz: u32,
-    /// Offset from the list's type and length of each picture.
+    /// Offset of each picture from the list's type, and its length.
     pictures: Vec<[u32; 2]>,
-    /// Bytes of the list of pictures, with its type.
+    /// Bytes of the list of pictures, including its type.
     movie_bytes: u32,
     longest: u32,
 }
@@ -42,7 +43,7 @@ impl<W: Write + Seek> Avi<W> {
     /// Begins a video of `hz` pictures a second.
     ///
     /// # Errors
-    /// As the file's.
+    /// Those of the file.
     pub(crate) fn begin(file: W, size_px: [u32; 2], hz: u32) -> io::Result<Self> {
         let mut avi = Self {
             file,
@@ -56,13 +57,13 @@ impl<W: Write + Seek> Avi<W> {
         Ok(avi)
     }
 
-    /// Pictures so far.
+    /// Number of pictures so far.
     #[must_use]
     pub(crate) fn n_pictures(&self) -> usize {
         self.pictures.len()
     }
 
-    /// Whether there is room for another picture of that size.
+    /// Whether there is space for this picture.
     #[must_use]
     pub(crate) fn has_room(&self, jpeg: &[u8]) -> bool {
         let index = u32::try_from(16 * self.pictures.len()).unwrap_or(u32::MAX);
@@ -74,7 +75,7 @@ impl<W: Write + Seek> Avi<W> {
     /// Adds a picture, which is shown for one period of the rate.
     ///
     /// # Errors
-    /// As the file's; [`io::ErrorKind::FileTooLarge`] where there is no room for it.
+    /// Those of the file; [`io::ErrorKind::FileTooLarge`] if there is no space for it.
     pub(crate) fn add(&mut self, jpeg: &[u8]) -> io::Result<()> {
         if !self.has_room(jpeg) {
             return Err(io::ErrorKind::FileTooLarge.into());
@@ -90,10 +91,10 @@ impl<W: Write + Seek> Avi<W> {
         Ok(())
     }
 
-    /// Writes the index and the sizes that were not known before, and returns the file.
+    /// Writes the index and the sizes that were unknown before, and returns the file.
     ///
     /// # Errors
-    /// As the file's.
+    /// Those of the file.
     pub(crate) fn finish(mut self) -> io::Result<W> {
         let n_pictures = u32::try_from(self.pictures.len()).map_err(io::Error::other)?;
         chunk(&mut self.file, *b"idx1", 16 * n_pictures)?;
@@ -108,7 +109,7 @@ impl<W: Write + Seek> Avi<W> {
         Ok(self.file)
     }
 
-    /// All before the first picture, as far as it is known by now.
+    /// Writes the part before the first picture, with the sizes known so far.
     fn write_head(&mut self) -> io::Result<()> {
         let n_pictures = u32::try_from(self.pictures.len()).map_err(io::Error::other)?;
         let [width, height] = self.size_px;
@@ -148,7 +149,7 @@ impl<W: Write + Seek> Avi<W> {
         file.write_all(b"vidsMJPG")?;
         // Flags, priority and language, first frame; scale and rate: pictures a second; start and length; the largest picture.
         words(file, &[0, 0, 0, 1, hz, 0, n_pictures, longest])?;
-        // Quality by default, no fixed size of a sample, and the rectangle that the picture fills.
+        // Quality by default, no fixed size of a sample, and the rectangle of the picture.
         words(file, &[u32::MAX, 0, 0, width & 0xffff | height << 16])?;
         chunk(file, *b"strf", FORMAT_BYTES)?;
         let picture_bytes = width.saturating_mul(height).saturating_mul(3);

@@ -2,10 +2,12 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Runs the body of a callback, which is named so in the message. `None` if it panicked; the panic hook has then written message and
-/// place to standard error, and the caller must not trust what the body was changing.
+/// Runs the body of a callback; the message has the callback's name. `None` if it panicked; the
+/// panic hook has then written message and place to standard error, and the caller must not trust
+/// the data that the body was changing.
 ///
-/// Neither Objective-C nor C nor Java cleans up after a Rust panic, so each callback that runs our code comes through here.
+/// Neither Objective-C nor C nor Java cleans up after a Rust panic, so each callback that runs our
+/// code comes through here.
 pub fn guarded<T>(callback: &str, body: impl FnOnce() -> T) -> Option<T> {
     let outcome = catch_unwind(AssertUnwindSafe(body)).ok();
     if outcome.is_none() {

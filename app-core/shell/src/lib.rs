@@ -1,6 +1,8 @@
-//! What the shells of both phones and of a desktop share: files, the threads that do the work, and the guard at the border to the platform.
+//! The common part of the shells for both phones and a desktop: files, worker threads, and the
+//! guard at the border to the platform.
 //!
-//! The core does no input and output of its own; this is what each shell would else do again. Whoever calls brings the folders.
+//! The core does no input and output of its own; each shell would have to implement these again.
+//! The caller supplies the folders.
 
 #![forbid(unsafe_code)]
 

@@ -1,5 +1,5 @@
-//! What is made anew if nothing could be drawn: the surface alone, whose window came and went, or the device with all that was
-//! compiled on it.
+//! Recovery after drawing has failed: a new surface, if its window was closed and opened, or a new
+//! device with all of its pipelines.
 
 use app_core::CoreError;
 use app_core::gpu::GpuError;
@@ -16,8 +16,8 @@ impl Losses {
         self.was_lost = false;
     }
 
-    /// Whether another surface is enough after an error: not if the one made for it was lost in its turn, which a lost device does,
-    /// too.
+    /// Whether another surface is enough after an error: not if the surface that replaced a lost
+    /// one was lost in turn, which a lost device causes, too.
     pub fn is_of_surface(&mut self, error: &CoreError) -> bool {
         let is_surface = matches!(error, CoreError::Gpu(GpuError::SurfaceLost));
         is_surface && !std::mem::replace(&mut self.was_lost, true)

@@ -1,4 +1,5 @@
-//! Videos without an encoder of the platform's: Motion JPEG, each picture repeated for as long as it is shown.
+//! Videos without an encoder of the platform: Motion JPEG, each picture repeated for as long as it
+//! is shown.
 
 use std::fs::File;
 use std::io::{self, BufWriter};
@@ -11,10 +12,11 @@ use image::codecs::jpeg::JpegEncoder;
 use crate::avi::Avi;
 use crate::encoder::{HZ, VideoEncoder};
 
-/// Of the pictures, of 100: beyond it files grow faster than what is seen of them.
+/// JPEG quality of the pictures, up to 100: above this value files grow faster than visible
+/// quality.
 const QUALITY: u8 = 92;
 
-/// A file, and the picture that is shown by now.
+/// A file, and the picture that is shown at present.
 struct MotionJpeg {
     avi: Avi<BufWriter<File>>,
     shown: Option<Vec<u8>>,
@@ -27,7 +29,7 @@ pub(crate) fn begin(path: &Path, size_px: [u32; 2]) -> io::Result<Box<dyn VideoE
 }
 
 impl MotionJpeg {
-    /// Shows the picture until a time. Of two in one period the later is shown.
+    /// Shows the picture until a time. If there are two in one period, the later one is shown.
     fn show_until(&mut self, since_s: f64) -> io::Result<()> {
         let Some(shown) = &self.shown else { return Ok(()) };
         while self.avi.n_pictures() < n_pictures_until(since_s) && self.avi.has_room(shown) {

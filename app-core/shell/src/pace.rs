@@ -1,20 +1,22 @@
-//! When the loop draws: a picture for each of the camera's and for each touch, never more often than the screen is to show, and never by
-//! turning round and round.
+//! Timing of the drawing loop: a picture for each one of the camera's and for each touch, never
+//! more often than the screen shows one, and without busy waiting.
 //!
-//! It has no clock of its own: whoever calls tells the time.
+//! It has no clock of its own: the caller supplies the time.
 
 use std::time::Duration;
 
-/// Part of a picture's time that is slept; the rest is waited for by the display itself, whose clock is another one.
+/// Share of a picture's time that the loop sleeps; the display itself waits for the rest, since it
+/// has another clock.
 const SLEPT: f64 = 0.75;
-/// A camera from which nothing has come for so long does not set the pace.
+/// Time without a picture after which a camera no longer sets the pace.
 const CAMERA_LASTS: Duration = Duration::from_millis(200);
-/// Time between its pictures. After one, the loop sleeps for most of it, then looks for the next by short steps.
+/// Time between the camera's pictures. After one, the loop sleeps for most of it, then polls in
+/// short steps.
 const CAMERA_STEP: Duration = Duration::from_nanos(1_000_000_000 / 30);
-/// While it does, what moves by itself is drawn so often at least.
+/// Largest time between pictures of moving content while the camera sets the pace.
 const IDLE: Duration = Duration::from_millis(100);
 
-/// When the next picture is due.
+/// The time of the next picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
     frames_per_s: u32,
@@ -35,23 +37,24 @@ impl Default for Pace {
 }
 
 impl Pace {
-    /// So many pictures a second at most.
+    /// Sets the maximum number of pictures a second.
     pub fn set_rate(&mut self, frames_per_s: u32) {
         self.frames_per_s = frames_per_s.clamp(1, 240);
     }
 
-    /// A picture of the camera has come.
+    /// A picture of the camera has arrived.
     pub fn camera_came(&mut self, now: Duration) {
         self.camera = Some(now);
         self.is_news = true;
     }
 
-    /// A finger has moved, or a window has come.
+    /// A finger has moved, or a window was opened.
     pub fn touched(&mut self) {
         self.is_news = true;
     }
 
-    /// For how long the loop may sleep before it looks at the camera again: until the next picture may be drawn.
+    /// Time for which the loop may sleep before it polls the camera again: until the next picture
+    /// may be drawn.
     #[must_use]
     pub fn sleep(&self, now: Duration) -> Duration {
         let step = self.step();
@@ -61,7 +64,7 @@ impl Pace {
                 let due = due.max(camera + CAMERA_STEP.mul_f64(SLEPT));
                 due.saturating_sub(now).max(CAMERA_STEP / 8)
             }
-            // Looked at and nothing there: a quarter of a picture's time later.
+            // Polled without a picture: a quarter of a picture's time later.
             None => due.saturating_sub(now).max(step / 4),
         }
     }
@@ -88,7 +91,7 @@ impl Pace {
         now.saturating_sub(drawn) >= least
     }
 
-    /// One is drawn, from `now` on.
+    /// A picture is drawn, from `now` on.
     pub fn draw(&mut self, now: Duration) {
         self.drawn = Some(now);
         self.is_news = false;

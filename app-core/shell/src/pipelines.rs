@@ -1,9 +1,11 @@
-//! Compiled pipelines, kept from start to start: what a driver hands out is handed back to the same driver, whole.
+//! Compiled pipelines, stored between starts: the driver's exported data are returned unchanged to
+//! the same driver.
 //!
-//! What is handed back may end the app. So a start takes the file away with it and leaves a note; what it has compiled takes the place of
-//! both. A start that finds such a note does without.
+//! Returning them may end the app. So a start removes the file and leaves a note; the newly
+//! compiled pipelines replace both. A start that finds such a note does without the data.
 //!
-//! A file has a line of its own for the key, of version, device and driver, one for a sum of the bytes, then the bytes.
+//! A file has a line for the key of version, device and driver, one for a checksum of the bytes,
+//! then the bytes.
 
 use std::fs;
 use std::io;
@@ -11,24 +13,24 @@ use std::path::Path;
 
 use crate::kept;
 
-/// Its name.
+/// Name of the file.
 const FILE: &str = "pipelines.bin";
-/// A file is not larger: nobody waits for more to be read.
+/// Maximum size of the file: reading more would take too long.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// The name of the note: a start has begun with the driver's cache, and has not come to the end of compiling.
+/// The name of the note: a start has begun with the driver's cache, and has not finished compiling.
 const NOTE: &str = "pipelines.begun";
 
-/// How a start compiles.
+/// The way in which a start compiles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// With a cache of the driver's, and what an earlier start has left in it.
+    /// With a cache of the driver, and an earlier start's data in it.
     Cached(Option<Vec<u8>>),
-    /// Without any, since the start before did not come to the end of it.
+    /// Without a cache, since the previous start did not finish.
     Uncached,
 }
 
-/// Begins a start: nothing is kept any more, until [`store`] keeps what it has compiled.
+/// Begins a start: the stored data are removed, until [`store`] stores the newly compiled ones.
 #[must_use]
 pub fn begin(folder: &Path, key: &str) -> Start {
     let (file, note) = (folder.join(FILE), folder.join(NOTE));
@@ -36,18 +38,18 @@ pub fn begin(folder: &Path, key: &str) -> Start {
     let removed = fs::remove_file(file);
     let is_left = matches!(&removed, Err(error) if error.kind() != io::ErrorKind::NotFound);
     if note.exists() {
-        // The start after this one tries again.
+        // The next start tries again.
         let _ = fs::remove_file(note);
         return Start::Uncached;
     }
     match kept::store(folder, NOTE, b"") {
         Ok(()) if !is_left => Start::Cached(data),
-        // What cannot be noted could end each start.
+        // Without a note, a fault could end every start.
         _ => Start::Uncached,
     }
 }
 
-/// What is kept under a key; none if that is of another driver or version, or not as it was written.
+/// Data stored under a key; `None` if they belong to another driver or version, or are damaged.
 fn read(folder: &Path, key: &str) -> Option<Vec<u8>> {
     let path = folder.join(FILE);
     if fs::metadata(&path).ok()?.len() > MAX_BYTES {
@@ -60,10 +62,10 @@ fn read(folder: &Path, key: &str) -> Option<Vec<u8>> {
     is_whole.then(|| data.to_vec())
 }
 
-/// Keeps bytes under a key, in place of all that was kept before.
+/// Stores bytes under a key, and replaces everything stored before.
 ///
 /// # Errors
-/// When the file cannot be written.
+/// If the file cannot be written.
 pub fn store(folder: &Path, key: &str, data: &[u8]) -> io::Result<()> {
     let file = [one_line(key).as_bytes(), b"\n", sum(data).as_bytes(), b"\n", data].concat();
     kept::store(folder, FILE, &file)?;
@@ -77,7 +79,7 @@ fn one_line(key: &str) -> String {
     key.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// FNV-1a over 64 bits: against bytes that were lost, not against anybody.
+/// FNV-1a over 64 bits: protection against lost bytes, not against an attack.
 fn sum(data: &[u8]) -> String {
     let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
     format!("{:016x}", data.iter().fold(0xcbf2_9ce4_8422_2325, step))
@@ -115,7 +117,7 @@ mod tests {
         assert_eq!(begin(&folder, "one"), Start::Cached(None), "the first start");
         store(&folder, "one", &[7]).expect("a file");
         assert_eq!(begin(&folder, "one"), kept());
-        // It dies.
+        // The app crashes.
         assert_eq!(begin(&folder, "one"), Start::Uncached);
         assert_eq!(begin(&folder, "one"), Start::Cached(None), "and then anew");
         store(&folder, "one", &[7]).expect("a file");

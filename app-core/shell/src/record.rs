@@ -1,4 +1,4 @@
-//! Recordings: a thread of a shell's writes them into files that people get at.
+//! Recordings: a thread of a shell writes them into files for the person.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -11,10 +11,11 @@ use app_core::recording::{Limits, PictureCodec, RecordingJob, RecordingOptions};
 
 use crate::{kept, save};
 
-/// The log that is written as the app runs.
+/// Name of the log that is written while the app runs.
 const LOG: &str = "log.txt";
 
-/// Writes a recording into the file at `path` until it ends; `app` is the app with its version, and `toy` the file of its toy.
+/// Writes a recording into the file at `path` until it ends; `app` is the app with its version, and
+/// `toy` the file of its toy.
 #[must_use]
 pub fn write(job: RecordingJob, (app, toy): (&str, &[u8]), codec: PictureCodec, path: &Path) -> Recorded {
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -43,7 +44,7 @@ pub fn write(job: RecordingJob, (app, toy): (&str, &[u8]), codec: PictureCodec, 
     }
 }
 
-/// A file's name, as people are told it.
+/// A file's name as shown to the person.
 pub(crate) fn shown_name(path: &Path) -> String {
     path.file_name()
         .unwrap_or_default()
@@ -56,7 +57,7 @@ pub(crate) fn write_log(live: &Live, folder: &Path) {
     kept::store_or_say(folder, LOG, live.app().log().text().as_bytes());
 }
 
-/// Gives the log of an earlier start another name.
+/// Renames the log of an earlier start.
 pub(crate) fn put_log_aside(folder: &Path) {
     let (log, aside) = (folder.join(LOG), folder.join("log_before.txt"));
     if log.is_file()
@@ -66,8 +67,8 @@ pub(crate) fn put_log_aside(folder: &Path) {
     }
 }
 
-/// What people hand on, as files of the folder: the log, the times, and `recording` or else the latest of earlier starts, as far as
-/// there are any.
+/// The files of the folder that a person shares: the log, the times, and `recording` or else the
+/// latest of earlier starts, as far as they exist.
 #[must_use]
 pub fn share(live: &Live, folder: &Path, recording: Option<&Path>) -> (Saved, Vec<PathBuf>) {
     let mut files = vec![folder.join(LOG)];
@@ -83,14 +84,14 @@ pub fn share(live: &Live, folder: &Path, recording: Option<&Path>) -> (Saved, Ve
     (saved, files)
 }
 
-/// The latest recording of a folder: their names grow with time.
+/// The latest recording of a folder: their names increase with time.
 fn latest(folder: &Path) -> Option<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let is_recording = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "mcap");
     entries.map(|entry| entry.path()).filter(is_recording).max()
 }
 
-/// What is free where a folder is, in bytes.
+/// Free space of a folder's device, in bytes.
 #[must_use]
 pub fn free_bytes(folder: &Path) -> Option<u64> {
     let there = folder.ancestors().find(|folder| folder.exists())?;

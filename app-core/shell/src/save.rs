@@ -1,4 +1,4 @@
-//! Files that people keep.
+//! Files for the person.
 
 use std::fs;
 use std::io;
@@ -7,7 +7,7 @@ use std::path::Path;
 use app_core::app::Saved;
 use app_core::scene::Image;
 
-/// Writes a picture as PNG, into a folder that is made where it is missing.
+/// Writes a picture as PNG, into a folder that is created if it is missing.
 #[must_use]
 pub fn picture(path: &Path, picture: &Image) -> Saved {
     let mut png = Vec::new();
@@ -25,14 +25,14 @@ pub fn picture(path: &Path, picture: &Image) -> Saved {
     }
 }
 
-/// Writes a file, into a folder that is made where it is missing.
+/// Writes a file, into a folder that is created if it is missing.
 #[must_use]
 pub fn bytes(path: &Path, bytes: &[u8]) -> Saved {
     let folder = path.parent().unwrap_or(Path::new(""));
     outcome(fs::create_dir_all(folder).and_then(|()| fs::write(path, bytes)))
 }
 
-/// What to tell of a file that was written, or not.
+/// The message about a file that was written, or was not.
 pub(crate) fn outcome(written: io::Result<()>) -> Saved {
     match written.map_err(|error| error.kind()) {
         Ok(()) => Saved::Done,
@@ -58,7 +58,7 @@ mod tests {
         assert_eq!(picture(&path, &photo), Saved::Done);
         let read = image::open(&path).expect("a PNG file").to_rgba8();
         assert_eq!(read.into_raw(), photo.rgba8);
-        // A file is no folder.
+        // A file is not a folder.
         assert_eq!(picture(&path.join("photo.png"), &photo), Saved::Failed);
         assert_eq!(bytes(&path.join("log.txt"), b""), Saved::Failed);
         fs::remove_dir_all(&folder).expect("a folder");

@@ -1,4 +1,4 @@
-//! What is kept from start to start, in a file of the app's own.
+//! The history of starts, in a file of the app's own.
 
 use std::io;
 use std::path::Path;
@@ -7,11 +7,12 @@ use app_core::app::LaunchHistory;
 
 use crate::kept;
 
-/// Its name.
+/// Name of the file.
 const FILE: &str = "starts.txt";
 
-/// Reads what was kept, and stores that another start begins. What cannot be stored is as if nothing was kept. In a package for
-/// engineers nothing counts: see [`LaunchHistory::for_engineers`].
+/// Reads the stored history, and stores that another start begins. If it cannot be stored, the
+/// history is empty. In a package for engineers nothing counts: see
+/// [`LaunchHistory::for_engineers`].
 #[must_use]
 pub fn begin(folder: &Path, is_for_engineers: bool) -> LaunchHistory {
     let mut history = LaunchHistory::read(&kept::text(folder, FILE).unwrap_or_default());
@@ -25,10 +26,10 @@ pub fn begin(folder: &Path, is_for_engineers: bool) -> LaunchHistory {
     history
 }
 
-/// Keeps it, whole or not at all, in a folder that is made if it is missing.
+/// Stores the history, completely or not at all, in a folder that is created if it is missing.
 ///
 /// # Errors
-/// When the file cannot be written.
+/// If the file cannot be written.
 pub fn store(folder: &Path, text: &str) -> io::Result<()> {
     kept::store(folder, FILE, text.as_bytes())
 }

@@ -1,4 +1,4 @@
-//! A video of what is shown: pictures go to a thread, which has them encoded into a file.
+//! A video of the shown pictures, which go to a thread that encodes them into a file.
 
 use std::fs;
 use std::io;
@@ -14,47 +14,48 @@ use crate::guard::guarded;
 use crate::motion_jpeg;
 use crate::save::outcome;
 
-/// Pictures that wait for the thread; what comes while as many do is left out.
+/// Number of pictures that wait for the thread; further ones are left out.
 const N_WAITING: usize = 4;
-/// A picture stands no longer than this, in seconds, whatever its time says.
+/// Maximum duration of a picture, in seconds, whatever its time is.
 const LONGEST_S: f64 = 2.0;
 
 /// A way to encode.
 #[derive(Clone, Copy, Debug)]
 pub struct VideoFormat {
-    /// Of the file's name.
+    /// Extension of the file's name.
     pub extension: &'static str,
-    /// Where it cannot begin, the next format is asked.
+    /// Begins a file; if it fails, the next format is tried.
     pub begin: BeginVideo,
 }
 
-/// Columns and rows that both are even, as encoders of platforms want them: an odd last one is left out. None where none is left.
+/// Even numbers of columns and rows, as encoders of platforms require: an odd last one is left out.
+/// `None` if none is left.
 #[must_use]
 pub fn even(size_px: [u32; 2]) -> Option<[usize; 2]> {
     let size = size_px.map(|side| (side & !1) as usize);
     (!size.contains(&0)).then_some(size)
 }
 
-/// The format that is everywhere, and larger than any of a platform's own.
+/// The format that works everywhere; its files are larger than those of a platform's own.
 pub const MOTION_JPEG: VideoFormat = VideoFormat {
     extension: "avi",
     begin: motion_jpeg::begin,
 };
 
-/// A video that is being made. It ends when this is dropped.
+/// A video in progress. It ends when this is dropped.
 #[derive(Debug)]
 pub struct Video {
     pictures: SyncSender<(Image, f64)>,
-    /// No further picture is needed before.
+    /// Time before which no further picture is needed.
     due_s: f64,
 }
 
 impl Video {
-    /// Begins a video, by the first of `formats` that can, whose extension `stem` gets; `done` is told what became of it, by the
-    /// thread, with the file if there is one.
+    /// Begins a video with the first of `formats` that works, whose extension is added to `stem`;
+    /// the thread passes the result to `done`, with the file if there is one.
     ///
     /// # Errors
-    /// When there is no thread for it.
+    /// If there is no thread for it.
     pub fn begin(
         stem: PathBuf,
         formats: &'static [VideoFormat],
@@ -72,31 +73,33 @@ impl Video {
         Ok(Self { pictures, due_s })
     }
 
-    /// Whether a picture at `time_s` would be another one of the video: a picture that is not does not have to be read.
+    /// Whether a picture at `time_s` would be a new one for the video: otherwise it need not be
+    /// read.
     #[must_use]
     pub fn is_due(&self, time_s: f64) -> bool {
         time_s >= self.due_s
     }
 
-    /// Adds the picture that is shown from `time_s` on; false where it is left out, since too many wait or the video has ended.
+    /// Adds the picture that is shown from `time_s` on; returns false if it is left out, since too
+    /// many wait or the video has ended.
     pub fn add(&mut self, picture: Image, time_s: f64) -> bool {
         let is_taken = self.pictures.try_send((picture, time_s)).is_ok();
         if is_taken {
-            // A little early, so that a clock that trembles loses no picture.
+            // Slightly early, so that an unsteady clock loses no picture.
             self.due_s = time_s + 0.8 / f64::from(HZ);
         }
         is_taken
     }
 }
 
-/// Seconds since the first picture, by times that may stand still, jump, or be no number.
+/// Seconds since the first picture, from times that may stand still, jump, or be invalid.
 struct Timeline {
     last_s: f64,
     since_s: f64,
 }
 
 impl Timeline {
-    /// The next picture's; none where no time has passed.
+    /// The next picture's time; `None` if no time has passed.
     fn advance(&mut self, time_s: f64) -> Option<f64> {
         if !time_s.is_finite() {
             return None;
@@ -108,7 +111,8 @@ impl Timeline {
     }
 }
 
-/// Has encoded what comes until no more does. A video without a picture is no file; one that fails is taken away.
+/// Encodes pictures until there are no more. A video without a picture leaves no file; a failed one
+/// is removed.
 fn write(
     stem: &Path,
     formats: &[VideoFormat],
@@ -123,13 +127,13 @@ fn write(
     let (file, encoder) = begin(stem, formats, [first.width_px, first.height_px])?;
     let encoded = encode(encoder, (&first, begin_s), pictures);
     if encoded.is_err() {
-        // It failed already: what else there is to say is the first reason.
+        // It has failed already: the first reason is the one to report.
         let _ = fs::remove_file(&file);
     }
     encoded.map(|()| Some(file))
 }
 
-/// By the first format that can; the error is the last one's.
+/// Begins with the first format that works; the error is the last one's.
 fn begin(
     stem: &Path,
     formats: &[VideoFormat],
@@ -141,7 +145,7 @@ fn begin(
         match (format.begin)(&file, size_px) {
             Ok(encoder) => return Ok((file, encoder)),
             Err(error) => {
-                // What it may have begun.
+                // A file that it may have begun.
                 let _ = fs::remove_file(&file);
                 refused = error;
             }
@@ -191,7 +195,7 @@ mod tests {
         u32::from_le_bytes(four) as usize
     }
 
-    /// The grey of each picture, by the file's index, whose sizes must agree with each other.
+    /// The grey of each picture, by the file's index, whose sizes must be consistent.
     fn greys(avi: &[u8]) -> Vec<u8> {
         assert_eq!((&avi[..4], &avi[8..16]), (&b"RIFF"[..], &b"AVI LIST"[..]));
         assert_eq!(word(avi, 4) + 8, avi.len());
@@ -215,7 +219,7 @@ mod tests {
         pictures.collect()
     }
 
-    /// What becomes of pictures with their times.
+    /// Result for pictures with their times.
     fn video(name: &str, formats: &'static [VideoFormat], pictures: &[(u8, f64)]) -> (Saved, Vec<Vec<u8>>) {
         let folder = std::env::temp_dir().join(format!("app-shell-{name}-{}", std::process::id()));
         let (done, saved) = channel();
@@ -240,7 +244,7 @@ mod tests {
 
     #[test]
     fn pictures_stand_as_long_as_they_were_shown() {
-        // The second stands for three periods, the third comes in the same one as the fourth.
+        // The second is shown for three periods, the third is in the same one as the fourth.
         let shown = [(10, 5.0), (60, 5.033), (110, 5.13), (160, 5.135), (210, 5.166)];
         let (saved, files) = video("video", &[MOTION_JPEG], &shown);
         assert_eq!(saved, Saved::Done);
@@ -282,7 +286,7 @@ mod tests {
         fs::remove_file(&file).expect("a file");
     }
 
-    /// Takes two pictures and fails with the third.
+    /// Accepts two pictures and fails with the third.
     struct Breaks(u32);
 
     impl VideoEncoder for Breaks {

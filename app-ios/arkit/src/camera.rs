@@ -14,7 +14,7 @@ use objc2_core_media::CMTime;
 
 use crate::convert;
 
-/// Of durations that are set, in parts of a second.
+/// Time scale of durations that are set, in parts of a second.
 const TIMESCALE: i32 = 1_000_000_000;
 
 /// Whether the camera may be used.
@@ -23,32 +23,32 @@ pub fn permission() -> Permission {
     let Some(video) = (unsafe { AVMediaTypeVideo }) else {
         return Permission::Unknown;
     };
-    // SAFETY: video is one of the two kinds of media that may be asked for.
+    // SAFETY: video is one of the two kinds of media for which a permission exists.
     convert::permission(unsafe { AVCaptureDevice::authorizationStatusForMediaType(video) }.0)
 }
 
-/// Asks the person; the answer is what [`permission`] then says.
+/// Asks the person; [`permission`] then returns the answer.
 pub fn ask_permission() {
     // SAFETY: a constant of AVFoundation.
     let Some(video) = (unsafe { AVMediaTypeVideo }) else {
         return;
     };
-    // The answer is looked for with each picture.
+    // The answer is polled with each picture.
     let answered = RcBlock::new(|_is_granted: Bool| {});
-    // SAFETY: as above; the block takes what the method hands it, and is retained by it.
+    // SAFETY: as above; the block has the method's arguments, and is retained by it.
     unsafe { AVCaptureDevice::requestAccessForMediaType_completionHandler(video, &answered) };
 }
 
-/// An exposure to go back to.
+/// An exposure that can be restored.
 pub struct Exposure {
     duration: CMTime,
     iso: f32,
 }
 
-/// The camera of world tracking, which may be told how to expose.
+/// The camera of world tracking, if its exposure can be set.
 fn device() -> Option<Retained<AVCaptureDevice>> {
-    // The class that is asked matters, and the binding has the method on its parent alone.
-    // SAFETY: a method of every configuration's class since iOS 16 that returns a device or nil.
+    // The receiving class matters, and the binding has the method on its parent alone. SAFETY: a
+    // method of every configuration's class since iOS 16 that returns a device or nil.
     let device: Option<Retained<AVCaptureDevice>> = unsafe {
         msg_send![
             ARWorldTrackingConfiguration::class(),
@@ -61,9 +61,9 @@ fn device() -> Option<Retained<AVCaptureDevice>> {
     device
 }
 
-/// Sets the camera while it is locked for this app.
+/// Changes the camera's settings while it is locked for this app.
 fn set(device: &AVCaptureDevice, change: impl FnOnce()) {
-    // SAFETY: what is locked is unlocked below.
+    // SAFETY: it is unlocked below.
     if let Err(error) = unsafe { device.lockForConfiguration() } {
         eprintln!("arkit: the camera cannot be set: {error}");
         return;
@@ -73,7 +73,7 @@ fn set(device: &AVCaptureDevice, change: impl FnOnce()) {
     unsafe { device.unlockForConfiguration() };
 }
 
-/// Holds exposure, white balance and focus as they are, or lets them follow the picture again.
+/// Holds exposure, white balance and focus, or lets them adapt to the picture again.
 pub fn hold_exposure(is_held: bool) {
     let Some(device) = device() else { return };
     let (exposure, white_balance, focus) = if is_held {
@@ -89,7 +89,7 @@ pub fn hold_exposure(is_held: bool) {
             AVCaptureFocusMode::ContinuousAutoFocus,
         )
     };
-    // SAFETY: modes are set while the device is locked, and only those that it has.
+    // SAFETY: modes are set while the device is locked, and only those that it supports.
     set(&device, || unsafe {
         if device.isExposureModeSupported(exposure) {
             device.setExposureMode(exposure);
@@ -103,10 +103,10 @@ pub fn hold_exposure(is_held: bool) {
     });
 }
 
-/// Darkens the picture, and returns the exposure of before; none where the camera cannot.
+/// Darkens the picture, and returns the previous exposure; `None` if the camera cannot.
 pub fn underexpose() -> Option<Exposure> {
     let device = device()?;
-    // SAFETY: properties of a camera and of the format that it delivers.
+    // SAFETY: properties of a camera and of its format.
     let (held, least_duration, least_iso) = unsafe {
         let format = device.activeFormat();
         let held = Exposure {
@@ -131,14 +131,14 @@ pub fn underexpose() -> Option<Exposure> {
     Some(held)
 }
 
-/// Exposes as before.
+/// Restores an exposure.
 pub fn restore(held: &Exposure) {
     if let Some(device) = device() {
         expose(&device, held);
     }
 }
 
-/// Exposes so, which the camera holds.
+/// Sets an exposure, which the camera holds.
 fn expose(device: &AVCaptureDevice, exposure: &Exposure) {
     let custom = AVCaptureExposureMode::Custom;
     // SAFETY: the device is locked, has the mode, and both values are within its ranges.

@@ -1,4 +1,4 @@
-//! The printed card, as ARKit knows it.
+//! The printed card as an image for ARKit.
 
 use app_core::card::{PATTERN_M, reference};
 use objc2::AnyThread;
@@ -9,7 +9,7 @@ use objc2_image_io::CGImagePropertyOrientation;
 
 use ios_media::pixels;
 
-/// What the card is known by; none where there is no room for it.
+/// The card's reference image; `None` if there is no memory for it.
 pub(super) fn reference_image() -> Option<Retained<ARReferenceImage>> {
     let pattern = reference();
     let [columns, rows] = pattern.size_px.map(|side| side as usize);
@@ -19,7 +19,8 @@ pub(super) fn reference_image() -> Option<Retained<ARReferenceImage>> {
             pixel.copy_from_slice(&[*code, *code, *code, 255]);
         }
     })?;
-    // SAFETY: the buffer holds an upright picture, which is so many metres wide where it is printed.
+    // SAFETY: the buffer holds an upright picture, which has this width in metres when it is
+    // printed.
     unsafe {
         let empty = ARReferenceImage::alloc();
         let up = CGImagePropertyOrientation::Up;

@@ -14,7 +14,7 @@ use super::frame::{RawPlane, image};
 pub(super) struct Locked<'a>(&'a CVPixelBuffer);
 
 impl<'a> Locked<'a> {
-    /// None where the buffer cannot be locked.
+    /// Returns `None` if the buffer cannot be locked.
     pub(super) fn new(buffer: &'a CVPixelBuffer) -> Option<Self> {
         // SAFETY: the buffer lives, and is unlocked with the same flag when this is dropped.
         let status = unsafe { CVPixelBufferLockBaseAddress(buffer, CVPixelBufferLockFlags::ReadOnly) };
@@ -33,7 +33,8 @@ impl<'a> Locked<'a> {
         let bytes = if first.is_null() {
             &[]
         } else {
-            // SAFETY: the buffer is locked for as long as `self` lives, and has so many rows of so many bytes.
+            // SAFETY: the buffer is locked for as long as `self` lives, and has this number of rows
+            // of this length.
             unsafe { std::slice::from_raw_parts(first, n_bytes) }
         };
         RawPlane { bytes, row_stride }
@@ -47,7 +48,7 @@ impl Drop for Locked<'_> {
     }
 }
 
-/// A copy of a buffer's picture; none where it cannot be read.
+/// A copy of a buffer's picture; `None` if it cannot be read.
 pub(super) fn copied(buffer: &CVPixelBuffer) -> Option<PlanarImage> {
     let locked = Locked::new(buffer)?;
     let size_px = [CVPixelBufferGetWidth(buffer), CVPixelBufferGetHeight(buffer)];

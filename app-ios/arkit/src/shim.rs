@@ -1,12 +1,15 @@
-//! Messages that return SIMD matrices, which ARKit's classes have and no binding of theirs.
+//! Messages that return SIMD matrices, which exist in ARKit's classes but in no binding of them.
 //!
-//! On 64-bit ARM a `simd_float4x4` comes back in the registers v0 to v3 and a `simd_float3x3` in v0 to v2, as homogeneous
-//! vector aggregates (AAPCS64, 6.9). Rust takes every struct of that size through the pointer in x8, which such a method
-//! never writes to; with Rust 1.100 that changes for structs of vectors. The functions here are the same under both: they
-//! are called as if they returned plain arrays, which go through x8 before and after, send the message on with all of its
-//! arguments in their registers, and store what comes back. Arguments on the stack are not supported.
+//! On 64-bit ARM a `simd_float4x4` comes back in the registers v0 to v3 and a `simd_float3x3` in v0
+//! to v2, as homogeneous vector aggregates (AAPCS64, 6.9). Rust takes every struct of that size
+//! through the pointer in x8, which such a method never writes to; with Rust 1.100 that changes for
+//! structs of vectors. The functions here are the same under both: they are called as if they
+//! returned plain arrays, which go through x8 before and after, send the message on with all of its
+//! arguments in their registers, and store what comes back. Arguments on the stack are not
+//! supported.
 //!
-//! The file depends on nothing of Apple's, so that a test runs it in an emulator with a C function as `objc_msgSend`.
+//! The file depends on nothing of Apple's, so that a test runs it in an emulator with a C function
+//! as `objc_msgSend`.
 
 use core::arch::aarch64::{float32x4_t, vld1q_f32};
 use core::arch::naked_asm;
@@ -17,7 +20,7 @@ use core::ffi::c_void;
 #[derive(Clone, Copy)]
 pub struct Columns4(pub [[f32; 4]; 4]);
 
-/// Columns of a `simd_float3x3`, each with a fourth lane that holds nothing in particular.
+/// Columns of a `simd_float3x3`, each with a fourth lane of undefined content.
 #[repr(C, align(16))]
 #[derive(Clone, Copy)]
 pub struct Columns3(pub [[f32; 4]; 3]);
@@ -29,7 +32,7 @@ unsafe extern "C" {
 /// Sends the message `selector` without arguments to `object`, for a `simd_float4x4`.
 ///
 /// # Safety
-/// `object` is one that answers `selector`, which takes nothing and returns a `simd_float4x4`.
+/// `object` responds to `selector`, which has no arguments and returns a `simd_float4x4`.
 pub unsafe fn columns4(object: *const c_void, selector: *const c_void) -> Columns4 {
     // SAFETY: the shim passes both on in x0 and x1, and fills all 64 bytes that x8 points to.
     let send = unsafe {
@@ -38,14 +41,14 @@ pub unsafe fn columns4(object: *const c_void, selector: *const c_void) -> Column
             unsafe extern "C-unwind" fn(*const c_void, *const c_void) -> Columns4,
         >(send_for_four)
     };
-    // SAFETY: as this function demands.
+    // SAFETY: guaranteed by this function's contract.
     unsafe { send(object, selector) }
 }
 
 /// Sends the message `selector` without arguments to `object`, for a `simd_float3x3`.
 ///
 /// # Safety
-/// `object` is one that answers `selector`, which takes nothing and returns a `simd_float3x3`.
+/// `object` responds to `selector`, which has no arguments and returns a `simd_float3x3`.
 pub unsafe fn columns3(object: *const c_void, selector: *const c_void) -> Columns3 {
     // SAFETY: the shim passes both on in x0 and x1, and fills all 48 bytes that x8 points to.
     let send = unsafe {
@@ -54,17 +57,18 @@ pub unsafe fn columns3(object: *const c_void, selector: *const c_void) -> Column
             unsafe extern "C-unwind" fn(*const c_void, *const c_void) -> Columns3,
         >(send_for_three)
     };
-    // SAFETY: as this function demands.
+    // SAFETY: guaranteed by this function's contract.
     unsafe { send(object, selector) }
 }
 
 /// Sends the message `selector` with a `simd_float4x4` to `object`, for a pointer.
 ///
 /// # Safety
-/// `object` is one that answers `selector`, which takes a `simd_float4x4` and returns an object, retained or not.
+/// `object` responds to `selector`, whose argument is a `simd_float4x4` and which returns an
+/// object, retained or not.
 pub unsafe fn with4(object: *const c_void, selector: *const c_void, columns: &Columns4) -> *mut c_void {
-    // A matrix that is handed over takes v0 to v3, as four vectors do.
-    // SAFETY: the message is sent on as it came, with both pointers in x0 and x1.
+    // A matrix argument occupies v0 to v3, as four vectors do. SAFETY: the message is passed on
+    // unchanged, with both pointers in x0 and x1.
     let send = unsafe {
         core::mem::transmute::<
             unsafe extern "C" fn(),
@@ -80,11 +84,12 @@ pub unsafe fn with4(object: *const c_void, selector: *const c_void, columns: &Co
     };
     // SAFETY: every column has four lanes to load.
     let [a, b, c, d] = columns.0.map(|column| unsafe { vld1q_f32(column.as_ptr()) });
-    // SAFETY: as this function demands.
+    // SAFETY: guaranteed by this function's contract.
     unsafe { send(object, selector, a, b, c, d) }
 }
 
-/// A message whose answer is in v0 to v3. Only called with another signature, one that returns through x8.
+/// A message whose result is in v0 to v3. Only called with another signature, one that returns
+/// through x8.
 #[unsafe(naked)]
 unsafe extern "C-unwind" fn send_for_four() {
     naked_asm!(
@@ -106,7 +111,8 @@ unsafe extern "C-unwind" fn send_for_four() {
     )
 }
 
-/// A message whose answer is in v0 to v2. Only called with another signature, one that returns through x8.
+/// A message whose result is in v0 to v2. Only called with another signature, one that returns
+/// through x8.
 #[unsafe(naked)]
 unsafe extern "C-unwind" fn send_for_three() {
     naked_asm!(

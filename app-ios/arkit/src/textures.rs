@@ -1,7 +1,8 @@
 //! The camera's planes as Metal textures, without a copy.
 //!
-//! A texture keeps its pixel buffer until Metal is done with it, and so does the picture: ARKit has few, so that whoever keeps
-//! several copies them ([`CameraImage::kept`](app_core::camera_frame::CameraImage::kept)).
+//! A texture keeps its pixel buffer until Metal has finished with it, and so does the picture:
+//! ARKit has few buffers, so a caller that keeps several pictures copies them
+//! ([`CameraImage::kept`](app_core::camera_frame::CameraImage::kept)).
 
 use std::ptr::{self, NonNull};
 
@@ -17,26 +18,27 @@ use objc2_metal::{MTLPixelFormat, MTLTextureType};
 
 use super::{frame, pixels};
 
-/// What keeps memory that Metal reads.
+/// Owner of memory that Metal reads.
 struct Kept<T>(CFRetained<T>);
 
-// SAFETY: Core Foundation counts references atomically, pixel buffers and their textures may be used and released by any thread,
-// and nothing writes to a buffer that a frame was delivered with.
+// SAFETY: Core Foundation counts references atomically, pixel buffers and their textures may be
+// used and released by any thread, and nothing writes to a buffer that was delivered with a frame.
 unsafe impl<T> Send for Kept<T> {}
 // SAFETY: as above.
 unsafe impl<T> Sync for Kept<T> {}
 
-/// Makes textures of pixel buffers on the core's device.
+/// Creates textures of pixel buffers on the core's device.
 pub(super) struct TextureCache {
     device: DeviceHandle,
     cache: CFRetained<CVMetalTextureCache>,
 }
 
 impl TextureCache {
-    /// None where the device is not Metal's, or has no room.
+    /// Returns `None` if the device is not Metal's, or has no memory.
     pub(super) fn new(device: DeviceHandle) -> Option<Self> {
         let mut cache = ptr::null_mut();
-        // SAFETY: the device is not destroyed while it is looked at; the cache retains what it needs of it. What is made is owned.
+        // SAFETY: the device is not destroyed during the access; the cache retains what it needs of
+        // it. The created object is owned.
         let cache = unsafe {
             let metal = device.raw().as_hal::<hal::api::Metal>()?;
             let out = NonNull::from(&mut cache);
@@ -46,7 +48,8 @@ impl TextureCache {
         Some(Self { device, cache })
     }
 
-    /// The picture that a frame's pixel buffer holds; none where it is not one of luma and chroma, or Metal takes no more.
+    /// The picture of a frame's pixel buffer; `None` if it does not consist of luma and chroma, or
+    /// if Metal refuses it.
     pub(super) fn lend(&self, buffer: &CVPixelBuffer) -> Option<PlanarImage> {
         let encoding = frame::encoding(CVPixelBufferGetPixelFormatType(buffer)).ok()?;
         let size = [CVPixelBufferGetWidth(buffer), CVPixelBufferGetHeight(buffer)];
@@ -76,7 +79,8 @@ impl TextureCache {
     ) -> Option<wgpu::Texture> {
         let mut made: *mut CVMetalTexture = ptr::null_mut();
         let (columns, rows) = (width as usize, height as usize);
-        // SAFETY: cache and buffer live, the plane is one of two, and the size is checked by Metal. What is made is owned.
+        // SAFETY: cache and buffer live, the plane is one of two, and Metal checks the size. The
+        // created object is owned.
         let made = unsafe {
             let out = NonNull::from(&mut made);
             let status = CVMetalTextureCache::create_texture_from_image(
@@ -114,7 +118,8 @@ impl TextureCache {
             usage: wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
         };
-        // SAFETY: the texture is one of this device, of one level and layer, filled by the camera, and as it is described.
+        // SAFETY: the texture belongs to this device, has one level and layer, is filled by the
+        // camera, and matches its description.
         Some(unsafe {
             let texture = hal::metal::Device::texture_from_raw(
                 raw,

@@ -4,7 +4,8 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The phone's processor without anything of Apple's; its `core` is there for the Android shell.
+/// The phone's processor without any of Apple's software; its `core` is installed for the Android
+/// shell.
 const TARGET: &str = "aarch64-linux-android";
 
 fn run(program: &str, command: impl FnOnce(&mut Command) -> &mut Command) -> String {

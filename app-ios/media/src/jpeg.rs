@@ -1,4 +1,5 @@
-//! Pictures of recordings by the phone's own JPEG encoder, which takes the camera's planes as they are.
+//! Pictures of recordings by the phone's own JPEG encoder, which reads the camera's planes
+//! directly.
 
 use std::ptr::{self, NonNull};
 use std::sync::mpsc::channel;
@@ -16,12 +17,12 @@ use objc2_video_toolbox::{
 use crate::pixels;
 use app_shell::guard::guarded;
 
-/// From 0 to 1, as that of [`PictureCodec::PHONE`].
+/// Quality from 0 to 1, the same as that of [`PictureCodec::PHONE`].
 const QUALITY: f64 = 0.95;
-/// Of times, in a second: each picture has one of its own.
+/// Time scale in a second: each picture has a time of its own.
 const TIMESCALE: i32 = 30;
 
-/// The encoder for a recording; what it refuses is encoded as on any phone.
+/// The encoder for a recording; pictures that it refuses are encoded as on any phone.
 pub fn codec() -> PictureCodec {
     let mut encoder = Encoder::default();
     PictureCodec::Platform(Box::new(move |image| {
@@ -31,7 +32,7 @@ pub fn codec() -> PictureCodec {
 
 #[derive(Default)]
 struct Encoder {
-    /// For pictures of that size; none where the phone has none for it.
+    /// The session for pictures of that size; `None` if the phone has none for it.
     session: Option<([usize; 2], Option<Session>)>,
     n_encoded: i64,
 }
@@ -64,11 +65,12 @@ impl Encoder {
         let block = RcBlock::new(
             move |status: i32, _: VTEncodeInfoFlags, sample: *mut CMSampleBuffer| {
                 let bytes = guarded("a thread", || {
-                    // SAFETY: the encoder lends the sample for this call; none where it failed.
+                    // SAFETY: the encoder lends the sample for this call; it is null after a
+                    // failure.
                     let sample = unsafe { sample.as_ref() }.filter(|_| status == 0);
                     sample.and_then(bytes_of)
                 });
-                // Whoever waits is the thread below.
+                // The receiver is the thread below.
                 let _ = hand_over.send(bytes.flatten());
             },
         );
@@ -94,7 +96,8 @@ impl Encoder {
     }
 }
 
-/// Columns and rows of planes whose codes are those of a JPEG file: BT.601, full range, half the size in colour.
+/// Columns and rows of planes whose codes are those of a JPEG file: BT.601, full range, chroma at
+/// half the size.
 fn as_jpeg_has_it(planes: &PlanarImage) -> Option<[usize; 2]> {
     let encoding = planes.encoding();
     let size = planes.size_px().map(|side| side as usize);
@@ -107,7 +110,8 @@ fn session(size: [usize; 2]) -> Option<Session> {
     let codec = kCMVideoCodecType_JPEG;
     let mut made: *mut VTCompressionSession = ptr::null_mut();
     let out = NonNull::from(&mut made);
-    // SAFETY: without a callback each picture brings its own; what is made is owned. The property takes a number.
+    // SAFETY: without a common callback each picture has its own; the created object is owned. The
+    // property is a number.
     unsafe {
         let status = VTCompressionSession::create(
             None,
@@ -130,9 +134,9 @@ fn session(size: [usize; 2]) -> Option<Session> {
     }
 }
 
-/// The file that a sample holds.
+/// The file in a sample.
 fn bytes_of(sample: &CMSampleBuffer) -> Option<Vec<u8>> {
-    // SAFETY: the sample's own data, copied into as many bytes.
+    // SAFETY: the sample's own data, copied into a buffer of their length.
     unsafe {
         let data = sample.data_buffer()?;
         let mut bytes = vec![0_u8; data.data_length()];

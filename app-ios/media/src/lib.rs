@@ -1,4 +1,5 @@
-//! Pictures as buffers of Apple's, and the phone's own encoders: `jpeg` for recordings, `video` for videos.
+//! Pictures as Apple's pixel buffers, and the phone's own encoders: `jpeg` for recordings, `video`
+//! for videos.
 
 #[cfg(target_os = "ios")]
 pub mod jpeg;

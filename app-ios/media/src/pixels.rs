@@ -1,4 +1,4 @@
-//! Pictures as buffers that Apple's frameworks take.
+//! Pictures as buffers for Apple's frameworks.
 
 use std::ptr::{self, NonNull};
 
@@ -14,20 +14,20 @@ const BGRA: u32 = u32::from_be_bytes(*b"BGRA");
 /// `kCVPixelFormatType_420YpCbCr8BiPlanarFullRange`.
 const FULL_RANGE: u32 = u32::from_be_bytes(*b"420f");
 
-/// A buffer of as many columns and rows, whose rows are written by `fill`: its number, and four bytes a pixel, in the order
-/// blue, green, red, alpha. None where there is no room for it.
+/// A buffer of this number of columns and rows; `fill` writes each row, given its index, with four
+/// bytes per pixel in the order blue, green, red, alpha. `None` if there is no memory for it.
 pub fn bgra(size: [usize; 2], fill: impl Fn(usize, &mut [u8])) -> Option<CFRetained<CVPixelBuffer>> {
     let [columns, rows] = size;
     made(size, BGRA, |buffer| {
         let first = CVPixelBufferGetBaseAddress(buffer).cast();
         let row_bytes = CVPixelBufferGetBytesPerRow(buffer);
-        // SAFETY: the buffer is locked for writing, and has so many rows of so many bytes.
+        // SAFETY: the buffer is locked for writing, and has this number of rows of this length.
         unsafe { write_rows((first, row_bytes), [4 * columns, rows], fill) }
     })
 }
 
-/// A buffer of luma and, by turns, Cb and Cr in full range, packed as given, with even columns and rows. None where there is no
-/// room for it, or they are too short.
+/// A buffer of luma and interleaved Cb and Cr in full range, from packed data, with even numbers of
+/// columns and rows. `None` if there is no memory for it, or if the data are too short.
 pub fn planes(size: [usize; 2], [luma, chroma]: [&[u8]; 2]) -> Option<CFRetained<CVPixelBuffer>> {
     let [columns, rows] = size;
     let heights = [rows, rows / 2];
@@ -43,26 +43,28 @@ pub fn planes(size: [usize; 2], [luma, chroma]: [&[u8]; 2]) -> Option<CFRetained
             let copy = |row: usize, to: &mut [u8]| {
                 to.copy_from_slice(&planes[plane][row * columns..][..columns]);
             };
-            // SAFETY: the buffer is locked for writing, and the plane has so many rows of so many bytes.
+            // SAFETY: the buffer is locked for writing, and the plane has this number of rows of
+            // this length.
             unsafe { write_rows((first, row_bytes), [columns, heights[plane]], copy) }
         })
     })
 }
 
-/// A buffer that `write` has filled while it was locked; none where there is no room, or `write` says so.
+/// A buffer that `write` has filled while it was locked; `None` if there is no memory, or if
+/// `write` fails.
 fn made(
     [columns, rows]: [usize; 2],
     format: u32,
     write: impl FnOnce(&CVPixelBuffer) -> bool,
 ) -> Option<CFRetained<CVPixelBuffer>> {
     let mut made: *mut CVPixelBuffer = ptr::null_mut();
-    // SAFETY: a buffer without attributes of its own; what is made is owned.
+    // SAFETY: a buffer without attributes of its own; the created object is owned.
     let buffer = unsafe {
         let status = CVPixelBufferCreate(None, columns, rows, format, None, NonNull::from(&mut made));
         CFRetained::from_raw(NonNull::new(made).filter(|_| status == 0)?)
     };
     let to_write = CVPixelBufferLockFlags(0);
-    // SAFETY: nobody else has the buffer, which is unlocked with the same flags below.
+    // SAFETY: the buffer has no other user, and is unlocked with the same flags below.
     if unsafe { CVPixelBufferLockBaseAddress(&buffer, to_write) } != 0 {
         return None;
     }
@@ -72,10 +74,11 @@ fn made(
     is_written.then_some(buffer)
 }
 
-/// Has each row's bytes written; false where there are none, or rows are shorter than that.
+/// Writes each row's bytes; returns false if there are none, or if rows are shorter than that.
 ///
 /// # Safety
-/// From the first byte on there are as many rows, of `row_bytes` each, that nobody else uses.
+/// From the first byte on there is this number of rows, of `row_bytes` each, which nothing else
+/// uses.
 unsafe fn write_rows(
     (first, row_bytes): (*mut u8, usize),
     [n_bytes, rows]: [usize; 2],
@@ -84,7 +87,7 @@ unsafe fn write_rows(
     if first.is_null() || row_bytes < n_bytes {
         return false;
     }
-    // SAFETY: as the caller says.
+    // SAFETY: guaranteed by the caller.
     let bytes = unsafe { std::slice::from_raw_parts_mut(first, row_bytes * rows) };
     for (row, bytes) in bytes.chunks_mut(row_bytes).enumerate() {
         write(row, &mut bytes[..n_bytes]);

@@ -1,4 +1,4 @@
-//! Videos by the phone's own encoder: H.264 in an MP4 file, which Photos takes.
+//! Videos by the phone's own encoder: H.264 in an MP4 file, which Photos accepts.
 
 use std::io;
 use std::path::Path;
@@ -25,14 +25,14 @@ use crate::order::to_bgra;
 use crate::pixels;
 use app_shell::guard::guarded;
 
-/// The encoder, as the one that is asked first.
+/// The format of the encoder that is tried first.
 pub const H264: VideoFormat = VideoFormat {
     extension: "mp4",
     begin,
 };
-/// Of times, in a second: that of Apple's own videos, a multiple of all usual rates.
+/// Time scale in a second: that of Apple's own videos, a multiple of all usual rates.
 const TIMESCALE: i32 = 600;
-/// The encoder is given up where it is busy for longer.
+/// Time after which a busy encoder is given up.
 const PATIENCE: Duration = Duration::from_secs(5);
 const LOOK: Duration = Duration::from_millis(2);
 
@@ -50,8 +50,8 @@ fn begin(path: &Path, size_px: [u32; 2]) -> io::Result<Box<dyn VideoEncoder>> {
     let size_px = video::even(size_px).ok_or(io::ErrorKind::Unsupported)?;
     let path = path.to_str().ok_or(io::ErrorKind::InvalidInput)?;
     let url = NSURL::fileURLWithPath(&NSString::from_str(path));
-    // SAFETY: constants of AVFoundation, of the types that the keys are documented with; the settings are asked about before
-    // they are applied, and the input before it is added.
+    // SAFETY: constants of AVFoundation, with the documented types of the keys; the settings are
+    // checked before they are applied, and the input before it is added.
     unsafe {
         let (Some(video), Some(mp4)) = (AVMediaTypeVideo, AVFileTypeMPEG4) else {
             return Err(io::ErrorKind::Unsupported.into());
@@ -82,7 +82,8 @@ fn begin(path: &Path, size_px: [u32; 2]) -> io::Result<Box<dyn VideoEncoder>> {
     }
 }
 
-/// Codec, size, and the colours of a usual screen, which pictures of video share but for their curve's foot.
+/// Codec, size, and the colours of a usual screen, which are those of video except for the foot of
+/// the curve.
 unsafe fn settings([columns, rows]: [usize; 2]) -> Option<Retained<Settings>> {
     // SAFETY: constants of AVFoundation.
     let (keys, values, colour) = unsafe {
@@ -114,7 +115,7 @@ unsafe fn settings([columns, rows]: [usize; 2]) -> Option<Retained<Settings>> {
 }
 
 impl Encoder {
-    /// Waits until the encoder takes another picture.
+    /// Waits until the encoder accepts another picture.
     fn wait(&self) -> io::Result<()> {
         let n_looks = PATIENCE.as_millis() / LOOK.as_millis();
         for _ in 0..n_looks {
@@ -141,7 +142,7 @@ impl VideoEncoder for Encoder {
                 to_bgra(&picture.rgba8[row * row_bytes..], bgra);
             });
             let buffer = buffer.ok_or(io::ErrorKind::OutOfMemory)?;
-            // SAFETY: a buffer of the input's size, at a time after the one before.
+            // SAFETY: a buffer of the input's size, at a time after the previous one.
             let is_taken = unsafe {
                 self.adaptor
                     .appendPixelBuffer_withPresentationTime(&buffer, at(since_s))
@@ -158,7 +159,7 @@ impl VideoEncoder for Encoder {
         autoreleasepool(|_| {
             let (end, ended) = channel();
             let block = RcBlock::new(move || {
-                // Whoever waited may have given up.
+                // The waiting thread may have given up.
                 let _ = guarded("a thread", || end.send(()));
             });
             // SAFETY: a session was started, and nothing is added any more; the block may be called by any thread.
@@ -188,7 +189,7 @@ fn at(since_s: f64) -> CMTime {
     }
 }
 
-/// Why the writer has stopped.
+/// The reason why the writer has stopped.
 fn failure(writer: &AVAssetWriter) -> io::Error {
     // SAFETY: a property that any thread may read.
     let error = unsafe { writer.error() };

@@ -8,8 +8,10 @@ use app_core::alignment::{
     Aligner, Alignment, AlignmentReport, DiscoveredLight, LensAlignment, Observer, RatioAlignment,
 };
 use app_core::frame::FrameInput;
+use app_core::gloss::Gloss;
 use app_core::preset::Preset;
 use app_core::probe::TrackedLight;
+use app_core::reflection::Reflection;
 use app_core::scene::{Camera, Light, Receiver, Scene};
 use app_core::session::{Session, SessionFrame};
 use app_core::sharpness::Sharpness;
@@ -108,9 +110,9 @@ pub struct Alignments {
     found: Vec<Aligned>,
     /// Plates with a corrected camera, by their index.
     moved_plates: Vec<(usize, Camera)>,
-    /// The receivers, if they were fitted under the toy.
-    laid_receivers: Option<Vec<Receiver>>,
-    /// The lens, if it was estimated.
+    /// The receivers, where they are others than the session's.
+    receivers: Option<Vec<Receiver>>,
+    /// Of the lens, where it was looked for.
     lens: Option<LensAlignment>,
 }
 
@@ -119,6 +121,8 @@ struct Observed {
     index: usize,
     things: Option<Things>,
     sharpness: Sharpness,
+    gloss: Gloss,
+    reflection: Option<Reflection>,
 }
 
 /// The alignment of one frame.
@@ -209,7 +213,7 @@ impl Alignments {
             first: 0,
             found: Vec::new(),
             moved_plates: Vec::new(),
-            laid_receivers: None,
+            receivers: None,
             lens: None,
         }
     }
@@ -276,7 +280,8 @@ impl Alignments {
     /// Aligns a frame of a session's scene: the first one, the next one, or one that is aligned
     /// already, which costs nothing.
     ///
-    /// # Errors When it cannot be aligned.
+    /// # Errors
+    /// When it cannot be aligned.
     pub fn align(&mut self, scene: &Scene, index: usize, frame: &SessionFrame) -> Result<(), ReplayError> {
         if self.aligner.is_none() {
             return self.observe(scene, index, frame);
@@ -294,9 +299,7 @@ impl Alignments {
             })?;
         let cpu_ms = start.elapsed().as_secs_f64() * 1e3;
         self.moved_plates = moved_plates(scene, aligner.scene());
-        let is_laid =
-            |now: &Scene| scene.uncertainty.are_receivers_guessed && !now.uncertainty.are_receivers_guessed;
-        self.laid_receivers = is_laid(aligner.scene()).then(|| aligner.scene().receivers.clone());
+        self.receivers = other_receivers(scene, aligner.scene());
         if self.found.is_empty() {
             self.first = index;
         }
@@ -326,7 +329,10 @@ impl Alignments {
             index,
             things: observed.things,
             sharpness: observed.sharpness,
+            gloss: observed.gloss,
+            reflection: observed.reflection,
         });
+        self.receivers = other_receivers(scene, &self.observer.scene(scene));
         Ok(())
     }
 
@@ -337,7 +343,7 @@ impl Alignments {
         for (index, camera) in &self.moved_plates {
             scene.plates[*index].camera = *camera;
         }
-        if let Some(receivers) = &self.laid_receivers {
+        if let Some(receivers) = &self.receivers {
             scene.receivers.clone_from(receivers);
         }
         scene
@@ -366,10 +372,10 @@ impl Alignments {
         found.map_or(self.lights.listed(given).len(), |lights| lights.len())
     }
 
-    /// The receivers, if they were a guess and were fitted under the toy.
+    /// The receivers, where they are others than the session's: laid under the toy, or with planes that were found.
     #[must_use]
-    pub fn laid_receivers(&self) -> Option<&[Receiver]> {
-        self.laid_receivers.as_deref()
+    pub fn receivers(&self) -> Option<&[Receiver]> {
+        self.receivers.as_deref()
     }
 
     /// Plates with a corrected camera, by their index.
@@ -417,6 +423,8 @@ impl Alignments {
                     input
                         .with_things(observed.things.clone())
                         .with_sharpness(observed.sharpness)
+                        .with_gloss(observed.gloss)
+                        .with_reflection(observed.reflection)
                 })
             }
         }
@@ -452,6 +460,10 @@ impl Aligned {
             None => self.alignment.lights.clone(),
         }
     }
+}
+
+fn other_receivers(given: &Scene, now: &Scene) -> Option<Vec<Receiver>> {
+    (now.receivers != given.receivers).then(|| now.receivers.clone())
 }
 
 fn moved_plates(given: &Scene, aligned: &Scene) -> Vec<(usize, Camera)> {

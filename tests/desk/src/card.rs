@@ -68,7 +68,8 @@ impl Paper {
 
 /// The file of a picture, with its dots per metre.
 ///
-/// # Errors When the encoder fails.
+/// # Errors
+/// When the encoder fails.
 pub fn png(gray: &Gray) -> Result<Vec<u8>, image::ImageError> {
     let mut png = Vec::new();
     let [width, height] = gray.size_px;

@@ -48,8 +48,9 @@ struct Entry {
 /// Writes a session to `out`, as a recording if the path ends so, else as a folder. `index`
 /// replaces its `capture.json` if given.
 ///
-/// # Errors When `out` exists already or lies in the session's folder, a file of the session cannot
-/// be read or is a link, or the system refuses.
+/// # Errors
+/// When `out` exists already or lies in the session's folder, a file of the session cannot be read
+/// or is a link, or the system refuses.
 pub fn write(session: &Stored, index: Option<Vec<u8>>, out: &Path) -> anyhow::Result<()> {
     ensure!(
         !out.exists(),

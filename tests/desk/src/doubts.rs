@@ -172,7 +172,7 @@ fn mean_light(image: &Image) -> Option<f64> {
     (mean > 0.0).then_some(mean)
 }
 
-/// Of the toy's box in the world: its centre, and its diagonal.
+/// Centre and diagonal of the toy's box in the world.
 fn centre_and_diagonal(scene: &Scene, world_from_object: &DMat4) -> Option<[DVec3; 2]> {
     let bounds = scene.toy.bounds_of_pose(&scene.physical_pose).ok()?;
     let ends = [bounds.min, bounds.max].map(|end| world_from_object.transform_point3(end.as_dvec3()));

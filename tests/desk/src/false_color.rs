@@ -45,7 +45,7 @@ const RESIDUAL_END: f32 = 0.1;
 /// Candidates at which the ramp of the ring search ends.
 const TAPS_END: f32 = 3200.0;
 
-/// How a map is presented.
+/// Presentation of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Shown {
     /// Name in file names.
@@ -66,16 +66,16 @@ pub struct Shown {
 pub struct Swatch {
     /// The colour, as 8-bit sRGB.
     pub color: [u8; 3],
-    /// What it means.
+    /// Description of the map.
     pub meaning: &'static str,
 }
 
 /// The meaning of a ramp.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Legend {
-    /// What its first colour means.
+    /// Meaning of the first colour.
     pub low: &'static str,
-    /// What its last colour means.
+    /// Meaning of the last colour.
     pub high: &'static str,
     /// Its colours.
     pub ramp: Ramp,
@@ -167,7 +167,7 @@ pub fn describe(map: Map) -> Option<Shown> {
         Map::Validity => (
             "validity",
             "Validity",
-            "What each pixel of the camera frame shows, and so what it may be used for.",
+            "The content of each pixel of the camera frame, and thus its permitted uses.",
             None,
         ),
         Map::GbufferBase => (
@@ -179,51 +179,51 @@ pub fn describe(map: Map) -> Option<Shown> {
         Map::GbufferReceived => (
             "received",
             "Light on the toy",
-            "What each point of the real toy receives of each light, its own shadow on itself included; three lights as \
-             red, green, blue.",
+            "The light that each point of the real toy receives from each lamp, including the toy's shadow on itself; \
+             three lights as red, green, blue.",
             Some(("turned away or hidden", "in full light", GRAY)),
         ),
         Map::Appearance => (
             "appearance",
             "Toy's own colours",
-            "Colours taken from the camera frame and carried past the outline: what the moved toy is painted with.",
+            "Colours of the camera frame, extrapolated beyond the outline: the paint of the moved toy.",
             None,
         ),
         Map::PhysicalVisibility => (
             "visibility-before",
             "Light, real pose",
-            "How much of each light every point of the table sees past the real toy; three lights as red, green, blue.",
+            "The visible fraction of each light at every point of the table, past the real toy; three lights as red, green, blue.",
             light,
         ),
         Map::PhysicalAmbient => (
             "ambient-before",
             "Surroundings, real pose",
-            "How much of the surroundings every point of the table sees past the real toy.",
+            "The visible fraction of the surroundings at every point of the table, past the real toy.",
             light,
         ),
         Map::Visibility => (
             "visibility",
             "Light, shown pose",
-            "How much of each light every point of the table sees past the moved toy; three lights as red, green, blue.",
+            "The visible fraction of each light at every point of the table, past the moved toy; three lights as red, green, blue.",
             light,
         ),
         Map::Ambient => (
             "ambient",
             "Surroundings, shown pose",
-            "How much of the surroundings every point of the table sees past the moved toy.",
+            "The visible fraction of the surroundings at every point of the table, past the moved toy.",
             light,
         ),
         Map::Residual => (
             "residual",
             "Residual",
-            "What the model of light and shadow leaves unexplained, as a fraction of the plate.",
+            "The residual of the model of light and shadow, as a fraction of the plate.",
             Some(("\u{2212}0.1: darker than modelled", "+0.1: brighter", SIGNED_RAMP)),
         ),
         Map::DirectFraction => (
             "share",
             "Share of the lights (f)",
-            "How much of the table's light comes from the lights on the list, for red, green and blue; the rest comes from all around \
-             (ambient). It is f in the paper.",
+            "The share of the listed lights in the table's light, for red, green and blue; the rest is ambient. It is f in \
+             the paper.",
             Some(("0: all of it is ambient", "1: all of it is from the lights", GRAY)),
         ),
         Map::Masks => ("mask", "Object mask", MASK_CAPTION, None),

@@ -21,7 +21,8 @@ impl Frames {
 
     /// The selected range within a session of `n_frames`.
     ///
-    /// # Errors When it has not all of them, or none at all is left.
+    /// # Errors
+    /// When it has not all of them, or none at all is left.
     pub fn within(self, n_frames: usize) -> Result<Range<usize>, NoSuchFrames> {
         let frames = self.start..self.end.unwrap_or(n_frames.max(self.start));
         if frames.end <= n_frames && (self == Self::ALL || !frames.is_empty()) {

@@ -8,7 +8,8 @@ use app_core::session::{Session, SessionError};
 /// same size: `made` itself if the session has no lens. Pixels with unchanged surroundings are the
 /// photograph's own.
 ///
-/// # Errors When there is no such frame, or its picture cannot be read.
+/// # Errors
+/// When there is no such frame, or its picture cannot be read.
 pub fn through_lens(session: &dyn Session, index: usize, made: Image) -> Result<Image, SessionError> {
     Ok(match lens_for(session, index, &made)? {
         Some(lens) => {
@@ -22,7 +23,8 @@ pub fn through_lens(session: &dyn Session, index: usize, made: Image) -> Result<
 /// A map over the pinhole's picture of the frame `index`, of the same size, converted to the
 /// photograph: `map` itself if the session has no lens. Pixels beside it are zero.
 ///
-/// # Errors When there is no such frame.
+/// # Errors
+/// When there is no such frame.
 pub fn map_through_lens(session: &dyn Session, index: usize, map: Image) -> Result<Image, SessionError> {
     Ok(match lens_for(session, index, &map)? {
         Some(lens) => lens.of_map(&map),

@@ -138,14 +138,16 @@ impl Regions {
 
 /// Compares a picture with the truth over the regions of its mask. Alpha is ignored.
 ///
-/// # Errors When the size of picture or truth differs from the mask's.
+/// # Errors
+/// When the size of picture or truth differs from the mask's.
 pub fn score(picture: &Image, truth: &Truth) -> Result<Scores, SizeError> {
     measure(picture, &truth.image, &Regions::from_mask(&truth.mask))
 }
 
 /// Compares a picture with the truth, region by region. Alpha is ignored.
 ///
-/// # Errors When the size of a picture differs from the mask's.
+/// # Errors
+/// When the size of a picture differs from the mask's.
 pub fn measure(actual: &Image, truth: &Image, regions: &Regions) -> Result<Scores, SizeError> {
     regions.check_size("picture", actual)?;
     regions.check_size("truth", truth)?;
@@ -172,7 +174,8 @@ pub fn measure(actual: &Image, truth: &Image, regions: &Regions) -> Result<Score
 /// RMSE of a camera frame against the truth outside of shadows and toy, where they show the same:
 /// the noise of both and their rounding. `None` if the picture has no such pixel.
 ///
-/// # Errors When the size of frame or truth differs from the mask's.
+/// # Errors
+/// When the size of frame or truth differs from the mask's.
 pub fn floor(frame: &Image, truth: &Truth) -> Result<Option<f64>, SizeError> {
     let regions = Regions::from_mask(&truth.mask);
     regions.check_size("frame", frame)?;

@@ -20,7 +20,8 @@ pub struct Opened {
 
 /// Opens a folder or a recording. An estimated lens replaces the session's own.
 ///
-/// # Errors When it cannot be opened, or a frame cannot be read or aligned.
+/// # Errors
+/// When it cannot be opened, or a frame cannot be read or aligned.
 pub fn open(path: &Path, lens: Source, lights: Lights) -> anyhow::Result<Opened> {
     let opened = match lens {
         Source::Given => Opened {

@@ -32,14 +32,16 @@ impl WriteError {
 
 /// Makes a folder and its parents if they are missing.
 ///
-/// # Errors When the system refuses, or something else has that name.
+/// # Errors
+/// When the system refuses, or something else has that name.
 pub fn make_folder(folder: &Path) -> Result<(), WriteError> {
     fs::create_dir_all(folder).map_err(|error| WriteError::new(folder, error))
 }
 
 /// Removes a file; a missing file is no error.
 ///
-/// # Errors When the system refuses.
+/// # Errors
+/// When the system refuses.
 pub fn remove_file(path: &Path) -> Result<(), WriteError> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(WriteError::new(path, error)),
@@ -49,8 +51,8 @@ pub fn remove_file(path: &Path) -> Result<(), WriteError> {
 
 /// Writes a picture as PNG, alpha included.
 ///
-/// # Errors When its bytes do not fit its size, or the system refuses; an older file at `path`
-/// stays then.
+/// # Errors
+/// When its bytes do not fit its size, or the system refuses; an older file at `path` stays then.
 pub fn write_png(path: &Path, image: &Image) -> Result<(), WriteError> {
     write_whole(path, &png_of(path, image)?)
 }
@@ -76,7 +78,8 @@ fn png_of(path: &Path, image: &Image) -> Result<Vec<u8>, WriteError> {
 
 /// Writes a file.
 ///
-/// # Errors When the system refuses; an older file at `path` stays then, and no other file remains.
+/// # Errors
+/// When the system refuses; an older file at `path` stays then, and no other file remains.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     // Two runs with one folder must not share a temporary file.

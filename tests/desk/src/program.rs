@@ -24,7 +24,8 @@ pub fn repository() -> &'static Path {
 /// The default folder of a session's results below the repository: `results`, and in it the name of
 /// the session's folder or recording.
 ///
-/// # Errors When there is no such session.
+/// # Errors
+/// When there is no such session.
 pub fn results_of(session: &Path, results: &str) -> anyhow::Result<PathBuf> {
     // `.` and `..` have a name only after they are resolved.
     let session = session
@@ -41,7 +42,8 @@ pub fn results_of(session: &Path, results: &str) -> anyhow::Result<PathBuf> {
 
 /// Opens a folder or a recording, and reports a damaged recording's losses on standard error.
 ///
-/// # Errors When there is none.
+/// # Errors
+/// When there is none.
 pub fn open_session(path: &Path) -> Result<Stored, StoredError> {
     let session = Stored::open(path)?;
     for loss in session.losses() {
@@ -52,7 +54,8 @@ pub fn open_session(path: &Path) -> Result<Stored, StoredError> {
 
 /// Writes a text to standard output.
 ///
-/// # Errors When standard output is closed.
+/// # Errors
+/// When standard output is closed.
 pub fn print(text: &str) -> anyhow::Result<()> {
     io::stdout()
         .write_all(text.as_bytes())

@@ -32,7 +32,7 @@ use crate::output::folder::OutputFolder;
 use crate::page::pictures::Pictures;
 use crate::page::{MAPS_FOLDER, Page, folder_of, values};
 use crate::progress::Progress;
-use crate::report::{AlignmentEntry, FitEntry, FrameEntry, MapEntry, Mean, Report};
+use crate::report::{AlignmentEntry, FitEntry, FrameEntry, GlossEntry, MapEntry, Mean, Report};
 
 pub use crate::replay_error::ReplayError;
 
@@ -115,8 +115,10 @@ pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments
 /// The files of all pictures are checked before the first frame. Files of an earlier run in the output folder are
 /// removed, so that no old report lies beside new frames.
 ///
-/// # Errors When a frame cannot be read, made or written; earlier frames stay, with a report that gives the reason of
-/// the end. When the output folder holds files that no run wrote, or another run writes into it.
+/// # Errors
+/// When a frame cannot be read, made or written; earlier frames stay, with a report that gives the
+/// reason of the end. When the output folder holds files that no run wrote, or another run writes
+/// into it.
 pub fn replay(
     session: &dyn Session,
     truth: Option<&dyn GroundTruth>,
@@ -136,7 +138,8 @@ pub fn replay(
 
 /// The same with given corrections; further frames are aligned as they come. `core` makes the first preset's pictures.
 ///
-/// # Errors As [`replay`].
+/// # Errors
+/// As [`replay`].
 pub fn replay_aligned(
     (session, truth): (&dyn Session, Option<&dyn GroundTruth>),
     core: &mut Core,
@@ -384,6 +387,8 @@ impl<'a> Run<'a> {
             report,
             alignment: shot.alignments.of(shot.index).map(AlignmentEntry::from),
             sharpness: input.sharpness.into(),
+            gloss: GlossEntry::of(&input.gloss),
+            reflection: input.reflection.map(Into::into),
             scores: None,
             floor_rmse: shot.floor_rmse,
             flicker: None,

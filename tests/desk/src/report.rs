@@ -3,6 +3,8 @@
 
 use app_core::alignment::{AlignmentReport, AlignmentWarning, LensAlignment};
 use app_core::frame::{FrameReport, PassGroup, PassTime};
+use app_core::gloss::{Gloss, N_GLOSSES};
+use app_core::reflection::Reflection;
 use app_core::scene::MAX_LIGHTS;
 use app_core::sharpness::{Sharpness, Spread};
 use app_pipeline::model::state::solution::Fit;
@@ -97,6 +99,10 @@ pub struct FrameEntry {
     pub alignment: Option<AlignmentEntry>,
     /// Measured softness of the picture.
     pub sharpness: SharpnessEntry,
+    /// How glossy the toy was measured to be; none of a matt one.
+    pub gloss: Option<GlossEntry>,
+    /// How the receiver that the toy stands on was found to reflect; none where it is taken for matt.
+    pub reflection: Option<ReflectionEntry>,
     /// Error against the truth, if there is one.
     pub scores: Option<Scores>,
     /// RMSE of the camera frame against the truth outside of both shadows, where they show the
@@ -117,6 +123,27 @@ pub struct SharpnessEntry {
     pub outline_px: [f64; 2],
 }
 
+/// How a receiver reflects.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ReflectionEntry {
+    /// Width of the lobe, as Beckmann's alpha.
+    pub roughness: f64,
+    /// Linear light of the surroundings that it reflects.
+    pub surroundings: [f32; 3],
+    /// What the toy's is above it.
+    pub toy_above_surroundings: [f32; 3],
+}
+
+impl From<Reflection> for ReflectionEntry {
+    fn from(reflection: Reflection) -> Self {
+        Self {
+            roughness: reflection.roughness,
+            surroundings: reflection.surroundings,
+            toy_above_surroundings: reflection.toy_above_surroundings,
+        }
+    }
+}
+
 impl From<Sharpness> for SharpnessEntry {
     fn from(sharpness: Sharpness) -> Self {
         let axes_px = |spread: Spread| spread.axes_px().map(|axis| axis.length());
@@ -124,6 +151,24 @@ impl From<Sharpness> for SharpnessEntry {
             plate_px: axes_px(sharpness.plate_spread),
             outline_px: axes_px(sharpness.outline_spread),
         }
+    }
+}
+
+/// How glossy a toy is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct GlossEntry {
+    /// Of its surface: root mean square slope of its facets, times the square root of 2.
+    pub roughness: f32,
+    /// Of each of its first materials, the reflectance over that of smooth plastic.
+    pub strengths: [f32; N_GLOSSES],
+}
+
+impl GlossEntry {
+    /// None of a matt toy.
+    #[must_use]
+    pub fn of(gloss: &Gloss) -> Option<Self> {
+        let Gloss { roughness, strengths } = *gloss;
+        (!gloss.is_none()).then_some(Self { roughness, strengths })
     }
 }
 

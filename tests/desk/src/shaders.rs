@@ -74,8 +74,9 @@ impl ShaderFolder {
 /// Reads the WGSL files of a folder that has the layout of `shaders`; hidden files, as editors make
 /// them, are skipped.
 ///
-/// # Errors When folder or file cannot be read, a file is larger than 1 MiB or leads out of the
-/// folder, or no file is a pass's.
+/// # Errors
+/// When folder or file cannot be read, a file is larger than 1 MiB or leads out of the folder, or
+/// no file is a pass's.
 pub fn read_shaders(folder: &Path) -> Result<ShaderTexts> {
     let files = Folder::open(folder)?;
     let mut texts = Vec::new();

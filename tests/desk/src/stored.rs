@@ -39,7 +39,8 @@ pub enum StoredError {
 impl Stored {
     /// Opens a folder, or a file as a recording.
     ///
-    /// # Errors When the path does not exist, or nothing of the recording can be read.
+    /// # Errors
+    /// When the path does not exist, or nothing of the recording can be read.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, StoredError> {
         let path = path.as_ref();
         if !path.is_file() {
@@ -55,7 +56,8 @@ impl Stored {
 
     /// Paths of all its files, relative to the session.
     ///
-    /// # Errors When a folder of it cannot be read, or has a link in it.
+    /// # Errors
+    /// When a folder of it cannot be read, or has a link in it.
     pub fn paths(&self) -> anyhow::Result<Vec<String>> {
         match self {
             Self::Folder(folder) => Ok(folder.paths()?),

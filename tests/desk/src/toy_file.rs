@@ -11,8 +11,8 @@ const MAX_BYTES: u64 = 256 << 20;
 
 /// The bytes of one binary glTF: those of the file, with the files that it refers to included.
 ///
-/// # Errors When it cannot be read, is too large or no glTF, or refers to a buffer that is not
-/// beside it.
+/// # Errors
+/// When it cannot be read, is too large or no glTF, or refers to a buffer that is not beside it.
 pub fn read_toy(path: &Path) -> anyhow::Result<Vec<u8>> {
     let named = || path.display().to_string();
     let n_bytes = std::fs::metadata(path).with_context(named)?.len();

@@ -372,7 +372,7 @@ fn the_program_says_what_is_wrong() {
     let missing_arg = missing.to_str().unwrap();
     #[rustfmt::skip] // One case a line.
     let cases: [(&[&str], i32, &str); 8] = [
-        (&["--preset", "dazzling"], 2, "preset \"dazzling\" is not built; there are flat, paper, fast, balanced"),
+        (&["--preset", "dazzling"], 2, "preset \"dazzling\" does not exist; choose one of flat, paper, fast, balanced"),
         (&["--frames", "3..3"], 2, "3..3"),
         (&["--frames", "3-4"], 2, "3-4"),
         (&["--frames", "3..6"], 1, "frames 3..6 are asked for, but the session has 5"),
@@ -473,7 +473,7 @@ impl TemporaryFolder {
         Self(folder)
     }
 
-    /// What lies in it, in order.
+    /// Names in the folder, in order.
     fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.0).unwrap();
         let mut names: Vec<String> = entries

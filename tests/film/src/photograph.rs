@@ -50,7 +50,7 @@ pub enum PhotographReason {
     #[error("is larger than {} MiB, the limit: export it smaller", MOST_FILE_BYTES >> 20)]
     TooLarge,
     /// A format of phones and cameras that is not supported.
-    #[error("is a {format} file, which is not read: {export}")]
+    #[error("is {format}, which is not read: {export}")]
     Foreign {
         /// Name of the format.
         format: &'static str,
@@ -166,7 +166,11 @@ fn decode(bytes: &[u8]) -> Result<Decoded, PhotographReason> {
         decoder.set_limits(limits)?;
         decoded(decoder, bytes)
     } else {
-        Err(foreign(bytes))
+        Err(
+            app_scene::picture::kind(bytes).map_or(PhotographReason::Unknown, |(format, export)| {
+                PhotographReason::Foreign { format, export }
+            }),
+        )
     }
 }
 
@@ -246,23 +250,4 @@ fn focal_35mm(bytes: &[u8]) -> Option<f64> {
     };
     // 0 means unknown.
     (focal_mm.is_finite() && focal_mm > 0.0).then_some(focal_mm)
-}
-
-/// The format of a file that is neither PNG nor JPEG.
-fn foreign(bytes: &[u8]) -> PhotographReason {
-    const PHONE: &str =
-        "on an iPhone choose Settings, Camera, Formats, Most Compatible, or export the photograph as JPEG";
-    const CAMERA: &str = "develop it, and export it as PNG or JPEG in sRGB";
-    const OTHER: &str = "export it as PNG or JPEG";
-    let brand = bytes.get(4..12).filter(|box_| box_.starts_with(b"ftyp"));
-    let [format, export] = match brand.map(|brand| &brand[4..]) {
-        Some(b"heic" | b"heix" | b"hevc" | b"mif1" | b"msf1") => ["HEIC", PHONE],
-        Some(b"avif" | b"avis") => ["AVIF", OTHER],
-        Some(b"crx ") => ["CR3 raw", CAMERA],
-        _ if bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*") => ["TIFF, DNG or other raw", CAMERA],
-        _ if bytes.starts_with(b"RIFF") => ["WebP", OTHER],
-        _ if bytes.starts_with(b"FUJIFILM") => ["RAF raw", CAMERA],
-        _ => return PhotographReason::Unknown,
-    };
-    PhotographReason::Foreign { format, export }
 }

@@ -32,7 +32,8 @@ pub struct Stand {
 impl Stand {
     /// A volume around the toy in all of `poses`.
     ///
-    /// # Errors When a pose is none of the toy's.
+    /// # Errors
+    /// When a pose is none of the toy's.
     pub fn new(toy: &Toy, poses: &[Pose]) -> Result<Self, ToyError> {
         let view_from_object =
             DMat4::from_rotation_x(PITCH_DEG.to_radians()) * DMat4::from_rotation_y(YAW_DEG.to_radians());
@@ -55,7 +56,8 @@ impl Stand {
 
     /// Draws a pose, as large as fits a square.
     ///
-    /// # Errors When the pose is none of the toy's.
+    /// # Errors
+    /// When the pose is none of the toy's.
     pub fn draw(&self, toy: &Toy, pose: &Pose, side_px: u32) -> Result<RgbImage, ToyError> {
         let mut posed = PosedMesh::default();
         toy.pose(pose, &self.view_from_object, &mut posed)?;

@@ -33,8 +33,8 @@ impl Video {
     /// Extracts the first pictures of a video, [`PICTURES_PER_SEC`] of each second and at most
     /// `n_most`, into a folder that is made for them.
     ///
-    /// # Errors When ffmpeg is not installed, it finds no picture in the file, or the folder exists
-    /// already.
+    /// # Errors
+    /// When ffmpeg is not installed, it finds no picture in the file, or the folder exists already.
     pub fn open(path: &Path, folder: &Path, n_most: u32) -> anyhow::Result<Self> {
         let named = || path.display().to_string();
         ensure!(path.is_file(), "{}: is no file", named());

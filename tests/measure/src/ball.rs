@@ -47,7 +47,8 @@ pub fn ball_mesh(n_around: u32, n_along: u32) -> (Vec<Vec3>, Vec<u32>) {
 
 /// A closed ball of that many triangles, 40 mm in radius.
 ///
-/// # Panics With fewer than three triangles around or along it.
+/// # Panics
+/// With fewer than three triangles around or along it.
 #[must_use]
 pub fn ball(n_around: u32, n_along: u32) -> Toy {
     let (positions, indices) = ball_mesh(n_around, n_along);
@@ -58,7 +59,8 @@ pub fn ball(n_around: u32, n_along: u32) -> Toy {
 
 /// A toy that a clip lifts.
 ///
-/// # Panics When the triangles are invalid.
+/// # Panics
+/// When the triangles are invalid.
 #[must_use]
 pub fn lifted(positions: &[f32], normals: &[f32], indices: &[u32]) -> Toy {
     let mut file = Glb::new();
@@ -100,7 +102,8 @@ pub fn phone() -> Camera {
 
 /// A toy on a table, in pictures of the given size.
 ///
-/// # Panics When the toy has no clip `lift`, or a side of the picture is 0.
+/// # Panics
+/// When the toy has no clip `lift`, or a side of the picture is 0.
 #[must_use]
 pub fn scene_of(toy: Toy, n_lights: u32, (camera, size_px): (Camera, [u32; 2])) -> (Scene, FrameInput) {
     let [width_px, height_px] = size_px;

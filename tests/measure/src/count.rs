@@ -32,7 +32,8 @@ impl Counted {
 
 /// Counts each kind of frame with all else known.
 ///
-/// # Errors When the core refuses the scene or a frame.
+/// # Errors
+/// When the core refuses the scene or a frame.
 pub fn count(
     scene: &Scene,
     (preset, turned_down): (Preset, &[QualityStep]),

@@ -29,7 +29,8 @@ impl Glb {
 
     /// Appends to a list of the tree and returns the index.
     ///
-    /// # Panics When that key holds something other than a list.
+    /// # Panics
+    /// When that key holds something other than a list.
     pub fn push(&mut self, list: &str, value: Value) -> usize {
         let list = &mut self.json[list];
         if list.is_null() {
@@ -130,7 +131,8 @@ pub fn container(json: &[u8], bin: &[u8]) -> Vec<u8> {
 
 /// Tree and binary chunk of a file made by [`container`] or a similar one.
 ///
-/// # Panics When it is invalid.
+/// # Panics
+/// When it is invalid.
 #[must_use]
 pub fn chunks(file: &[u8]) -> (Value, &[u8]) {
     let (length, chunks) = file[12..].split_first_chunk().expect("a file has a chunk");

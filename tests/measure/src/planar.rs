@@ -19,7 +19,8 @@ fn code(value: f64) -> u8 {
 
 /// `image` as planes: chroma is the mean over four pixels.
 ///
-/// # Errors When its size is invalid.
+/// # Errors
+/// When its size is invalid.
 pub fn planar(image: &Image, encoding: YcbcrEncoding) -> Result<PlanarImage, PlaneError> {
     let [width, height] = [image.width_px as usize, image.height_px as usize];
     let ycbcr = |x: usize, y: usize| {

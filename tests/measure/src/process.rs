@@ -11,7 +11,8 @@ const RESET_PEAK: &str = "5";
 
 /// Processor seconds of all threads.
 ///
-/// # Errors Without `/proc`.
+/// # Errors
+/// Without `/proc`.
 pub fn cpu_secs() -> anyhow::Result<f64> {
     let stat = fs::read_to_string("/proc/self/stat")?;
     // The name may contain anything; the fields after its bracket are numbers.
@@ -23,21 +24,24 @@ pub fn cpu_secs() -> anyhow::Result<f64> {
 
 /// Present memory in MiB.
 ///
-/// # Errors Without `/proc`.
+/// # Errors
+/// Without `/proc`.
 pub fn held_mib() -> anyhow::Result<f64> {
     status_mib("VmRSS:")
 }
 
 /// Largest memory in MiB since the last [`reset_peak`].
 ///
-/// # Errors Without `/proc`.
+/// # Errors
+/// Without `/proc`.
 pub fn peak_mib() -> anyhow::Result<f64> {
     status_mib("VmHWM:")
 }
 
 /// Resets the peak.
 ///
-/// # Errors Without `/proc`.
+/// # Errors
+/// Without `/proc`.
 pub fn reset_peak() -> anyhow::Result<()> {
     Ok(fs::write("/proc/self/clear_refs", RESET_PEAK)?)
 }

@@ -54,7 +54,7 @@ pub fn task(name: &str) -> Option<&'static str> {
         "align" | "placement" => 0,
         "masks" | "eligible" | "census" | "gbuffer" | "validity" | "things" | "withhold" | "moved_mask"
         | "coverage" => 1,
-        "toy" | "appearance" | "rim" | "tint" | "tint_fill" | "self_shadow" => 2,
+        "toy" | "appearance" | "rim" | "gloss" | "tint" | "tint_fill" | "self_shadow" => 2,
         "warp" | "occlusion" => 3,
         // Sampling of the real shadow: by a search there, by a fit and a residual here.
         "search" | "lit" | "fit" | "fit_solve" | "residual" | "fill" | "detail" => 4,
@@ -70,7 +70,8 @@ pub fn task(name: &str) -> Option<&'static str> {
 /// Runs all frames of a session with a preset twice, and profiles the second run, in which nothing
 /// is compiled.
 ///
-/// # Errors When a frame cannot be read or made.
+/// # Errors
+/// When a frame cannot be read or made.
 pub fn profile(session: &dyn Session, core: &mut Core, preset: Preset) -> Result<Profile, ProfileError> {
     let scene = session.scene();
     let start = Instant::now();
@@ -124,7 +125,8 @@ pub fn profile(session: &dyn Session, core: &mut Core, preset: Preset) -> Result
 
 /// Reads a profile of a phone, or of another run.
 ///
-/// # Errors When it is invalid, or has another version.
+/// # Errors
+/// When it is invalid, or has another version.
 pub fn parse(text: &str) -> Result<Profile, ProfileError> {
     let profile: Profile = serde_json::from_str(text)?;
     if profile.about.version != app_core::profile::VERSION {

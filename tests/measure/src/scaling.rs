@@ -110,7 +110,8 @@ const MOVED: &str = "MiB moved, without showing the picture";
 
 /// By the picture's width, with the same region.
 ///
-/// # Errors When the core refuses the scene.
+/// # Errors
+/// When the core refuses the scene.
 pub fn by_picture() -> Result<Sweep, CoreError> {
     let setups: Vec<Setup> = [[2000, 1400], [2436, 1400], [3200, 1600], [4000, 1800]]
         .map(|size_px: [u32; 2]| {
@@ -128,7 +129,8 @@ pub fn by_picture() -> Result<Sweep, CoreError> {
 
 /// By the pixels of the region.
 ///
-/// # Errors As above.
+/// # Errors
+/// As above.
 pub fn by_area() -> Result<Sweep, CoreError> {
     let scenes = [0.4, 0.6, 0.8, 1.0, 1.1].map(|ratio| scene_of(ball(FINE[0], FINE[1]), 1, zoomed(ratio)));
     let setups: Result<Vec<Setup>, CoreError> = scenes

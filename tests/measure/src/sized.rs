@@ -12,7 +12,8 @@ pub type SizePx = [u32; 2];
 
 /// Parses `1280x720`.
 ///
-/// # Errors When it is invalid, or a side is not from 1 to 8192.
+/// # Errors
+/// When it is invalid, or a side is not from 1 to 8192.
 pub fn parse_size(text: &str) -> Result<SizePx, String> {
     let side = |side: &str| side.parse().ok().filter(|side| (1..=8192).contains(side));
     let (width, height) = text.split_once('x').ok_or("WIDTHxHEIGHT, such as 1280x720")?;

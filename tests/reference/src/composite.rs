@@ -3,7 +3,9 @@
 use glam::{DVec3, DVec4, UVec2};
 
 use super::grid::PlaneGrid;
-use super::model::{BRIGHTEST_USABLE, Pictures, ReceiverPoint, Region, Solution, centre_px, coarse_at};
+use super::model::{
+    BRIGHTEST_USABLE, DARKEST_USABLE, Pictures, ReceiverPoint, Region, Solution, centre_px, coarse_at,
+};
 use super::raster::Raster;
 use super::smoothstep;
 
@@ -71,25 +73,36 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
     let model = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
         model_in(coarse_at(ambient, region, at), visibility.at(texel))
     };
+    let reflected = |visibility: DVec4, part: f64| {
+        let reflection = region.reflection.as_ref();
+        let light = reflection.map_or(DVec3::ZERO, |reflection| {
+            reflection.light(point, visibility, part)
+        });
+        shown.solution.gain * light
+    };
+    let old_image = reflected(pictures.visibility.at(texel), 1.0);
+    let new_image = reflected(shown.visibility.at(texel), shown.strength.min(1.0));
     let before = model(&pictures.ambient, &pictures.visibility);
     let open = model_in(1.0, DVec4::ONE);
     let after = strengthened(open, model(&shown.ambient, &shown.visibility), shown.strength);
     let [before, after] = [before, after].map(|model| shown_model(&shown.solution, point, model, plate));
-    let change = if shown.solution.intensities.is_empty() {
+    let darker = if shown.solution.intensities.is_empty() {
         // The strength of the shadow is unconstrained.
         let ambient = [&pictures.ambient, &shown.ambient].map(|map| coarse_at(map, region, at));
         (strengthened(DVec3::ONE, DVec3::splat(ambient[1]), shown.strength).x - ambient[0]).abs()
     } else {
         (after - before).abs().max_element()
     };
+    let of_image = (new_image - old_image).abs() / lit.max(DVec3::splat(DARKEST_USABLE));
+    let change = darker.max(of_image.max_element());
 
     let grid = &shown.grids[point.receiver];
     let pooled = grid.value_at(&shown.residuals[point.receiver], point.in_plane);
     let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, change));
     let unknown = smoothstep(OUTLIER_NONE, OUTLIER_ALL, pooled.abs().max_element());
     let object = unknown * (1.0 - shadow_likeness(pooled));
-    let made = lit * (after + residual).max(DVec3::ZERO);
-    let kept = frame + lit * (1.0 - object) * (after - before);
+    let made = lit * (after + residual).max(DVec3::ZERO) + new_image;
+    let kept = frame + (1.0 - object) * (lit * (after - before) + new_image - old_image);
     let near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, change);
     let keep = seen * near.max(unknown);
 

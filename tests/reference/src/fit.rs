@@ -84,6 +84,8 @@ pub struct ReceiverSample {
     pub ambient: f64,
     /// Visibility of each light.
     pub visibility: DVec4,
+    /// What the receiver reflects, over the gain.
+    pub reflected: DVec3,
 }
 
 /// Every `stride_px`th pixel, along each side, that shows the receiver alone.
@@ -101,6 +103,7 @@ pub fn receiver_samples(region: &Region, pictures: &Pictures, stride_px: u32) ->
             point,
             ambient: coarse_at(&pictures.ambient, region, at),
             visibility: pictures.visibility.at(*texel),
+            reflected: region.reflected(point, pictures.visibility.at(*texel)),
         })
     };
     taken.texels().iter().filter_map(sample).collect()
@@ -160,7 +163,7 @@ fn receiver_equations(
     let mut of_clipped = 0.0;
     for sample in samples {
         let [frame, plate] = [sample.frame, sample.plate].map(|color| color[channel]);
-        let value = frame / before.gain[channel];
+        let value = frame / before.gain[channel] - sample.reflected[channel];
         let total = before.plate_falloff(region, sample.point)[channel];
         let plane = region.plane_of(sample.point);
         let ambient = sample.ambient;
@@ -317,7 +320,7 @@ fn take_receiver(
 }
 
 /// A pixel of one surface of the toy.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ToySample {
     /// Linear colour of the camera's frame.
     pub frame: DVec3,
@@ -327,6 +330,8 @@ pub struct ToySample {
     pub normal: DVec3,
     /// Cosine to each light times its visibility.
     pub received: DVec4,
+    /// What a glossy surface reflects of each unknown's light, at the plate's level; empty of a matt one.
+    pub reflected: Vec<f64>,
 }
 
 /// Fits the light on the toy in `n_steps`, from `start`, which stays without evidence.
@@ -433,10 +438,16 @@ fn toy_equations(
     for sample in samples {
         let [frame, base] = [sample.frame, sample.base].map(|color| color[channel]);
         let value = frame / before.gain[channel];
-        let columns: Vec<f64> = toy_columns(sample.normal, sample.received, &before.intensities)
+        let of_sky: f64 = sample.reflected.iter().take(2).sum();
+        let mut columns: Vec<f64> = toy_columns(sample.normal, sample.received, &before.intensities)
             .into_iter()
             .map(|column| base * column[channel])
             .collect();
+        let levels = [1.0, 1.0].into_iter();
+        let levels = levels.chain(before.intensities.iter().map(|intensity| intensity[channel]));
+        for ((column, reflected), level) in columns.iter_mut().zip(&sample.reflected).zip(levels) {
+            *column += level * reflected;
+        }
         let mut weight = evidence(frame, frame);
         if is_reweighted {
             let model: f64 = columns
@@ -444,7 +455,7 @@ fn toy_equations(
                 .zip(&before.toy)
                 .map(|(column, toy)| *column * toy[channel])
                 .sum();
-            weight *= cauchy_weight(value - model, TOY_CAUCHY_SCALE * base);
+            weight *= cauchy_weight(value - model, TOY_CAUCHY_SCALE * (base + of_sky));
         }
         equations.observe(&columns, value, weight);
     }

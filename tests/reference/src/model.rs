@@ -8,6 +8,7 @@ use app_pipeline::passes::globals::globals;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
 use super::raster::Raster;
+use super::reflection::Reflection;
 
 /// Linear value of the 8-bit code 10: darker ones are mostly quantisation.
 pub(super) const DARKEST_USABLE: f64 = 0.003_035_27;
@@ -28,6 +29,8 @@ pub struct Region {
     pub border_px: [f64; 4],
     /// Homogeneous, in anchor space: (position, 1) or (unit direction to the light, 0).
     pub lights: Vec<DVec4>,
+    /// How the first receiver reflects; none where it is matt.
+    pub reflection: Option<Reflection>,
 }
 
 /// One receiver as the camera sees it.
@@ -121,7 +124,15 @@ impl Region {
             size_px: rect.size_px,
             border_px: globals.border_px.map(f64::from),
             lights: lights_in(&world_from_anchor.inverse()),
+            reflection: None,
         }
+    }
+
+    /// Light that a receiver reflects at a point, over the gain.
+    #[must_use]
+    pub fn reflected(&self, point: ReceiverPoint, visibility: DVec4) -> DVec3 {
+        let reflection = self.reflection.as_ref();
+        reflection.map_or(DVec3::ZERO, |reflection| reflection.light(point, visibility, 1.0))
     }
 
     /// The nearest receiver at `region_px`, and its point; `None` if that is the receiver's back.

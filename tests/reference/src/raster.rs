@@ -48,7 +48,8 @@ impl<T: Copy> Raster<T> {
 
     /// The texel at (column, row).
     ///
-    /// # Panics Outside the rectangle.
+    /// # Panics
+    /// Outside the rectangle.
     #[must_use]
     pub fn at(&self, texel: UVec2) -> T {
         assert!(texel.cmplt(self.size).all(), "no texel {texel} in {}", self.size);

@@ -51,7 +51,8 @@ impl Sums {
         }
         let ambient = coarse_at(&pictures.ambient, region, centre_px(texel));
         let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
-        let unexplained = frame / solution.gain - plate * model;
+        let reflected = region.reflected(point, pictures.visibility.at(texel));
+        let unexplained = frame / solution.gain - reflected - plate * model;
         let relative = unexplained.length_squared() / (brightness * CAUCHY_SCALE.powi(2));
         for channel in 0..3 {
             let evidence = evidence(frame[channel], plate[channel]) * pictures.seen.at(texel);

@@ -1,5 +1,5 @@
-//! Toy and lights are found in the pictures of the bundled session, however they were given within some millimetres and
-//! degrees; what is right stays as it is.
+//! Toy and lights are found in the pictures of the bundled session although the given values are
+//! off by some millimetres and degrees; correct values stay.
 
 use std::sync::Arc;
 
@@ -12,12 +12,13 @@ use measure::photographer::{Shot, World};
 
 use super::bundled::SESSION;
 
-/// Where the pose that is found with the recorded one may differ from it, at the corners of the toy's box: the session was
-/// rendered with few samples a pixel.
+/// Largest difference between the pose that is found and the recorded one at the corners of the
+/// toy's box: the session was rendered with few samples per pixel.
 const RECORDED_PX: f64 = 0.3;
-/// Poses that are found from different starts differ by no more than this part of the deviation that is claimed for them.
+/// Largest difference of poses that are found from different starts, as a share of the standard
+/// deviation that is reported for them.
 const OF_CLAIMED: f64 = 0.5;
-/// Where directions of a light may differ that are found from different starts.
+/// Largest difference of a light's directions that are found from different starts.
 const SAME_DEG: f64 = 0.02;
 
 fn aligner() -> Aligner {
@@ -28,7 +29,7 @@ fn align(input: &FrameInput) -> Alignment {
     aligner().align(input).unwrap()
 }
 
-/// The session's first frame, with the toy moved about its middle by millimetres and degrees.
+/// The session's first frame, with the toy moved about its centre by millimetres and degrees.
 fn disturbed(axis: DVec3, mm: DVec3, deg: f64) -> FrameInput {
     let mut input = SESSION.1.clone();
     let middle = toy_in_world();
@@ -60,7 +61,7 @@ fn apart_px(a: &DMat4, b: &DMat4) -> f64 {
     corners_apart_px([a, b].map(|world_from_object| camera_from_world * *world_from_object))
 }
 
-/// The same of the recorded pose, seen by two cameras.
+/// The same for the recorded pose in two cameras.
 fn cameras_apart_px(a: &DMat4, b: &DMat4) -> f64 {
     corners_apart_px(
         [a, b].map(|world_from_camera| world_from_camera.inverse() * SESSION.1.world_from_object),
@@ -138,7 +139,7 @@ fn a_disturbed_pose_comes_back_to_one_place() {
         disturbed(DVec3::new(1.0, 1.0, -1.0), DVec3::new(7.0, 5.0, -5.0), 6.0),
     ];
     let found = starts.map(|start| {
-        // What is found is not what was given.
+        // The pose that is found is not the given one.
         assert!(apart_px(&start.world_from_object, &SESSION.1.world_from_object) > 5.0);
         let found = align(&start);
         let pose = found.report.pose.unwrap();
@@ -223,7 +224,7 @@ fn a_world_elsewhere_has_the_same_correction() {
     assert!(here.abs_diff_eq(there, 1e-8), "{here} and {there}");
 }
 
-/// A camera moved by millimetres and turned by degrees, as a tracker would tell it.
+/// A camera moved by millimetres and turned by degrees, as a tracker would report it.
 fn shaken(camera: &Camera, mm: DVec3, deg: DVec3) -> Camera {
     let step = DMat4::from_rotation_translation(DQuat::from_scaled_axis(deg.map(f64::to_radians)), 1e-3 * mm);
     Camera {
@@ -291,13 +292,13 @@ fn what_was_found_is_kept_as_long_as_it_holds() {
     let mut aligner = aligner();
     let first = aligner.align(&input).unwrap();
     assert!(first.lights.is_some());
-    // The same lights in another picture of the same view are those that were found before.
+    // The lights of another picture of the same view are those that were found before.
     let mut again = input.clone();
     again.image = Image::clone(input.image.rgba()).into();
     let again = aligner.align(&again).unwrap();
     assert_eq!(again.lights, first.lights);
     assert_eq!(again.report.lights, first.report.lights);
-    // Other lights are not overwritten by them; where there are none they are looked for.
+    // Other listed lights are not replaced by them; an empty list starts a search.
     let mut other = input.clone();
     other.lights = Some(vec![SESSION.0.lights[0]; 5].into());
     let found = aligner.align(&other).unwrap();
@@ -305,7 +306,7 @@ fn what_was_found_is_kept_as_long_as_it_holds() {
     other.lights = Some(Arc::new([]));
     let found = aligner.align(&other).unwrap();
     assert_eq!((found.report.lights.len(), found.report.discovered.len()), (0, 1));
-    // A picture that does not show the toy is not taken for the one before.
+    // A picture without the toy is not treated like the previous one.
     let mut other = input.clone();
     other.image = Arc::clone(&SESSION.0.plates[0].image).into();
     assert_ne!(aligner.align(&other).unwrap().report, first.report);
@@ -324,7 +325,7 @@ fn a_toy_that_stands_still_is_not_moved_by_its_tracker() {
         .iter()
         .map(|(along, mm)| {
             let mut input = disturbed(*along, *mm * DVec3::ONE, *mm);
-            // Another picture, as far as anybody knows.
+            // For all that the aligner knows, this is another picture.
             input.image = Image::clone(input.image.rgba()).into();
             aligner.align(&input).unwrap().world_from_object
         })
@@ -332,7 +333,8 @@ fn a_toy_that_stands_still_is_not_moved_by_its_tracker() {
     assert!(poses.iter().all(|pose| *pose == poses[0]), "{poses:?}");
 }
 
-/// Boxes on a table, photographed twice; the tracker does not know that they were pushed in between.
+/// Boxes on a table, photographed twice; the tracker does not know that they were pushed in
+/// between.
 #[test]
 fn a_toy_that_was_nudged_is_found_in_the_next_picture() {
     let before = World::boxes().resized([320, 180]);
@@ -367,7 +369,8 @@ fn a_toy_that_was_nudged_is_found_in_the_next_picture() {
             .map(|world_from_object| world_from_object.transform_point3(at));
         found.distance(there)
     });
-    // The far corner was pushed by 12 mm; with four rays a pixel, 1.2 mm wide, measured: 1 mm, along the line of sight.
+    // The far corner was pushed by 12 mm; with four rays per pixel, 1.2 mm wide, the measured error
+    // is 1 mm, along the line of sight.
     assert!(off_m.iter().all(|off_m| *off_m < 1.5e-3), "{off_m:?} m off");
 }
 
@@ -445,8 +448,8 @@ fn pictures_of_another_size_are_refused() {
     assert!(refused.to_string().contains("camera frame"), "{refused}");
 }
 
-/// Turned further than the outline's coarse rounds reach, but upright, as a ghost is that a hand drops on the table. One
-/// that floats above it is not looked for, and is not taken for found.
+/// A ghost that a hand drops on the table: turned farther than the outline's coarse rounds search,
+/// but upright. A ghost that floats above the table is not searched, and is not reported as found.
 #[test]
 fn a_ghost_dropped_on_the_plane_is_found_upright() {
     let recorded = &SESSION.1.world_from_object;

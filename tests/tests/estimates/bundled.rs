@@ -14,7 +14,7 @@ pub(crate) static SESSION: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
     (session.scene().clone(), input)
 });
 
-/// Middle of the box around its toy, in the world.
+/// Centre of the box around its toy, in the world.
 pub(crate) fn middle(world_from_object: &DMat4) -> DVec3 {
     desk::alignment::middle(&SESSION.0, world_from_object)
 }

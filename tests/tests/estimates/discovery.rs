@@ -1,6 +1,8 @@
-//! Lights that nobody lists are found by the toy's shadow: as many as there are, where they are, and none where there is none.
+//! Lights that are not listed are found by the toy's shadow: in the right number, at their places,
+//! and none if there is none.
 //!
-//! Worlds are photographed by exact rays; what is found is compared with the lamps that lit them.
+//! Worlds are photographed by exact rays; the lights that are found are compared with the true
+//! lamps.
 
 use std::sync::{Arc, LazyLock};
 
@@ -17,7 +19,7 @@ use measure::photographer::{Lamp, Quality, Shot, World};
 /// Size of the pictures: 1 px is a third of a millimetre on the table.
 const SIZE_PX: [u32; 2] = [512, 288];
 
-/// Of the boxes under some lamps, without a list of them.
+/// Photograph and alignment of the boxes under some lamps, without a list of them.
 fn discover(lamps: Vec<Lamp>) -> (Shot, Alignment) {
     let shot = photographed(lamps);
     let found = Aligner::new(shot.scene.clone()).align(&shot.input).unwrap();
@@ -43,7 +45,7 @@ fn photographed(lamps: Vec<Lamp>) -> Shot {
     shot
 }
 
-/// What is found of each lamp, nearest first; as many as there are lamps.
+/// The lights that are found for the lamps, nearest first; as many as there are lamps.
 fn matched(lamps: &[Lamp]) -> Vec<(DiscoveredLight, SeenLight)> {
     let (shot, found) = discover(lamps.to_vec());
     let mut lights = found.report.discovered.clone();
@@ -102,7 +104,8 @@ fn no_lamp_is_found_where_there_is_none() {
     );
 }
 
-/// Nor is it a lamp that lights a third of the sky: it is assumed, coarsely, and said.
+/// A lamp that covers a third of the sky is not found either: it is assumed, coarsely, and a
+/// warning reports that.
 #[test]
 fn a_window_is_assumed() {
     let window = toward(40.0, 60.0);
@@ -120,7 +123,7 @@ fn a_window_is_assumed() {
     );
 }
 
-/// A light that is no disc is several, whether it is listed as one or not.
+/// A light that is not a disc is found as several, whether it is listed as one or not.
 #[test]
 fn a_tube_is_several_lights() {
     const N_BULBS: i32 = 13;
@@ -199,7 +202,7 @@ static BUNDLED: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
     (session.scene().clone(), input)
 });
 
-/// The bundled session's bulb as seen from its toy.
+/// The bundled session's bulb, relative to its toy.
 fn bundled_light() -> SeenLight {
     let (scene, input) = &*BUNDLED;
     let bounds = scene.toy.bounds_of_pose(&scene.physical_pose).unwrap();
@@ -217,7 +220,7 @@ fn the_bundled_bulb_is_found_and_kept() {
     assert_near(&(found.report.discovered[0], bundled_light()), 0.1, 0.03, 0.05);
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
     assert_eq!(found.applied_to(&input).lights, found.lights);
-    // In another picture it is not looked for again.
+    // In another picture it is not searched again.
     let mut again = input.clone();
     again.image = app_core::scene::Image::clone(input.image.rgba()).into();
     let again = aligner.align(&again).unwrap();
@@ -260,7 +263,7 @@ fn without_a_plate_no_lamp_is_found_where_there_is_none() {
     assert_eq!(found.no_light, Some(NoLight::NoneDominant), "{found:#?}");
 }
 
-/// What a platform tells of the light, as many degrees off the bundled bulb.
+/// A platform's light estimate, off the bundled bulb by this many degrees.
 fn estimated(off_deg: f64) -> LightEstimate {
     let direction = bundled_light().direction_in_world;
     let about = glam::DQuat::from_axis_angle(direction.any_orthonormal_vector(), off_deg.to_radians());
@@ -307,7 +310,7 @@ fn harmonics_point_to_most_of_the_light() {
     };
     let pointed = estimate.direction_in_world().unwrap();
     assert!(pointed.abs_diff_eq(direction, 1e-12), "{pointed}");
-    // The platform's own direction comes before them; an even light points nowhere.
+    // The platform's own direction takes precedence over them; an even light has no direction.
     estimate.direction_to_light_in_world = Some(DVec3::Y);
     assert_eq!(estimate.direction_in_world(), Some(DVec3::Y));
     estimate = LightEstimate {

@@ -1,4 +1,5 @@
-//! The focal length of the bundled session is found by toy and shadow, whatever else is off; what is right stays as it is.
+//! The focal length of the bundled session is found by toy and shadow, whatever else is off; a
+//! correct one stays.
 
 use std::sync::Arc;
 
@@ -9,7 +10,7 @@ use glam::{DMat4, DQuat, DVec3};
 
 use super::bundled::{SESSION, middle};
 
-/// What the ratio that is found may be off by: the session was rendered with few samples a pixel.
+/// Largest error of the ratio that is found: the session was rendered with few samples per pixel.
 const RATIO: f64 = 6e-4;
 
 fn lengthened(camera: &Camera, ratio: f64) -> Camera {
@@ -19,7 +20,7 @@ fn lengthened(camera: &Camera, ratio: f64) -> Camera {
     camera
 }
 
-/// The session with a focal length that is off, in plates and frame.
+/// The session with a wrong focal length in plates and frame.
 fn off(ratio: f64) -> (Scene, FrameInput) {
     let (mut scene, mut input) = SESSION.clone();
     for plate in &mut scene.plates {
@@ -29,7 +30,7 @@ fn off(ratio: f64) -> (Scene, FrameInput) {
     (scene, input)
 }
 
-/// Toy and light off as well: 5 mm and 3 degrees, 10 degrees and twice the size.
+/// Toy and light are wrong as well: by 5 mm and 3 degrees, by 10 degrees and twice the size.
 fn disturbed(input: &FrameInput) -> FrameInput {
     let at = middle(&input.world_from_object);
     let Light::Sphere {
@@ -71,7 +72,7 @@ fn a_focal_length_that_is_off_is_found() {
             assert_eq!(report.outcome, RatioOutcome::Corrected, "{report:?}");
             assert!((ratio * report.ratio - 1.0).abs() < RATIO, "{ratio}: {report:?}");
             assert!(off_mm(&found) < 0.5, "{} mm off", off_mm(&found));
-            // It comes out with the frame and with the plates.
+            // The result contains it for the frame and for the plates.
             let corrected = lengthened(&input.camera, report.ratio).intrinsics;
             assert_eq!(found.applied_to(&input).camera.intrinsics, corrected);
             assert_eq!(aligner.scene().plates[0].camera.intrinsics, corrected);
@@ -79,7 +80,7 @@ fn a_focal_length_that_is_off_is_found() {
     }
 }
 
-/// What the test above is worth: where nobody asks, the toy is found on its table in another size.
+/// Control for the test above: without a request, the toy is found on its table in another size.
 #[test]
 fn a_focal_length_that_nobody_asks_for_stays() {
     let (scene, input) = off(1.01);
@@ -116,7 +117,7 @@ fn a_focal_length_that_is_right_changes_nothing() {
 fn it_is_found_once_and_kept() {
     let (scene, input) = off(1.01);
     let mut aligner = Aligner::new(scene).with_unknown_focal_length();
-    // A view without the toy does not tell it, and does not end the search.
+    // A view without the toy does not constrain it, and does not end the search.
     let empty = input.clone().with_image(Arc::clone(&SESSION.0.plates[0].image));
     let unseen = aligner.align(&empty).unwrap();
     let outcome = unseen.report.focal_length.unwrap().outcome;
@@ -125,7 +126,7 @@ fn it_is_found_once_and_kept() {
     let first = aligner.align(&input).unwrap();
     let ratio = first.report.focal_length.unwrap().ratio;
     assert!((1.01 * ratio - 1.0).abs() < RATIO, "{ratio}");
-    // Another picture, by a camera that zoomed: the same part of what is given.
+    // Another picture, by a camera that zoomed: the same ratio to the given focal length.
     let image = Image::clone(input.image.rgba());
     let camera = lengthened(&input.camera, 1.002);
     let zoomed = input.with_image(image).with_camera(camera);
@@ -137,7 +138,7 @@ fn it_is_found_once_and_kept() {
     );
 }
 
-/// Both move the shadow's foot as another focal length would; the outline knows better.
+/// Both move the shadow's foot like another focal length; the outline resolves it.
 #[test]
 fn a_lower_table_and_a_larger_toy_are_no_focal_length() {
     let (mut lower, input) = SESSION.clone();

@@ -1,4 +1,4 @@
-//! A session of photographs: the toy says where camera and table were, and its shadow where the light was.
+//! A session of photographs: the toy determines camera and table, and its shadow the light.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,8 @@ use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, Rgb, RgbImage};
 
-/// The lens of the bundled session as on 35 mm film: its picture has 640 x 360 px and a focal length of 576 px.
+/// The 35 mm equivalent of the bundled session's lens: its picture has 640 x 360 px and a focal
+/// length of 576 px.
 const BUNDLED_35MM: f64 = 33.939;
 
 fn bundled(file: &str) -> PathBuf {
@@ -37,7 +38,7 @@ fn wanted(photographs: &[&str]) -> Wanted {
     }
 }
 
-/// From the table, whose +Y is up, and from the toy to the camera.
+/// Transforms from the table, whose +Y is up, and from the toy to the camera.
 fn in_camera(capture: &Capture) -> [DMat4; 2] {
     let scene = capture.scene();
     let camera_from_world = capture.frame(0).unwrap().camera.world_from_camera.inverse();
@@ -66,9 +67,9 @@ fn a_plate_and_a_photograph_become_the_session_that_they_are_of() {
     assert!(off_m < 3e-4, "the toy is {off_m} m off");
     let normals = [table, true_table].map(|table| table.y_axis.truncate());
     let off_deg = normals[0].angle_between(normals[1]).to_degrees();
-    // Pictures with twice as many pixels a side are held to a tenth of a degree.
+    // For pictures with twice as many pixels a side the limit is a tenth of a degree.
     assert!(off_deg < 0.2, "the table is {off_deg} degrees off");
-    // As seen from the toy, in the camera's space.
+    // Direction from the toy, in the camera's space.
     let towards = |capture: &Capture, toy: DMat4, table: DMat4| {
         let world_from_table = capture.scene().receivers[0].world_from_plane;
         let camera_from_world = table * world_from_table.inverse();
@@ -101,14 +102,14 @@ fn a_lens_that_nothing_states_is_asked_for() {
     assert!(error.to_string().contains("--focal-35mm"), "{error}");
 }
 
-/// EXIF with an orientation and a focal length as on 35 mm film, as a segment of a JPEG.
+/// EXIF with an orientation and a 35 mm equivalent focal length, as a segment of a JPEG.
 fn exif(orientation: u16, focal_35mm: u16) -> Vec<u8> {
     let mut tiff = b"II*\0\x08\0\0\0".to_vec();
     let entry = |tag: u16, kind: u16, value: u32| {
         let [tag, kind] = [tag, kind].map(u16::to_le_bytes);
         [&tag[..], &kind, &1_u32.to_le_bytes(), &value.to_le_bytes()].concat()
     };
-    // The first directory: orientation, and where the directory of EXIF's own tags is.
+    // The first directory: orientation, and the position of the directory of EXIF's own tags.
     tiff.extend(2_u16.to_le_bytes());
     tiff.extend(entry(0x0112, 3, orientation.into()));
     tiff.extend(entry(0x8769, 4, 38));
@@ -124,7 +125,7 @@ fn exif(orientation: u16, focal_35mm: u16) -> Vec<u8> {
 fn a_photograph_is_turned_upright_and_its_lens_is_read() {
     let folder = Temporary::new("new-exif");
     let path = folder.0.join("turned.jpg");
-    // Red on the left: a quarter turn to the right brings it to the top.
+    // Red on the left: a quarter turn to the right moves it to the top.
     let picture = RgbImage::from_fn(64, 32, |x, _| Rgb(if x < 32 { [250, 0, 0] } else { [0, 0, 250] }));
     let mut jpeg = Vec::new();
     JpegEncoder::new_with_quality(&mut jpeg, 95)
@@ -152,7 +153,8 @@ fn colours_of_a_phone_are_brought_to_srgb() {
     PngEncoder::new(&mut png)
         .write_image(&picture, 4, 4, ExtendedColorType::Rgb8)
         .unwrap();
-    // Behind the header of 33 bytes: Display P3, sRGB's transfer function, full range; then the same with PQ in its place.
+    // After the header of 33 bytes: Display P3, sRGB's transfer function, full range; then the same
+    // with PQ instead.
     let read = |transfer: u8| {
         let named = [&b"cICP"[..], &[12, transfer, 0, 1]].concat();
         let chunk = [
@@ -184,7 +186,7 @@ fn formats_that_are_not_read_are_named_with_the_way_out() {
     let folder = Temporary::new("new-heic");
     for (name, bytes, format) in [
         ("a.heic", &b"\0\0\0\x18ftypheic\0\0\0\0"[..], "HEIC"),
-        ("b.dng", &b"II*\0\x08\0\0\0"[..], "TIFF, DNG or other raw"),
+        ("b.tif", &b"II*\0\x08\0\0\0"[..], "TIFF or a raw photograph"),
     ] {
         let path = folder.0.join(name);
         fs::write(&path, bytes).unwrap();
@@ -193,7 +195,7 @@ fn formats_that_are_not_read_are_named_with_the_way_out() {
             matches!(error.reason, PhotographReason::Foreign { format: told, .. } if told == format),
             "{error}"
         );
-        assert!(error.to_string().contains("export"), "{error}");
+        assert!(error.to_string().contains("save it as PNG or JPEG"), "{error}");
     }
 }
 

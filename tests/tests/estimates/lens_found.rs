@@ -1,4 +1,5 @@
-//! The distortion of a lens that nobody lists is found by toy and shadow; a picture without one stays as it is.
+//! The distortion of a lens that is not listed is found by toy and shadow; a picture without one
+//! stays unchanged.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,21 +21,22 @@ use super::bundled::SESSION;
 
 const BARREL: Distortion = Distortion { k1: -0.1, k2: 0.03 };
 const CUSHION: Distortion = Distortion { k1: 0.08, k2: 0.0 };
-/// One term cannot follow it.
+/// A distortion that one term cannot describe.
 const MOUSTACHE: Distortion = Distortion { k1: -0.3, k2: 0.9 };
-/// As far from the principal point as most of toy and shadow: half way to the farthest corner.
+/// Distance from the principal point to most of toy and shadow: half that of the farthest corner.
 const AT_PX: f64 = 180.0;
-/// What the lens that is found may move there, beside the true one: with every lens the loss is least .2 px beside it, since
-/// the session was rendered with few samples a pixel.
+/// Largest error of the estimated lens at that distance: for every lens the minimum of the loss is
+/// .2 px beside the truth, since the session was rendered with few samples per pixel.
 const OFF_PX: f64 = 0.25;
 
-/// How many pixels farther out a lens shows what a pinhole sees so far from the principal point.
+/// Displacement by a lens, in pixels outwards, of a pixel at this distance from the principal
+/// point.
 fn moved_px(lens: Distortion, at_px: f64) -> f64 {
     let r = at_px / SESSION.1.camera.intrinsics.fx_px;
     at_px * (lens.k1 * r.powi(2) + lens.k2 * r.powi(4))
 }
 
-/// A pinhole's picture as the lens shows it: the documented formula, turned round by bisection.
+/// A pinhole's picture through the lens: the documented formula, inverted by bisection.
 fn bent(image: &Image, lens: Distortion) -> Image {
     let intrinsics = SESSION.1.camera.intrinsics;
     let centre = [intrinsics.cx_px, intrinsics.cy_px];
@@ -60,7 +62,7 @@ fn bent(image: &Image, lens: Distortion) -> Image {
     }
 }
 
-/// Codes between four pixels; their centres have whole numbers.
+/// Codes between four pixels; their centres are at integers.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "places within the picture, and codes"

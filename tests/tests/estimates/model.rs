@@ -1,4 +1,4 @@
-//! A model that is not quite the toy has the toy's outline after it was aligned.
+//! After alignment, a model that differs slightly from the toy has the toy's outline.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use glam::{DMat4, DVec3};
 
 use crate::bundled::SESSION;
 
-/// Amplitude and length of the waves that a model is off by, in metres.
+/// Amplitude and length of the waves on the model, in metres.
 const WAVE_M: f64 = 6e-4;
 const WAVE_LENGTH_M: f64 = 0.025;
 
@@ -30,7 +30,7 @@ fn wave(point: DVec3) -> DVec3 {
         )
 }
 
-/// The bundled scene with a model that is off by waves.
+/// The bundled scene with a model that is deformed by waves.
 fn wavy() -> Scene {
     let scene = SESSION.0.clone();
     let points = positions(&scene.toy, &scene.physical_pose).into_iter();
@@ -78,7 +78,7 @@ fn a_model_that_is_off_has_the_toys_outline() {
     let is_told = |warning: &AlignmentWarning| matches!(warning, AlignmentWarning::ModelDiffers { displaced_m, .. } if *displaced_m == Some(model.displaced_m));
     assert!(found.warnings.iter().any(is_told), "{:?}", found.warnings);
 
-    // Where it was displaced, it is nearer to the toy's own surface, along the displacement.
+    // The displaced surface is nearer to the toy's own, along the displacement.
     let adapted = &found.scene.unwrap().toy;
     let pose = &scene.physical_pose;
     let (given, truth) = (positions(&scene.toy, pose), positions(&SESSION.0.toy, pose));
@@ -94,7 +94,7 @@ fn a_model_that_is_off_has_the_toys_outline() {
     }
     assert!(squares[1] < 0.75 * squares[0], "{squares:?}");
 
-    // What is shown next is as it is.
+    // The next picture is aligned with the result unchanged.
     let again = aligner.align(input).unwrap();
     assert!(again.scene.is_none() && again.report == found.report);
 }

@@ -1,6 +1,7 @@
-//! Lights that are moved, switched on or out of sight while a session runs.
+//! Lights that are moved, switched on or out of sight during a session.
 //!
-//! Worlds are photographed by exact rays; what is found is compared with the lamps that lit them.
+//! Worlds are photographed by exact rays; the lights that are found are compared with the true
+//! lamps.
 
 use std::sync::Arc;
 
@@ -34,7 +35,7 @@ fn bulb(elevation_deg: f64, azimuth_deg: f64) -> Lamp {
     Lamp::bulb(toward(elevation_deg, azimuth_deg), 0.01, 0.6)
 }
 
-/// Aligns the boxes under one bulb, then under other lamps, whose list stays that of the first.
+/// Aligns the boxes under one bulb, then under other lamps, with the list of the first.
 fn relit(list: impl Fn(&Shot) -> Vec<Light>, lamps: Vec<Lamp>) -> (Vec<Light>, [Alignment; 2]) {
     let (before, after) = (shot(vec![bulb(50.0, 30.0)]), shot(lamps));
     let mut scene = before.scene.clone();
@@ -52,7 +53,8 @@ fn nobody(_: &Shot) -> Vec<Light> {
     Vec::new()
 }
 
-/// Largest angle from a lamp to the nearest of the lights that were found, as seen from the middle of the table, in degrees.
+/// Largest angle from a lamp to the nearest light that was found, from the centre of the table, in
+/// degrees.
 fn off_deg(lamps: &[Light], found: &Alignment) -> f64 {
     let direction = |light: &Light| SeenLight::from(0.05 * DVec3::Y, light).direction_in_world;
     let found = found.lights.as_deref().unwrap_or_default();
@@ -109,7 +111,7 @@ fn a_dimmed_light_is_kept() {
     assert_eq!(before.lights, after.lights, "{:?}", after.report);
 }
 
-/// A list that is far off is put right where the shadow tells of a light elsewhere.
+/// A list that is far off is corrected if the shadow shows a light elsewhere.
 #[test]
 fn a_light_that_is_listed_60_degrees_off_is_found() {
     let mut shot = shot(vec![bulb(50.0, 30.0)]);
@@ -119,7 +121,7 @@ fn a_light_that_is_listed_60_degrees_off_is_found() {
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
 }
 
-/// What is no light's shadow moves no list, which is the best that is known.
+/// A shadow that no light casts moves no list, since that remains the best estimate.
 #[test]
 fn a_list_stays_where_no_light_explains_the_shadow() {
     let shot = shot(vec![bulb(50.0, 30.0)]);
@@ -137,7 +139,7 @@ fn a_list_stays_where_no_light_explains_the_shadow() {
     );
 }
 
-/// What is no light's shadow is said, and moves none.
+/// A shadow that no light casts is reported, and moves no light.
 #[test]
 fn a_shadow_that_no_light_casts_is_said() {
     let before = shot(vec![bulb(50.0, 30.0)]);
@@ -159,7 +161,8 @@ fn a_shadow_that_no_light_casts_is_said() {
     );
 }
 
-/// A picture with every other column of 24 pixels at half its codes, but for the middle, where the toy is.
+/// A picture with every other column of 24 pixels at half its codes, except for the centre with the
+/// toy.
 fn with_dark_bars(image: &Image) -> Image {
     let mut image = image.clone();
     let middle = image.width_px / 3..2 * image.width_px / 3;
@@ -180,7 +183,7 @@ fn errors(core: &mut Core, scene: impl Into<Arc<Scene>>, input: &FrameInput, sho
     [scores.shadow.rmse, scores.toy.rmse]
 }
 
-/// The new shadow is as right as with a plate that was taken under the moved lamp.
+/// The new shadow is as accurate as with a plate that was taken under the moved lamp.
 #[test]
 fn plates_follow_a_moved_lamp() {
     let before = shot(vec![bulb(50.0, 30.0)]);

@@ -1,4 +1,5 @@
-//! Taking the plate by hand: what goes into it, and what is refused, on pictures whose every pixel is known.
+//! Taking the plate by hand: the pictures that contribute and those that are refused, with pictures
+//! whose every pixel is known.
 
 use std::sync::{Arc, OnceLock};
 
@@ -13,7 +14,7 @@ const SIZE_PX: [u32; 2] = [320, 240];
 const N_PIXELS: usize = 320 * 240;
 const BETWEEN_S: f64 = 0.061;
 
-/// A table that the camera looks at, in codes: what is where, in pixels, may lie between them.
+/// A table in front of the camera, in codes; positions, in pixels, may be fractional.
 #[derive(Clone, Copy)]
 struct View {
     shift_px: DVec2,
@@ -21,9 +22,9 @@ struct View {
     blur_px: f64,
     texture: f64,
     gain: f64,
-    /// Middle of a hand.
+    /// Centre of a hand.
     hand: Option<DVec2>,
-    /// Darker around the hand's place by so much: its shadow alone.
+    /// Centre of a hand's shadow alone, which darkens its surroundings.
     hand_shadow: Option<DVec2>,
 }
 
@@ -36,7 +37,8 @@ const STILL: View = View {
     hand_shadow: None,
 };
 
-/// Waves of many directions and lengths, from 3 to 60 pixels, which a blur weakens each by its own.
+/// Waves of many directions and lengths, from 3 to 60 pixels, each of which a blur weakens
+/// differently.
 fn waves() -> Vec<(DVec2, f64, f64)> {
     let mut random = Random::new(31);
     let wave = |k: u32| {
@@ -48,14 +50,14 @@ fn waves() -> Vec<(DVec2, f64, f64)> {
     (0..12).map(wave).collect()
 }
 
-/// Middles of all pixels but for half a pixel, row by row.
+/// Centres of all pixels minus half a pixel, row by row.
 fn pixels() -> impl Iterator<Item = DVec2> {
     let row = |y: u32| (0..SIZE_PX[0]).map(move |x| DVec2::new(f64::from(x), f64::from(y)));
     (0..SIZE_PX[1]).flat_map(row)
 }
 
 impl View {
-    /// Of the table alone.
+    /// Codes of the table alone.
     fn texture(&self) -> Vec<f64> {
         let waves = waves().into_iter().map(|(wave, phase, codes)| {
             let blur = (-0.5 * wave.length_squared() * self.blur_px * self.blur_px).exp();
@@ -122,7 +124,7 @@ fn rounded(code: f64) -> u8 {
     code.round() as u8
 }
 
-/// A camera that stands still, as a tracker tells it.
+/// A camera that stands still, as a tracker reports it.
 fn tracked(random: &mut Random) -> Camera {
     let mut noise = || DVec3::from_array([(); 3].map(|()| random.normal()));
     let turn = DQuat::from_scaled_axis(0.2_f64.to_radians() * noise());
@@ -163,7 +165,7 @@ fn taken(taker: &mut PlateTaker, random: &mut Random, mut view: impl FnMut(u32) 
     panic!("no plate in 100 shots: {steps:?}");
 }
 
-/// Root of the mean square of a picture's red about codes that are known, at pixels of a kind.
+/// RMS difference of a picture's red from known codes, at selected pixels.
 fn off(image: &Image, codes: &[f64]) -> f64 {
     let squares = image
         .rgba8
@@ -188,7 +190,7 @@ fn noise_goes_down_by_the_root_of_the_number() {
     let mean = off(&plate.image, &codes);
     println!("one {one:.3}, mean of 16 {mean:.3}, expected {expected:.3} codes");
     assert!((mean / expected - 1.0).abs() < 0.05, "{mean}, not {expected}");
-    // So do those of the poses: one has 1.7 mm.
+    // So do those of the poses: a single one has 1.7 mm.
     let position = plate.camera.world_from_camera.w_axis.truncate();
     assert!(
         position.distance(DVec3::new(0.0, 0.3, 0.4)) < 1.2e-3,
@@ -203,7 +205,7 @@ fn the_mean_is_of_light_not_of_codes() {
     let (mut light, mut codes) = (vec![0.0; N_PIXELS], vec![0.0; N_PIXELS]);
     for frame in 0..17 {
         let picture = STILL.picture(12.0, &mut random);
-        // By the first it is told whether anything moves in the second.
+        // The first picture is needed to detect motion in the second.
         if frame > 0 {
             for (at, pixel) in picture.rgba8.chunks_exact(4).enumerate() {
                 light[at] += f64::from(linear_from_srgb(f32::from(pixel[0]) / 255.0)) / 16.0;
@@ -241,7 +243,8 @@ fn encoded(light: f64) -> f64 {
     }
 }
 
-/// A hand that crosses the picture, one that drags slowly, and the shadow of one that stays outside.
+/// A hand that crosses the picture, one that moves slowly, and the shadow of one that stays
+/// outside.
 #[test]
 fn a_hand_is_refused_and_leaves_nothing_behind() {
     let fast = |frame: u32| {
@@ -322,7 +325,7 @@ fn a_camera_that_moves_is_refused_and_the_sharpest_is_taken_at_last() {
     for frame in 0..200 {
         let view = View {
             shift_px: DVec2::new(1.0, 0.6) * f64::from(frame),
-            // Sharp once in a while.
+            // A sharp picture once in a while.
             blur_px: if frame == 40 { 0.0 } else { 0.6 },
             ..STILL
         };
@@ -338,7 +341,7 @@ fn a_camera_that_moves_is_refused_and_the_sharpest_is_taken_at_last() {
                 assert!(off < 1.2, "{off}: not the sharpest");
                 return;
             }
-            // Those after the sharp one are blurred beside it.
+            // Those after the sharp one are blurred in comparison.
             step => {
                 n_moving += u32::from(matches!(
                     refusal(&step),
@@ -350,7 +353,8 @@ fn a_camera_that_moves_is_refused_and_the_sharpest_is_taken_at_last() {
     panic!("no plate");
 }
 
-/// Trembling by a tenth of a pixel is none, a turn about the view and a step of a centimetre are.
+/// A tremor of a tenth of a pixel is no movement, a turn about the view and a step of a centimetre
+/// are.
 #[test]
 fn movement_is_judged_by_picture_and_pose() {
     let mut random = Random::new(6);
@@ -360,7 +364,7 @@ fn movement_is_judged_by_picture_and_pose() {
         ..STILL
     });
     assert_eq!(n, 16);
-    // A place without texture tells no movement: poses do.
+    // A place without texture shows no movement, but poses do.
     let plain = View {
         texture: 0.0,
         ..STILL
@@ -394,7 +398,7 @@ fn a_change_of_exposure_begins_anew() {
     assert!(off(&plate.image, &brighter.codes()) < 0.9);
 }
 
-/// The luma alone is looked at before a plane's picture is decoded: what is told is the same.
+/// The luma alone is examined before a plane's picture is decoded: the verdict is the same.
 #[test]
 fn planes_are_taken_as_pictures_are() {
     let mut random = Random::new(9);
@@ -418,7 +422,7 @@ fn planes_are_taken_as_pictures_are() {
             elapsed_s: 1.0 / 30.0,
         };
         if let PlateStep::Taken { plate, n } = taker.offer(&shot) {
-            // Of every second one.
+            // Number of pictures used if every second one is good.
             assert_eq!((frame, n), (31, 16));
             assert!(off(&plate.image, &codes) < 0.9);
             return;

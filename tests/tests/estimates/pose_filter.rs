@@ -1,4 +1,4 @@
-//! The pose filter under the noise of a tracker: how much of it is left, and what that costs in time.
+//! The pose filter under the noise of a tracker: the remaining noise and the delay.
 
 use std::f64::consts::TAU;
 
@@ -6,14 +6,14 @@ use app_core::app::{PoseFilter, PoseNoise, PoseStep};
 use glam::{DMat4, DQuat, DVec3};
 use measure::random::Random;
 
-/// What is measured, over the noise of a tracker, and what the pose itself does.
+/// The measurements as multiples of a tracker's noise, and the motion of the true pose.
 #[derive(Clone, Copy)]
 struct Setting {
-    /// Times 1 mm and .2 degrees.
+    /// Multiple of 1 mm and .2 degrees.
     noise: f64,
     drifts: bool,
     jumps: bool,
-    /// Dropouts of .1 to 2 s, and one measurement in a hundred 20 mm off.
+    /// Dropouts of .1 to 2 s, and one measurement in a hundred with an error of 20 mm.
     drops: bool,
     speed_m_s: f64,
 }
@@ -86,7 +86,7 @@ impl Tracker {
         }
         let mut position = self.position + DVec3::X * self.setting.speed_m_s * self.time_s;
         if self.setting.drifts {
-            // 2 mm in the root of the mean square along each axis, in 19 and in 31 s.
+            // 2 mm RMS along each axis, with periods of 19 and 31 s.
             let wave =
                 |period_s: f64| (self.phase + DVec3::splat(TAU * self.time_s / period_s)).map(f64::sin);
             position += 0.002 * (wave(19.0) + wave(31.0));
@@ -111,7 +111,7 @@ impl Tracker {
     }
 }
 
-/// What is compared.
+/// The filters that are compared.
 trait Follow {
     fn follow(&mut self, elapsed_s: f64, measured: Option<DMat4>) -> Option<DMat4>;
 }
@@ -123,7 +123,7 @@ impl Follow for PoseFilter {
     }
 }
 
-/// As measured.
+/// No filter: the measured pose.
 #[derive(Default)]
 struct Raw(Option<DMat4>);
 
@@ -205,14 +205,16 @@ fn filter() -> PoseFilter {
 
 #[derive(Clone, Copy, Debug)]
 struct Figures {
-    /// Root of the mean square about the truth, after five seconds.
+    /// RMS deviation from the truth, after five seconds.
     jitter_mm: f64,
     jitter_deg: f64,
-    /// Behind a pose that goes 1 mm in a second.
+    /// Delay for a pose that moves 1 mm in a second.
     lag_ms: f64,
-    /// After a jump, until it stays within 2 mm of the truth: median and the nineteenth of twenty.
+    /// Time after a jump until the pose stays within 2 mm of the truth: median and the nineteenth
+    /// of twenty.
     settled_ms: [f64; 2],
-    /// Distance from the truth with drift, jumps and dropouts, while there are measurements: median and the nineteenth of twenty.
+    /// Distance from the truth with drift, jumps and dropouts, during measurements: median and the
+    /// nineteenth of twenty.
     error_mm: [f64; 2],
 }
 
@@ -223,7 +225,7 @@ fn runs<F: Follow>(
     setting: Setting,
     mut each: impl FnMut(&Tracker, &Shot, DVec3, DQuat),
 ) {
-    // Seeds that no constant was chosen with.
+    // Seeds with which no constant was chosen.
     for seed in 5000..5010 {
         let mut tracker = Tracker::new(seed, setting);
         let mut filter = new();
@@ -318,7 +320,7 @@ fn noise_goes_and_jumps_are_followed() {
         for figures in [raw, exponential, one_euro, ours] {
             println!("{figures:.2?}");
         }
-        // Where the noise is small, the drift is followed sooner rather than smoothed.
+        // If the noise is small, the drift is followed sooner rather than smoothed.
         let part = if noise < 1.0 { 0.5 } else { 0.25 };
         assert!(ours.jitter_mm < part * raw.jitter_mm && ours.jitter_deg < part * raw.jitter_deg);
         if noise <= 1.0 {
@@ -330,12 +332,12 @@ fn noise_goes_and_jumps_are_followed() {
                 assert!(ours.error_mm[0] < other.error_mm[0] && ours.error_mm[1] < 0.5 * other.error_mm[1]);
             }
         }
-        // The judge itself: what is measured without any filter is the noise of three axes, and no lag.
+        // The judge itself: unfiltered measurements have the noise of three axes, and no lag.
         assert!(
             (raw.jitter_mm / (3_f64.sqrt() * noise) - 1.0).abs() < 0.05,
             "{raw:?}"
         );
-        // Less noise is paid for with time.
+        // Less noise costs time.
         assert!(raw.lag_ms.abs() < 20.0 && ours.lag_ms > 50.0, "{raw:?} {ours:?}");
     }
 }
@@ -387,7 +389,7 @@ fn what_is_no_pose_counts_as_none() {
         filter.step(elapsed_s, Some(pose));
     }
     assert!(filter.pose().unwrap().abs_diff_eq(pose, 1e-12));
-    // Whatever is stated of the noise.
+    // For any stated noise.
     for noise in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let noise = PoseNoise {
             position_m: noise,
@@ -401,7 +403,8 @@ fn what_is_no_pose_counts_as_none() {
     }
 }
 
-/// A world that is turned about a place three metres off: noise of its rotation does not move what is there.
+/// A world that is turned about a place three metres away: noise of its rotation does not move that
+/// place.
 #[test]
 fn the_pivot_stays_where_it_is_measured() {
     let pivot = DVec3::new(3.0, 0.0, 0.0);

@@ -1,4 +1,5 @@
-//! Lights by a Fresnel lens and by a mirror ball, photographed by exact rays, against the lamps that lit them.
+//! Lights by a Fresnel lens and by a mirror ball, photographed by exact rays, compared with the
+//! true lamps.
 
 use std::sync::Arc;
 
@@ -39,7 +40,7 @@ fn seen(shape: &ProbeShape, picture: &ProbePicture, form: Form) -> Sighting {
     look(&ProbeView { shape, picture }, form).unwrap()
 }
 
-/// Degrees between a sighting's one light and a direction.
+/// Degrees between the only light of a sighting and a direction.
 fn off_deg(sighting: &Sighting, direction: DVec3) -> f64 {
     assert_eq!(sighting.lights.len(), 1, "{sighting:?}");
     sighting.lights[0]
@@ -62,8 +63,8 @@ fn a_light_is_where_the_lens_shows_it() {
     }
 }
 
-/// Equation 4 has R = (0, 0, 1) for the viewer: the error is the angle between the two, and what whole pixels of a highlight leave
-/// open, which is more where the lens is seen aslant.
+/// Equation 4 has R = (0, 0, 1) for the viewer: the error is the angle between the two, plus the
+/// uncertainty from whole pixels of a highlight, which is larger for an oblique view of the lens.
 #[test]
 fn the_published_form_errs_by_the_viewers_angle() {
     for (eye, most_deg) in VIEWERS.into_iter().zip([0.5, 0.6]) {
@@ -82,7 +83,7 @@ fn the_published_form_errs_by_the_viewers_angle() {
     }
 }
 
-/// What the tests above would see if the pose, the side of the normal or the viewer were wrong.
+/// Control for the tests above: a wrong pose, side of the normal or viewer is detected.
 #[test]
 fn wrong_geometry_shows() {
     let at = SUNS[1];
@@ -95,7 +96,7 @@ fn wrong_geometry_shows() {
     };
     let turned_deg = off_deg(&seen(&shape, &turned, Form::Exact), truth);
     assert!(turned_deg > 1.0, "the lens turned by 2 degrees: {turned_deg}");
-    // Facets that leaned inwards would show the light on the other side.
+    // Facets that lean inwards would show the light on the other side.
     let hollow_deg = off_deg(
         &seen(&shape, &picture, Form::Exact),
         DVec3::new(-truth.x, truth.y, -truth.z),
@@ -140,7 +141,7 @@ fn two_lights_are_told_strongest_first() {
     }
 }
 
-/// A streak across the axis from the highlight; the published form takes it for a light.
+/// A streak across the axis from the highlight; the published form treats it as a light.
 #[test]
 fn a_ghost_is_no_light() {
     let at = SUNS[1];
@@ -285,7 +286,7 @@ fn out_of_view_the_last_lights_stay() {
         ..picture
     };
     assert_eq!(look(&from_below), (lights, 2));
-    // Another light: the one before is gone, and lends no rays.
+    // Another light: the previous one is gone, and its rays are not used.
     let (moved, n_unseen) = look(&photograph(&lens(), &[sun(SUNS[3])], VIEWERS[0]));
     assert_eq!((moved.len(), moved[0].n_views, n_unseen), (1, 1, 0));
     let (dark, _) = look(&photograph(&lens(), &[], VIEWERS[0]));
@@ -361,7 +362,7 @@ fn what_cannot_be_is_refused() {
     ));
 }
 
-/// Whatever is in a picture, nothing panics, and what comes out is finite.
+/// No picture causes a panic, and all results are finite.
 #[test]
 fn any_picture_is_read() {
     let mut state = 7u64;

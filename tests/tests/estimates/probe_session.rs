@@ -1,4 +1,5 @@
-//! A session whose lights nobody lists: its probe tells them, and the toy's shadow makes them exact.
+//! A session without listed lights: its probe estimates them, and the toy's shadow makes them
+//! exact.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
@@ -16,7 +17,8 @@ use measure::photographer::world::{camera, toward};
 use measure::photographer::{Exposure, Lamp, Mirror, Quality, Shot, World, folder};
 
 const SIZE_PX: [u32; 2] = [512, 288];
-/// Where the lens lies, beside the toy: near lights stand some 10 degrees elsewhere over it.
+/// Position of the lens beside the toy: near lights have directions there that differ by some 10
+/// degrees.
 const LENS: DVec3 = DVec3::new(-0.14, 0.0, 0.06);
 
 fn lamps() -> [Lamp; 2] {
@@ -26,7 +28,7 @@ fn lamps() -> [Lamp; 2] {
     ]
 }
 
-/// Boxes under two bulbs and a lens, in as many pictures as there are viewers.
+/// Boxes under two bulbs and a lens, in one picture per viewer.
 fn shot(viewers: &[DVec3]) -> Shot {
     let mut world = World::boxes().resized(SIZE_PX).lit_by(lamps().to_vec());
     world.quality = Quality {
@@ -54,7 +56,7 @@ fn shot(viewers: &[DVec3]) -> Shot {
     shot
 }
 
-/// With the lamps listed.
+/// The session with the lamps listed.
 static SESSION: LazyLock<(PathBuf, Shot)> = LazyLock::new(|| {
     let shot = shot(&[DVec3::new(-0.3, 0.3, 0.2), DVec3::new(0.05, 0.3, 0.2)]);
     let session = Path::new(env!("CARGO_TARGET_TMPDIR")).join("probe-session");
@@ -80,7 +82,7 @@ fn of_each(errors: Vec<Option<LightError>>) -> [f64; 2] {
     deg
 }
 
-/// Within .3 degrees before and within .1 after the shadow is looked at.
+/// Within .3 degrees by the probe alone, and within .1 with the shadow.
 #[test]
 fn the_shadow_makes_exact_what_the_probe_tells() {
     let (_, alignments) = aligned(Lights::Probe);
@@ -100,7 +102,8 @@ fn the_shadow_makes_exact_what_the_probe_tells() {
     assert!(after_deg.iter().all(|deg| *deg < 0.1), "{after_deg:?}");
 }
 
-/// One view tells no distance, and the same place in the sky of the lens is 10 degrees off over the toy.
+/// One view does not constrain the distance, and the same place in the sky of the lens is 10
+/// degrees off over the toy.
 #[test]
 fn one_view_is_enough_for_the_shadow() {
     let mut shot = shot(&[DVec3::new(-0.1, 0.3, 0.2)]);
@@ -129,7 +132,7 @@ fn one_view_is_enough_for_the_shadow() {
     }
 }
 
-/// The paper looks at no shadow, and takes the viewer to be on the axis.
+/// The paper uses no shadow, and assumes the viewer on the axis.
 #[test]
 fn preset_paper_has_the_published_lights() {
     let (capture, alignments) = aligned(Lights::Probe);
@@ -165,7 +168,7 @@ fn listed_lights_come_before_a_probe() {
     assert_eq!((&report.probe, report.discovered.len()), (&None, 2));
 }
 
-/// The frame shows no toy, so there is no shadow to look at.
+/// The frame shows no toy, so there is no shadow to use.
 #[test]
 fn without_a_shadow_the_probes_lights_stand() {
     let (_, shot) = &*SESSION;
@@ -193,7 +196,7 @@ fn check_tells_what_the_probe_shows() {
         .filter(|fact| fact.starts_with("probe: light"));
     assert_eq!(told.count(), 2, "{findings:?}");
     assert!(findings.wrong.is_empty(), "{findings:?}");
-    // Where lights are listed it is not looked at.
+    // If lights are listed, the probe is not used.
     let listed = check(session, session, (Asked::default(), Source::Given)).unwrap();
     assert!(
         !listed.facts.iter().any(|fact| fact.starts_with("probe")),

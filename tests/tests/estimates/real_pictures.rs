@@ -1,4 +1,5 @@
-//! A toy is found in pictures as cameras make them, on its table, in its size, and as well as it is claimed to be.
+//! A toy is found in pictures as cameras make them, on its table, in its size, and with the
+//! reported accuracy.
 
 use std::sync::Arc;
 
@@ -10,13 +11,13 @@ use glam::{DMat4, DVec3};
 
 use super::bundled::{SESSION, middle};
 
-/// What a camera may do to a picture.
+/// Effect of a camera on a picture.
 #[derive(Clone, Copy, Debug)]
 enum Camera {
     Ideal,
-    /// Out of focus, by a deviation in pixels.
+    /// Out of focus, by a standard deviation in pixels.
     Soft(f32),
-    /// Sharpened, by a part of what the codes differ from themselves spread by 1.2 px.
+    /// Sharpened, by this share of the difference between the codes and their blur of 1.2 px.
     Sharpened(f32),
 }
 
@@ -58,7 +59,7 @@ impl Camera {
     }
 }
 
-/// By a Gaussian; what is beyond the border is as the border.
+/// Gaussian blur; the border is extended.
 fn spread(image: &Image, plane: &[f32], deviation_px: f32) -> Vec<f32> {
     let [width, height] = [image.width_px, image.height_px]
         .map(i32::try_from)
@@ -87,13 +88,14 @@ fn spread(image: &Image, plane: &[f32], deviation_px: f32) -> Vec<f32> {
     plane
 }
 
-/// More lights than alignment looks at: poses alone are found.
+/// More lights than alignment uses: poses alone are found.
 fn too_many_lights(input: &FrameInput) -> FrameInput {
     let light = Light::directional(DVec3::Y, 0.01);
     input.clone().with_lights(Some(vec![light; 5].into()))
 }
 
-/// The first frame, with the toy moved about its middle by millimetres and degrees, in a picture as a camera makes it.
+/// The first frame, with the toy moved about its centre by millimetres and degrees, in a picture as
+/// a camera makes it.
 fn disturbed(camera: Camera, mm: DVec3, (axis, deg): (DVec3, f64)) -> FrameInput {
     let recorded = &SESSION.1;
     let place = middle(&recorded.world_from_object);
@@ -109,7 +111,7 @@ fn align(scene: Scene, input: &FrameInput) -> Alignment {
     Aligner::new(scene).align(input).unwrap()
 }
 
-/// Of the toy's middle: along the view, and beside it, in millimetres.
+/// Error of the toy's centre: along the view, and beside it, in millimetres.
 fn off_mm(found: &Alignment) -> [f64; 2] {
     let camera_from_world = SESSION.1.camera.world_from_camera.inverse();
     let place = |pose: &DMat4| camera_from_world.transform_point3(middle(pose));
@@ -199,7 +201,7 @@ fn a_receiver_that_is_listed_too_low_is_told_by_the_toy_above_it() {
     });
     let height_m = told.unwrap_or_else(|| panic!("{:?}", found.report.pose));
     assert!((height_m - 0.003).abs() < 5e-4, "{height_m}");
-    // The toy stays where the picture has it.
+    // The toy stays in its place in the picture.
     assert!(off_mm(&found)[0] < 0.3, "{:?}", off_mm(&found));
 }
 

@@ -1,4 +1,5 @@
-//! How soft a picture is, by the bundled session's, whose frame or plate is spread as a lens or a motion does it.
+//! Measurement of a picture's softness with the bundled session, whose frame or plate is blurred as
+//! by a lens or a motion.
 
 use std::sync::Arc;
 
@@ -10,7 +11,7 @@ use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 
 use super::bundled::SESSION;
 
-/// What a picture is spread by along each side: steps and weights.
+/// A blur along each side: steps and weights.
 type Taps = Vec<(i32, f32)>;
 
 fn gaussian(deviation_px: f32) -> Taps {
@@ -23,7 +24,7 @@ fn still() -> Taps {
     vec![(0, 1.0)]
 }
 
-/// In linear light.
+/// Blur in linear light.
 #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
 fn spread(image: &Image, across: &Taps, down: &Taps) -> Image {
     let (width, height) = (image.width_px as i32, image.height_px as i32);
@@ -54,7 +55,7 @@ fn spread(image: &Image, across: &Taps, down: &Taps) -> Image {
     }
 }
 
-/// The session's first frame, with its own picture or its plates spread.
+/// The session's first frame, with its own picture or its plates blurred.
 fn spread_session(frame: Option<[Taps; 2]>, plates: Option<[Taps; 2]>) -> (Scene, FrameInput) {
     let (mut scene, mut input) = SESSION.clone();
     if let Some([across, down]) = frame {
@@ -74,7 +75,7 @@ fn as_given((scene, input): &(Scene, FrameInput)) -> Sharpness {
     Observer::default().observed(scene, input).unwrap().sharpness
 }
 
-/// A picture as sharp as its plate, or sharper, says nothing.
+/// A picture as sharp as its plate, or sharper, has no blur to measure.
 #[test]
 fn a_picture_as_sharp_as_its_plate_is_told_as_sharp() {
     let soft = || Some([gaussian(1.5), gaussian(1.5)]);
@@ -88,7 +89,7 @@ fn a_picture_as_sharp_as_its_plate_is_told_as_sharp() {
     }
 }
 
-/// Where the pose is as given, and where it is looked for.
+/// With the given pose, and with a search for it.
 #[test]
 fn a_picture_out_of_focus_is_told_by_its_texture_and_its_outline() {
     let session = spread_session(Some([gaussian(2.0), gaussian(2.0)]), None);
@@ -101,7 +102,7 @@ fn a_picture_out_of_focus_is_told_by_its_texture_and_its_outline() {
     }
 }
 
-/// Frame and plate by the same lens: the outline alone tells.
+/// Frame and plate by the same lens: only the outline shows the blur.
 #[test]
 fn a_plate_that_is_as_soft_is_told_by_the_outline() {
     let soft = || Some([gaussian(1.5), gaussian(1.5)]);
@@ -121,8 +122,8 @@ fn a_motion_is_told_by_its_direction() {
     let expected = Spread::of_motion(5.0 * glam::DVec2::X);
     let sharpness = as_given(&spread_session(Some([motion, still()]), None));
     let [wide, narrow] = sharpness.plate_spread.variances_px2().map(f64::sqrt);
-    // The session's noise is as fine as what the motion takes away, and tells that there is less of it. Measured: .82 of 1.44; without noise
-    // 1.48.
+    // The session's noise is as fine as the detail that the motion removes, and reduces the
+    // measured blur. Measured: .82 of 1.44; without noise 1.48.
     assert!(
         wide > 0.5 * expected.widest_px() && wide < 1.1 * expected.widest_px(),
         "{wide}"

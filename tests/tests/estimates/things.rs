@@ -1,4 +1,5 @@
-//! Things beside the toy are found where they stand, told apart from a plate that is wrong, and none is found where none is.
+//! Objects beside the toy are found at their places and distinguished from a wrong plate, and none
+//! is found if there is none.
 
 use std::sync::Arc;
 
@@ -10,10 +11,10 @@ use glam::UVec2;
 
 use super::bundled::SESSION;
 
-/// A rectangle of the bundled picture: its first pixel, and that after its last.
+/// A rectangle of the bundled picture: its first pixel, and the one after its last.
 type Rect = [UVec2; 2];
 
-/// In the shadow, clear of the toy.
+/// In the shadow, away from the toy.
 const IN_SHADOW: Rect = [UVec2::new(365, 220), UVec2::new(415, 262)];
 /// Over the toy's forelegs, and to both sides of them.
 const OVER_LEGS: Rect = [UVec2::new(222, 222), UVec2::new(292, 254)];
@@ -24,7 +25,7 @@ fn painted(image: &Image, [first, end]: Rect) -> Image {
     for y in first.y..end.y {
         for x in first.x..end.x {
             let at = 4 * (y * image.width_px + x) as usize;
-            // Not of one code, as no thing is.
+            // Not of one code, as no object is.
             let grain = ((7 * x + 13 * y) % 5) as u8;
             for (code, teal) in image.rgba8[at..at + 3].iter_mut().zip(TEAL) {
                 *code = teal + grain;
@@ -34,14 +35,14 @@ fn painted(image: &Image, [first, end]: Rect) -> Image {
     image
 }
 
-/// What is found of a painted rectangle.
+/// Result for a painted rectangle.
 struct Found {
     things: Option<Things>,
     rect: Rect,
 }
 
 impl Found {
-    /// Of one that the frame shows, the plate, or both.
+    /// Result for a rectangle in the frame, in the plate, or in both.
     fn of([in_frame, in_plate]: [bool; 2], rect: Rect) -> Self {
         let (scene, input) = &*SESSION;
         let (mut scene, mut input) = (Scene::clone(scene), FrameInput::clone(input));
@@ -53,7 +54,10 @@ impl Found {
             let plate = painted(&scene.plates[0].image, rect);
             scene.plates[0].image = Arc::new(plate);
         }
-        let things = Observer::default().observed(&scene, &input).unwrap().things;
+        let mut observer = Observer::default();
+        let things = observer.observed(&scene, &input).unwrap().things;
+        // No shadow lies on what is painted.
+        assert!(observer.planes().is_empty());
         Self { things, rect }
     }
 
@@ -62,7 +66,7 @@ impl Found {
         f64::from((end - first).element_product())
     }
 
-    /// The part of it with a mark.
+    /// The share of the rectangle with a mark.
     fn part(&self, mark: Mark) -> f64 {
         let Some(things) = &self.things else { return 0.0 };
         let [first, end] = self.rect;
@@ -72,7 +76,7 @@ impl Found {
         pixels.filter(|at| things.marks()[*at] == mark).count() as f64 / self.size()
     }
 
-    /// What has the mark beyond it, over its size.
+    /// Number of marked pixels outside it, relative to its size.
     fn beyond(&self, mark: Mark) -> f64 {
         let all = self.things.as_ref().map_or(0, |things| things.count(mark));
         all as f64 / self.size() - self.part(mark)
@@ -104,7 +108,7 @@ fn a_thing_in_the_plate_alone_makes_the_plate_wrong() {
     let found = Found::of([false, true], IN_SHADOW);
     let [of_it, beyond] = [found.part(Mark::WrongPlate), found.beyond(Mark::WrongPlate)];
     let thing = found.part(Mark::Thing);
-    // It is taken for wrong a little beyond what is seen.
+    // The plate is marked as wrong slightly beyond the visible difference.
     let is_found = of_it > 0.9 && beyond < 0.5 && thing == 0.0;
     assert!(
         is_found,

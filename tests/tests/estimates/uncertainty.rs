@@ -1,4 +1,5 @@
-//! What a session says of how far its toy, camera and lights may be off bounds what alignment moves, and says how far it looks.
+//! The stated uncertainty of a session's toy, camera and lights limits alignment's corrections and
+//! determines its search range.
 
 use app_core::alignment::{Aligner, Alignment, AlignmentWarning};
 use app_core::frame::FrameInput;
@@ -7,9 +8,10 @@ use glam::{DMat4, DQuat, DVec3};
 
 use super::bundled::{SESSION, middle};
 
-/// What rounding may add to a bound.
+/// Amount that rounding may add to a bound.
 const ROUNDING: f64 = 1e-5;
-/// What a direction may differ by as seen from the middle of the box along the camera's axes, and from that along the toy's own.
+/// Difference between directions from the centre of the box along the camera's axes and along the
+/// toy's own.
 const MIDDLE_DEG: f64 = 0.1;
 
 fn align(uncertainty: Uncertainty, input: &FrameInput) -> Alignment {
@@ -45,7 +47,7 @@ fn middle_in_world() -> DVec3 {
     middle(&SESSION.1.world_from_object)
 }
 
-/// The first frame with the toy moved by metres, and turned about its middle by degrees.
+/// The first frame with the toy moved by metres, and turned about its centre by degrees.
 fn disturbed(by_m: DVec3, axis: DVec3, deg: f64) -> FrameInput {
     let middle = middle_in_world();
     let mut input = SESSION.1.clone();
@@ -56,7 +58,7 @@ fn disturbed(by_m: DVec3, axis: DVec3, deg: f64) -> FrameInput {
     input
 }
 
-/// Between two poses of the toy: metres at its middle, and degrees.
+/// Difference between two poses of the toy: metres at its centre, and degrees.
 fn apart(a: &DMat4, b: &DMat4) -> (f64, f64) {
     let [at_a, at_b] = [a, b].map(middle);
     (at_a.distance(at_b), turned_deg(a, b))
@@ -107,7 +109,7 @@ fn a_toy_is_moved_no_farther_than_its_pose_is_uncertain() {
     let warned = found.warnings.iter();
     let misaligned = warned.filter(|warning| matches!(warning, AlignmentWarning::Misaligned { .. }));
     assert_eq!(misaligned.count(), 1, "{:?}", found.warnings);
-    // What bounds it is what is stated: it is found without, and where it lies within.
+    // The stated uncertainty is the bound: the toy is found without one, and if it lies within.
     for uncertainty in [Uncertainty::default(), of_toy(0.006, 4.0)] {
         let found = align(uncertainty, &given);
         let (off_m, off_deg) = apart(&SESSION.1.world_from_object, &found.world_from_object);
@@ -180,7 +182,8 @@ fn a_light_that_may_be_far_off_is_looked_for_there() {
         let found = align(uncertainty, &given).lights;
         found.map_or(40.0, |lights| light_deg(&lights[0], &SESSION.0.lights[0]))
     };
-    // By itself, too, since none near the list explains the shadow; but not where the list is said to be right.
+    // The search starts by itself, too, since no light near the list explains the shadow; but not
+    // if the list is stated to be right.
     for uncertainty in [Uncertainty::default(), of_lights(45.0)] {
         let found_deg = off_deg(uncertainty);
         assert!(found_deg < 0.1, "{found_deg} degrees off");

@@ -1,5 +1,6 @@
-//! Alignment that is to measure how well a shadow is predicted reads that shadow nowhere: whatever is painted over it in later
-//! pictures, the same is found to the last bit.
+//! Alignment that must not use the real shadow, so that its prediction can be measured, reads it
+//! nowhere: whatever is painted over the shadow in later pictures, the result is the same to the
+//! last bit.
 
 use app_core::alignment::{Aligner, Alignment};
 use app_core::frame::FrameInput;
@@ -9,7 +10,8 @@ use measure::photographer::{Paint, Shot, World};
 
 const SIZE_PX: [u32; 2] = [480, 270];
 
-/// A world on tiles from two sides, with plates of both; tracked with some error from the second on.
+/// A world on tiles from two sides, with plates of both; tracked with some error from the second
+/// on.
 fn shots() -> [Shot; 2] {
     let mut first = World::boxes().resized(SIZE_PX);
     first.grounds[0].paint = Paint::Tiles {
@@ -33,7 +35,7 @@ fn shots() -> [Shot; 2] {
     [first, second]
 }
 
-/// The second picture as it is aligned after the first, with a list of lights that is some degrees off.
+/// The second picture, aligned after the first with a list of lights that is some degrees off.
 fn second(shots: &[Shot; 2], second: &FrameInput, are_shadows_withheld: bool) -> Alignment {
     let [first, _] = shots;
     let mut scene = first.scene.clone();
@@ -57,7 +59,7 @@ fn second(shots: &[Shot; 2], second: &FrameInput, are_shadows_withheld: bool) ->
     aligner.align(second).unwrap()
 }
 
-/// A picture with stripes over those pixels for which the mask says so.
+/// A picture with stripes over the pixels that the mask selects.
 fn painted(shot: &Shot, is_painted: impl Fn(&[u8]) -> bool) -> FrameInput {
     let mut image = Image::clone(shot.input.image.rgba());
     let mut n_painted = 0;
@@ -92,7 +94,7 @@ fn what_is_painted_over_a_withheld_shadow_changes_nothing() {
     let toy = painted(&shots[1], |mask| mask[1] > 0);
 
     let plain = second(&shots, &shots[1].input, true);
-    // Something is found that could have been drawn along.
+    // The result contains corrections that could have been affected.
     assert_ne!(plain.camera, shots[1].input.camera);
     assert!(plain.report.camera.unwrap().is_applied, "{:?}", plain.report);
     assert_ne!(plain.world_from_object, shots[1].input.world_from_object);
@@ -101,7 +103,7 @@ fn what_is_painted_over_a_withheld_shadow_changes_nothing() {
     assert_eq!(found(&over_shadow), found(&plain));
     assert_eq!(over_shadow.report, plain.report);
 
-    // What is painted over the toy is seen; and over its shadow where that is not withheld.
+    // Paint over the toy has an effect, and so has paint over its shadow if that is not withheld.
     assert_ne!(second(&shots, &toy, true).report, plain.report);
     let read = [&shots[1].input, &shadow].map(|input| second(&shots, input, false));
     assert_ne!(found(&read[0]), found(&read[1]));

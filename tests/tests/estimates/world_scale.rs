@@ -1,4 +1,4 @@
-//! The scale of the world is found by the toy's size and its shadow; what is right stays as it is.
+//! The scale of the world is found by the toy's size and its shadow; a correct one stays.
 
 use std::sync::Arc;
 
@@ -9,12 +9,12 @@ use glam::{DMat4, DQuat, DVec3};
 
 use super::bundled::{SESSION, middle};
 
-/// What the ratio that is found may be off by: the session was rendered with few samples a pixel.
+/// Largest error of the ratio that is found: the session was rendered with few samples per pixel.
 const RATIO: f64 = 1e-3;
-/// Poses go through 32 bits.
+/// Poses are stored in 32 bits.
 const ROUNDING: f64 = 1e-6;
 
-/// A rigid transform in a world whose lengths are larger.
+/// A rigid transform in a world with larger lengths.
 fn stretched(rigid: &DMat4, ratio: f64) -> DMat4 {
     let mut rigid = *rigid;
     rigid.w_axis = (ratio * rigid.w_axis.truncate()).extend(1.0);
@@ -28,7 +28,8 @@ fn seen_from(camera: &Camera, ratio: f64) -> Camera {
     }
 }
 
-/// The session as by a tracker whose metre is none: the toy stands where it stood on the table, and has its model's size.
+/// The session of a tracker with a wrong metre: the toy stands at its place on the table, and has
+/// its model's size.
 fn off(ratio: f64) -> (Scene, FrameInput) {
     let (mut scene, mut input) = SESSION.clone();
     for plate in &mut scene.plates {
@@ -54,7 +55,7 @@ fn off(ratio: f64) -> (Scene, FrameInput) {
     (scene, input)
 }
 
-/// The toy 4 mm and 2 degrees off, the light by 8 degrees.
+/// The toy is wrong by 4 mm and 2 degrees, the light by 8 degrees.
 fn disturbed(scene: &Scene, input: &FrameInput) -> FrameInput {
     let at = middle(&input.world_from_object);
     let Light::Sphere {
@@ -80,7 +81,7 @@ fn disturbed(scene: &Scene, input: &FrameInput) -> FrameInput {
         }])))
 }
 
-/// How far the toy is from where it stood, in millimetres of the true world.
+/// Distance of the toy from its true place, in millimetres of the true world.
 fn off_mm(found: &Alignment, ratio: f64) -> f64 {
     let recorded = middle(&SESSION.1.world_from_object);
     1e3 * (middle(&found.world_from_object) / ratio).distance(recorded)
@@ -106,7 +107,8 @@ fn a_scale_that_is_off_is_found() {
     }
 }
 
-/// Where nobody asks, the world stays: a toy that stands in it is found in its size there, one that floats farther away or nearer.
+/// Without a request the world stays: a toy that stands in it is found in its size there, a
+/// floating one farther away or nearer.
 #[test]
 fn a_scale_that_nobody_asks_for_is_a_size_of_the_toy() {
     let (scene, input) = off(1.03);
@@ -143,7 +145,7 @@ fn a_scale_that_is_right_changes_nothing() {
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
 }
 
-/// Without a plate no shadow is measured; that is said, and the world's scale stays.
+/// Without a plate no shadow is measured; that is reported, and the world's scale stays.
 #[test]
 fn what_cannot_tell_it_is_said() {
     let (mut scene, input) = off(1.03);

@@ -1,4 +1,4 @@
-//! What a measurement of the bundled session comes to, as a program reads it.
+//! The output of a measurement of the bundled session, as a program reads it.
 
 use app_core::preset::Preset;
 use desk::alignment::{Lights, Ratio};
@@ -64,7 +64,7 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
     }
     for (balanced, paper) in rows[..3].iter().zip(&rows[3..6]) {
         assert_eq!(paper[column("ratio_to_paper")], "1.000000");
-        // Only the published method searches, and a search looks at whole rings.
+        // Only the published method searches, and a search tests whole rings.
         assert_eq!(balanced[column("taps_per_missing_texel")], "");
         assert!(number(paper, "taps_per_missing_texel") >= 16.0, "{text}");
     }
@@ -77,7 +77,8 @@ fn rows_are_complete_and_the_published_method_is_the_unit() {
     }
 }
 
-/// Each kind runs what is new to it, by the passes that the device timed: first three rows of `balanced`, then of `paper`.
+/// Each kind of frame runs the passes that it needs, among those that the device timed: first three
+/// rows of `balanced`, then of `paper`.
 fn assert_ran(pass_ms: &[&str]) {
     let ran = |first: usize, pass: &str| {
         let start = format!("{pass}=");
@@ -88,7 +89,7 @@ fn assert_ran(pass_ms: &[&str]) {
         (0, "composite", [true; 3]),
         (0, "residual", [false, true, true]),
         (0, "gbuffer", [false, false, true]),
-        // What comes as planes the published method has decoded, once a picture; the model reads it as it is.
+        // The published method has planes decoded, once a picture; the model reads them directly.
         (0, "camera_planes", [false; 3]),
         (3, "camera_planes", [false, true, true]),
     ] {
@@ -96,10 +97,10 @@ fn assert_ran(pass_ms: &[&str]) {
     }
 }
 
-/// Steps of the governor's that change a setting.
+/// Number of the governor's steps that change a setting.
 const N_TURNED_DOWN: usize = 6;
 
-/// Programs find in the JSON what is in the table.
+/// The JSON for programs has the same content as the table.
 fn assert_same(rows: &[Row], header: &[&str], lines: &[Vec<&str>]) {
     let json = json(rows);
     let json = json.as_array().unwrap();
@@ -122,7 +123,7 @@ fn assert_same(rows: &[Row], header: &[&str], lines: &[Vec<&str>]) {
     }
 }
 
-/// Those of the rows: what is turned down comes after the presets.
+/// The presets of the rows; the reduced settings come after them.
 fn named_presets() -> Vec<String> {
     let turned_down = (1..=N_TURNED_DOWN).map(|n| format!("balanced-{n}"));
     let presets = ["balanced", "paper"].map(str::to_owned);
@@ -144,7 +145,7 @@ fn assert_stages(rows: &[Row]) {
     }
 }
 
-/// Each setting is a point of each kind of frame, fastest first.
+/// Each setting is a point for each kind of frame, fastest first.
 fn assert_drawn(rows: &[Row], n_settings: usize) {
     let of_pictures = points(rows, FrameKind::Picture);
     assert_eq!(of_pictures.len(), n_settings);
@@ -188,7 +189,7 @@ fn starts_of_the_basin_are_as_far_off_as_they_say_and_drawn_from_their_seed() {
         );
         assert!(is_close(start.light_deg.unwrap(), 30.0), "{start:?}");
     }
-    // Another seed goes elsewhere, and so ends elsewhere by some rounding at least.
+    // Another seed starts elsewhere, and so ends elsewhere, if only by rounding.
     assert_ne!(draws[0].end, basin(&session, 2, 2).unwrap()[0].end);
 
     let csv = basin_csv(&draws);

@@ -7,7 +7,8 @@ use app_session::tags::png_chunks;
 use desk::card::{CROSSES_M, DOTS_PER_M, Paper, page, png};
 use glam::DVec2;
 
-/// Where a place of a square picture is turned or mirrored to, in dots; the last of a side comes after it.
+/// The position to which a position of a square picture is turned or mirrored, in dots; the second
+/// argument is the last index of a side.
 type Turn = fn([usize; 2], usize) -> [usize; 2];
 
 fn code(gray: &Gray, [x, y]: [usize; 2]) -> f64 {
@@ -46,10 +47,10 @@ fn a_page_states_its_size_and_the_crosses_are_where_a_ruler_finds_them() {
             (size_m - paper.size_m()).abs().max_element() < 1e-4,
             "{paper:?}: {size_m}"
         );
-        // Middles of the black columns and rows through each cross.
+        // Centres of the black columns and rows through each cross.
         let found = paper.crosses_m().map(|cross| {
             let dot = |at: f64| (at * f64::from(dots)).floor() as usize;
-            // Beside the middle, where only one of the two lines is.
+            // Beside the centre, where only one of the two lines is.
             let middle = |is_across: bool| {
                 let black = (0..80).map(|i| i + dot(if is_across { cross.x } else { cross.y }) - 40);
                 let off = dot(if is_across { cross.y } else { cross.x } + 0.003);
@@ -94,7 +95,7 @@ fn the_pattern_looks_like_none_of_its_turns_and_has_edges_everywhere() {
         let alike = correlation(&pattern, |at| turn(at, last));
         assert!(alike.abs() < 0.2, "turn {n}: {alike}");
     }
-    // One that is the same turned would be found.
+    // A pattern that is the same when turned would be found.
     assert!(correlation(&pattern, |at| at) > 0.999);
     // In each centimetre there is dark and bright.
     let n_cells = (PATTERN_M / 0.01).round() as usize;

@@ -1,5 +1,5 @@
-//! What the project stands on: licences, sources and versions of every package that is compiled for a desktop or one
-//! of the two phones, and what the core must not reach.
+//! Dependencies of the project: licences, sources and versions of every package that is compiled
+//! for a desktop or a phone, and the packages that the core must not use.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
@@ -13,12 +13,13 @@ const TARGETS: [&str; 3] = [
     "aarch64-apple-ios",
     "aarch64-linux-android",
 ];
-/// Permissive licences: they ask for a notice and nothing else.
+/// Permissive licences: they require a notice and nothing else.
 const LICENCES: [&str; 5] = ["MIT", "Apache-2.0", "ISC", "Unicode-3.0", "Zlib"];
-/// What the desktop programs may be under besides: these ask a distributor of binaries for their notice, too.
+/// Additional licences for the desktop programs: these require a notice from a distributor of
+/// binaries, too.
 const DESKTOP_LICENCES: [&str; 2] = ["BSD-2-Clause", "BSD-3-Clause"];
 const CRATES_IO: &str = "registry+https://github.com/rust-lang/crates.io-index";
-/// Packages of which more than one version is compiled, and whose doing that is.
+/// Packages of which more than one version is compiled, and the packages that cause it.
 const TWICE: [(&str, &str); 9] = [
     ("hashbrown", "gpu-allocator is one behind wgpu"),
     ("jni-sys", "jni-sys 0.3 is a shim over 0.4"),
@@ -30,7 +31,7 @@ const TWICE: [(&str, &str); 9] = [
     ("thiserror", "ndk is at 1"),
     ("thiserror-impl", "follows thiserror"),
 ];
-/// Windows, event loops, networks and file systems: the shells' and the programs' business.
+/// Windows, event loops, networks and file systems: these belong to the shells and the programs.
 const NOT_IN_CORE: [&str; 14] = [
     "android-activity",
     "indicatif",
@@ -47,7 +48,7 @@ const NOT_IN_CORE: [&str; 14] = [
     "walkdir",
     "winit",
 ];
-/// The core's own packages, which `app-core` is the face of.
+/// The core's own packages, behind the interface `app-core`.
 const CORE: [&str; 6] = [
     "app-alignment",
     "app-core",
@@ -56,7 +57,7 @@ const CORE: [&str; 6] = [
     "app-scene",
     "app-session",
 ];
-/// Packages of a phone that compile C or declare what C has, and why each may.
+/// Packages for a phone that compile C or declare functions of C, each with its reason.
 const C_ON_PHONES: [(&str, &str); 5] = [
     ("cc", "android-activity compiles the platform's own glue with it"),
     ("jni-sys", "declares Java's interface alone"),
@@ -65,7 +66,7 @@ const C_ON_PHONES: [(&str, &str); 5] = [
     ("renderdoc-sys", "declares a header alone"),
 ];
 
-/// What `cargo metadata` prints, as far as it is looked at.
+/// The part of the output of `cargo metadata` that is used.
 #[derive(Deserialize)]
 struct Metadata {
     packages: Vec<Package>,
@@ -76,11 +77,11 @@ struct Package {
     name: String,
     version: String,
     license: Option<String>,
-    /// None for a package of this workspace, or one beside it.
+    /// `None` for a package of this workspace, or one beside it.
     source: Option<String>,
 }
 
-/// What a command of cargo prints of the workspace as it is locked.
+/// Output of a cargo command about the locked workspace.
 fn cargo(args: &[&str]) -> Vec<u8> {
     let output = Command::new(env!("CARGO"))
         .args(args)
@@ -166,9 +167,9 @@ fn licence_expressions_are_weighed() {
     }
 }
 
-/// Name and version of every package that is compiled for a target, of what `cargo tree` is told to list.
+/// Name and version of every package that is compiled for a target, as `cargo tree` lists them.
 ///
-/// Metadata lists more: packages, too, that features name only for the case that something else asks for them.
+/// Metadata lists more: also packages that features name only in case something else requires them.
 fn compiled(of: &[&str], target: &str) -> Vec<(String, String)> {
     let tree = ["tree", "--prefix=none", "--format={p}", "--target", target];
     let packages = String::from_utf8(cargo(&[&tree, of].concat())).unwrap();
@@ -203,7 +204,8 @@ fn no_package_is_compiled_twice_without_a_reason() {
     );
 }
 
-/// The core has a feature for the tests, which must not come with an app that is built from the same workspace.
+/// The core has a feature for the tests, which must not be enabled in an app that is built from the
+/// same workspace.
 #[test]
 fn apps_know_no_schema() {
     let has_schema = |package: &str, target| {
@@ -257,7 +259,7 @@ fn phones_compile_no_c_but_what_is_known() {
     assert!(["cmake", "zstd-sys", "cc"].into_iter().all(is_of_c) && !is_of_c("accesskit"));
 }
 
-/// Whether a package builds C, or is by its name of a library in C.
+/// Whether a package builds C, or is, by its name, one of a C library.
 fn is_of_c(name: &str) -> bool {
     ["cc", "cmake", "pkg-config", "bindgen"].contains(&name) || name.ends_with("-sys")
 }

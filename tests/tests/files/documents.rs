@@ -1,10 +1,10 @@
-//! Links in the documents: every file and every heading that a link names exists.
+//! Links in the documents: every linked file and heading exists.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Folders of the project that hold documents; `README.md` lies beside them.
+/// Folders of the project with documents; `README.md` is beside them.
 const FOLDERS: [&str; 6] = ["app-core", "app-ios", "app-android", "tests", "xtask", "shaders"];
 
 fn root() -> PathBuf {
@@ -36,7 +36,7 @@ fn prose(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// The anchors that a page gets from its headings, as GitHub makes them.
+/// The anchors of a page's headings, as GitHub makes them.
 fn anchors(text: &str) -> BTreeSet<String> {
     let headings = prose(text);
     let headings = headings.lines().filter(|line| line.starts_with('#'));
@@ -48,7 +48,7 @@ fn anchors(text: &str) -> BTreeSet<String> {
     headings.map(anchor).collect()
 }
 
-/// Where the links of a page lead, but for those to other sites and to items of code.
+/// Targets of the links of a page, without those to other sites and to items of code.
 fn links(text: &str) -> Vec<String> {
     let text = prose(text);
     let targets = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
@@ -56,7 +56,7 @@ fn links(text: &str) -> Vec<String> {
     targets.map(str::to_owned).collect()
 }
 
-/// The links of a page that lead nowhere.
+/// The links of a page without a target.
 fn broken(page: &Path, text: &str) -> Vec<String> {
     let is_broken = |link: &String| {
         let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
@@ -87,7 +87,8 @@ fn links_of_the_documents_lead_somewhere() {
         );
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    // A missing file and a missing heading would be found, and a link in a code block is none.
+    // Control: a missing file and a missing heading are detected, and a link in a code block is
+    // ignored.
     let planted = "[a](app-core/doc/no.md) [b](app-core/doc/session.md#no) [c](app-core/doc/session.md#keys)\n```\n[d](no.md)\n```";
     assert_eq!(
         broken(&pages[0], planted),

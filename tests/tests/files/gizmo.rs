@@ -1,4 +1,5 @@
-//! The drawn lights: where the hemisphere's picture is brightest the light is, and a ray points to it.
+//! The drawn lights: the hemisphere's picture is brightest in the light's direction, and a ray
+//! points to it.
 
 use app_core::alignment::LightSearch;
 use app_core::frame::FrameInput;
@@ -8,7 +9,7 @@ use desk::false_color::ERROR_RAMP;
 use desk::gizmo::{Gizmo, hemisphere, rays};
 use glam::{DQuat, DVec2, DVec3};
 
-/// No picture and no ramp has it.
+/// A colour that occurs in no picture and no ramp.
 const MARK: [u8; 3] = [1, 254, 2];
 
 fn session() -> (Scene, FrameInput) {
@@ -19,7 +20,7 @@ fn session() -> (Scene, FrameInput) {
     )
 }
 
-/// Mean place of the pixels of a colour.
+/// Mean position of the pixels of a colour.
 fn middle_of(picture: &Image, color: [u8; 3]) -> DVec2 {
     let pixels = picture.rgba8.as_chunks::<4>().0.iter().enumerate();
     let places = pixels.filter(|(_, pixel)| pixel[..3] == color);

@@ -1,4 +1,5 @@
-//! In-between frames: what a shot may hold, when frames are shown, and what a photograph keeps when it is moved.
+//! In-between frames: the permitted content of a shot, the times of frames, and the quality of a
+//! moved photograph.
 
 use app_core::grain::{Grain, Noise};
 use app_core::session::Folder;
@@ -14,7 +15,7 @@ use serde_json::{Value, json};
 
 const SESSION: &str = "sessions/llama";
 
-/// A shot of two prints, as its file has it.
+/// File content of a shot of two prints.
 fn shot() -> Value {
     let index = std::fs::read(format!("{SESSION}/capture.json")).unwrap();
     let mut index: Value = serde_json::from_slice(&index).unwrap();
@@ -118,7 +119,7 @@ fn frames_meet_their_keys_and_pictures_stay_as_long_as_they_are_held() {
         "{by_time:?}"
     );
     assert_eq!(at(Rate::Between(1), 2), [0.0, 0.0, 1.0, 1.0, 2.0]);
-    // A hold that does not go into the gap ends at the key.
+    // A hold that does not fit the gap ends at the key.
     assert_eq!(
         at(Rate::Between(3), 3),
         [0.0, 0.0, 0.0, 0.75, 1.0, 1.0, 1.0, 1.75, 2.0]
@@ -128,7 +129,7 @@ fn frames_meet_their_keys_and_pictures_stay_as_long_as_they_are_held() {
     assert!(moments(&[0.0, 1e9], Rate::PerSecond(24.0), Ease::Linear, 1).is_err());
 }
 
-/// A wave of a period of five pixels, which a cubic kernel would dim by a tenth at half a pixel.
+/// A wave with a period of five pixels, which a cubic kernel would dim by a tenth at half a pixel.
 fn wave(shift_px: f64) -> LightPicture {
     let (width_px, height_px) = (64, 48);
     let pixels = (0..width_px * height_px).map(|pixel| {

@@ -1,4 +1,5 @@
-//! What is read and written: toys, sessions, recordings, imports; the programs that do so; and the rules of the source tree.
+//! Files: toys, sessions, recordings, imports; the programs that read and write them; and the rules
+//! of the source tree.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 

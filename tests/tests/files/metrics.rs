@@ -1,4 +1,4 @@
-//! The scores against closed forms, and proof that they can tell pictures apart.
+//! The scores compared with closed forms, and proof that they can distinguish pictures.
 
 use app_core::scene::Image;
 use app_core::session::Truth;
@@ -63,7 +63,7 @@ fn constant_offset_of_flat_grey() {
     )
     .unwrap();
     close(scores.frame.rmse, 7.0);
-    // No variance is left: only the term of the means counts, borders included.
+    // Without variance only the term of the means counts, borders included.
     let c1 = (0.01_f64 * 255.0).powi(2);
     close(
         scores.frame.ssim,
@@ -97,7 +97,8 @@ fn one_bright_pixel_in_the_corner_shows_window_and_border() {
         }
     };
     let sum = gauss(0) + 2.0 * (1..=5).map(gauss).sum::<f64>();
-    // The border repeats the pixel, so the window around x meets it at distance x and x + 1.
+    // The border repeats the pixel, so that the window around x contains it at distance x and x +
+    // 1.
     let weight = |x: u32| (gauss(x) + gauss(x + 1)) / sum;
     let (c1, c2) = ((0.01_f64 * 255.0).powi(2), (0.03_f64 * 255.0).powi(2));
     let ssim_at = |x: u32, y: u32| {
@@ -118,7 +119,7 @@ fn regions_have_the_sizes_of_their_squares() {
         Regions::from_mask(&picture(|x, y| if inside(x, y) { pixel } else { [0; 4] })).n_pixels()
     };
     let frame = 40 * 40;
-    // Shadow, toy, edge: one pixel in the middle, in each channel of the mask.
+    // Shadow, toy, edge: one pixel in the centre, in each channel of the mask.
     assert_eq!(n_pixels(20..21, [255, 0, 0, 0]), [0, 0, 5 * 5, frame]);
     assert_eq!(n_pixels(20..21, [0, 255, 0, 0]), [13 * 13, 0, 0, frame]);
     assert_eq!(n_pixels(20..21, [0, 0, 3, 0]), [13 * 13, 0, 0, frame]);
@@ -128,7 +129,7 @@ fn regions_have_the_sizes_of_their_squares() {
         n_pixels(20..21, [255, 255, 0, 0]),
         [13 * 13 - 5 * 5, 0, 5 * 5, frame]
     );
-    // A block of 5, and the border, beyond which nothing is outside the toy.
+    // A block of 5, and the border, beyond which nothing counts as outside the toy.
     assert_eq!(n_pixels(20..25, [255, 0, 0, 0]), [0, 3 * 3, 9 * 9 - 3 * 3, frame]);
     assert_eq!(n_pixels(0..1, [0, 255, 0, 0]), [7 * 7, 0, 0, frame]);
     assert_eq!(n_pixels(0..5, [255, 0, 0, 0]), [0, 4 * 4, 7 * 7 - 4 * 4, frame]);
@@ -150,7 +151,7 @@ fn an_error_counts_only_in_its_region() {
     let scores = measure(&actual, &truth, &regions).unwrap();
     close(scores.toy.rmse, 10.0);
     close(scores.frame.rmse, 50.0_f64.sqrt());
-    // Columns 18, 19 are right and 20 is wrong.
+    // Columns 18 and 19 are right, and 20 is wrong.
     close(scores.edge.rmse, (100.0_f64 / 3.0).sqrt());
     assert_eq!(
         scores.shadow,
@@ -215,7 +216,7 @@ fn flickers(pictures: Vec<(Image, Image)>) -> Vec<Option<Flicker>> {
         .collect()
 }
 
-/// A picture with an offset; codes stay clear of both ends.
+/// A picture with an offset; codes are not clipped.
 fn offset(picture: &Image, by: i16) -> Image {
     let mut picture = picture.clone();
     for pixel in picture.rgba8.chunks_exact_mut(4) {
@@ -229,7 +230,7 @@ fn offset(picture: &Image, by: i16) -> Image {
 #[test]
 fn a_known_flicker_is_measured_and_an_exact_sequence_has_none() {
     let image = texture();
-    // The truth changes, too; what it changes by is no flicker.
+    // The truth changes, too; its own change is no flicker.
     let truths = [0, 20, -7, 3].map(|by| offset(&image, by));
     let exact = flickers(
         truths
@@ -245,14 +246,15 @@ fn a_known_flicker_is_measured_and_an_exact_sequence_has_none() {
             [0.0; 4]
         );
     }
-    // An error that stays is none either.
+    // A constant error is no flicker either.
     let steady = flickers(
         [0, 20, -7, 3]
             .map(|by| (offset(&image, by + 9), offset(&image, by)))
             .into(),
     );
     assert!(steady[1..].iter().all(|flicker| flicker.unwrap().toy == 0.0));
-    // One that goes to and fro is, by twice its size; and so is a picture that stands still while the truth moves.
+    // An alternating error is one, of twice its size; and so is a picture that stands still while
+    // the truth moves.
     let alternating = [(5, 0), (15, 20), (-2, -7), (-2, 3)];
     let found = flickers(
         alternating
@@ -278,7 +280,8 @@ fn flicker_is_over_pixels_that_are_of_a_region_in_both_frames() {
             image: grey(100),
             mask: toy_from(left),
         };
-        // Wrong where the toy is, by so much; and far more in the column that is the toy's in one of the frames alone.
+        // Wrong on the toy by this amount, and far more in the column that belongs to the toy in
+        // one of the frames alone.
         let wrong = picture(|x, _| match x {
             20..25 => [250, 250, 250, 255],
             25.. => [code, code, code, 255],

@@ -1,4 +1,5 @@
-//! Whatever is done to the bytes of a file, reading it does not panic; whatever a pose asks for, it is finite or refused.
+//! No change of a file's bytes makes its reader panic, and every requested pose is finite or
+//! refused.
 
 use std::sync::Arc;
 
@@ -9,7 +10,7 @@ use harness::fuzz::{INDEX, PICTURE, RECORDING, TOY};
 use proptest::prelude::*;
 use proptest::sample::select;
 
-/// What a part of a file is replaced by: other numbers, of whatever size, and the signs of JSON.
+/// Replacements for a part of a file: other numbers, of any size, and the punctuation of JSON.
 const TOKENS: [&str; 20] = [
     "0",
     "-1",
@@ -33,7 +34,7 @@ const TOKENS: [&str; 20] = [
     "nan",
 ];
 
-/// One change: where, as a fraction of the file, and what is written there.
+/// One change: its position, as a fraction of the file, and the new content.
 #[derive(Clone, Debug)]
 enum Change {
     Byte(f64, u8),
@@ -64,7 +65,7 @@ fn changes() -> impl Strategy<Value = Vec<Change>> {
     proptest::collection::vec(change, 1..6)
 }
 
-/// The bytes with all changes, one after the other.
+/// The bytes after all changes, in sequence.
 fn changed(whole: &[u8], changes: &[Change]) -> Vec<u8> {
     let mut bytes = whole.to_vec();
     for change in changes {
@@ -99,7 +100,8 @@ fn changed(whole: &[u8], changes: &[Change]) -> Vec<u8> {
     bytes
 }
 
-/// The chunks of [`TOY`] as [`fuzz::toy_chunks`] takes them: their lengths stay right whatever is changed.
+/// The chunks of [`TOY`] as [`fuzz::toy_chunks`] expects them: their lengths are corrected after
+/// every change.
 fn chunks() -> Vec<u8> {
     let n_json = u32::from_le_bytes(TOY[12..16].try_into().unwrap());
     let json_end = 20 + n_json as usize;
@@ -112,7 +114,7 @@ fn chunks() -> Vec<u8> {
     .concat()
 }
 
-/// Numbers of every size, and those that are none.
+/// Numbers of every size, and NaN and infinities.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![-2.0..2.0, -1e7..1e7, any::<f64>(), Just(0.0), Just(-0.0)]
 }
@@ -191,7 +193,7 @@ proptest! {
     }
 }
 
-/// A scale whose square is no number of full precision any more.
+/// A scale whose square is no longer a number of full precision.
 #[test]
 fn a_toy_that_is_flattened_to_nothing_has_unit_normals() {
     let toy = Toy::from_glb("toy.glb", TOY).unwrap();
@@ -214,7 +216,8 @@ fn a_toy_that_is_flattened_to_nothing_has_unit_normals() {
     }
 }
 
-/// The seeds themselves are accepted: mutations of files that are refused anyway would prove nothing.
+/// The seeds themselves are accepted: mutations of files that are refused anyway would prove
+/// nothing.
 #[test]
 fn the_seeds_are_good() {
     let toy = Toy::from_glb("toy.glb", TOY).unwrap();
@@ -227,7 +230,8 @@ fn the_seeds_are_good() {
     assert!(fuzz::opens_recording(RECORDING));
     assert!(fuzz::opens_recording(&fuzz::without_checksums(RECORDING)));
     assert!(!fuzz::opens_recording(&RECORDING[..RECORDING.len() - 1]));
-    // The same, as the format's library in Python writes it: by other encoders than the tests have.
+    // The same file, as written by the format's library in Python: by encoders that the tests do
+    // not have.
     for rewritten in [
         &include_bytes!("../../fuzz/seeds/recording/zstd.mcap")[..],
         include_bytes!("../../fuzz/seeds/recording/lz4.mcap"),
@@ -238,7 +242,7 @@ fn the_seeds_are_good() {
     }
 }
 
-/// A pose that is not finite would be found.
+/// Control: a pose that is not finite is detected.
 #[test]
 #[should_panic(expected = "is_finite")]
 fn what_is_not_finite_panics() {

@@ -1,4 +1,4 @@
-//! The analytic photographer against closed forms, each comparison with a planted fault that it finds.
+//! The analytic photographer compared with closed forms; each comparison finds a planted fault.
 
 use std::f64::consts::PI;
 
@@ -33,19 +33,20 @@ fn world(lamp: Lamp, half_m: DVec3, centre_m: DVec3) -> World {
     world
 }
 
-/// A sun overhead, and a large thin board whose one edge is over the line x = 0, 1 m over the table.
+/// A sun overhead, and a large thin board, one edge of which is over the line x = 0, 1 m over the
+/// table.
 fn under_an_edge(radius_rad: f64) -> World {
     let sun = Lamp::sun(DVec3::Y, radius_rad, 1.0);
     world(sun, DVec3::new(50.0, 1e-9, 50.0), DVec3::new(50.0, 1.0, 0.0))
 }
 
-/// Part of a disc on one side of a line `h` radii from its middle.
+/// Share of a disc on one side of a line `h` radii from its centre.
 fn segment(h: f64) -> f64 {
     (h.acos() - h * (1.0 - h * h).sqrt()) / PI
 }
 
-/// Largest error of the visibility of a sun under an edge, from the umbra to full light. `radius_rad` is what the closed form
-/// is told.
+/// Largest error of the visibility of a sun under an edge, from the umbra to full light.
+/// `radius_rad` is the radius for the closed form.
 fn edge_error(world: &World, radius_rad: f64) -> f64 {
     let place = Place::new(world, Shown::Rest);
     let errors = (-9..=9).map(|step| {
@@ -62,14 +63,14 @@ fn disc_behind_an_edge() {
     let error = edge_error(&world, 0.01);
     // Measured: 1.3e-3 with 4 x 4096 rays.
     assert!(error < 2e-3, "{error:e}");
-    // A sun of half again the size.
+    // A sun one and a half times as large.
     assert!(edge_error(&world, 0.015) > 0.05);
     let half = Place::new(&world, Shown::Rest).visibility_on(0, DVec2::ZERO, 0);
     assert!((half - 0.5).abs() < 1e-3, "{half}");
 }
 
-/// Whether the shadow of a box from a point light ends where lines from the light past the box's upper corners meet the
-/// table, to within `margin_m`.
+/// Whether the shadow of a box from a point light ends where lines from the light through the box's
+/// upper corners meet the table, within `margin_m`.
 fn outline_holds(light: DVec3, half_m: DVec3, margin_m: f64) -> bool {
     let centre = DVec3::new(0.02, half_m.y, -0.01);
     let world = world(Lamp::bulb(DVec3::new(0.4, 0.5, 0.3), 0.0, 1.0), half_m, centre);
@@ -104,7 +105,7 @@ fn outline_holds(light: DVec3, half_m: DVec3, margin_m: f64) -> bool {
 fn outline_of_a_box() {
     let half = DVec3::new(0.03, 0.05, 0.02);
     assert!(outline_holds(DVec3::new(0.4, 0.5, 0.3), half, 1e-9));
-    // A light a tenth of a millimetre beside the one that shines.
+    // A light a tenth of a millimetre beside the true one.
     assert!(!outline_holds(DVec3::new(0.4001, 0.5, 0.3), half, 1e-9));
 }
 
@@ -126,8 +127,8 @@ fn falloff_error(radius_m: f64, power: f64) -> f64 {
 
 #[test]
 fn inverse_square_and_cosine() {
-    // A sphere that is wholly above the horizon lights as if from its middle.
-    // Measured: 6.5e-6 with the 4 x 4096 rays of this test.
+    // A sphere that is wholly above the horizon lights as if from its centre. Measured: 6.5e-6 with
+    // the 4 x 4096 rays of this test.
     for (radius_m, bound) in [(0.0, 1e-12), (0.02, 2e-5)] {
         let error = falloff_error(radius_m, 2.0);
         assert!(error < bound, "{radius_m} m: {error:e}");
@@ -135,7 +136,8 @@ fn inverse_square_and_cosine() {
     }
 }
 
-/// Light of a sky at the foot of an endless wall on the side of +x, at a distance over the wall's height.
+/// Light of a sky at the foot of an infinite wall on the side of +x, at a distance relative to the
+/// wall's height.
 fn sky_at(distance: f64) -> f64 {
     let mut world = world(
         Lamp::bulb(DVec3::Y, 0.0, 0.0),

@@ -1,10 +1,11 @@
-//! The quick cases of `cargo xtask stability`, and that a fault planted in what is measured breaks a bound of each group.
+//! The quick cases of `cargo xtask stability`; a fault planted in the measurement breaks a bound of
+//! each group.
 
 use std::collections::BTreeSet;
 
 use measure::stability::{Bound, Case, Lab, Label, Measured, Row, Scope, cases, csv, run, table};
 
-/// The cheapest case of each group that the quick subset holds, to plant a fault in.
+/// The cheapest case of each group in the quick subset, for planting a fault.
 const PLANTED: &[&str] = &[
     "run-again",
     "uniform-scale",

@@ -1,4 +1,4 @@
-//! Rules of the source tree that no compiler checks.
+//! Rules for the source tree that no compiler checks.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,11 +16,12 @@ const DRAWING_PASSES: &[&str] = &[
     "toy",
     "warp",
 ];
-/// What the core must not know of: it has no clock, opens nothing and is the same on every platform.
+/// Items that the core must not use: it has no clock, opens no file, and is the same on every
+/// platform.
 const BANNED_IN_CORE: &[&str] = &["std::time", "std::fs", "std::net", "target_os", "target_vendor"];
-/// But for the reader of folders, which the feature `fs` alone compiles.
+/// The exception: the reader of folders, which the feature `fs` alone compiles.
 const MAY_OPEN_FILES: &str = "app-core/session/src/folder.rs";
-/// The crates of the core; the app on top of it, too, knows no clock and opens nothing.
+/// The crates of the core; the app on top of it has no clock and opens no file either.
 const CORE: [&str; 6] = [
     "app-core/src",
     "app-core/scene/src",
@@ -48,7 +49,7 @@ impl Source {
     }
 }
 
-/// All files in `folder` of the project, and in the folders in it, whose names end in `extension`.
+/// All files in `folder` of the project and in its subfolders whose names end in `extension`.
 fn sources(folder: &str, extension: &str) -> Vec<Source> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let mut folders = vec![root.join(folder)];
@@ -105,7 +106,7 @@ fn core_sources() -> Vec<Source> {
         .collect()
 }
 
-/// Fails with all that is wrong.
+/// Fails with a list of all violations.
 fn assert_none(wrong: impl IntoIterator<Item = String>) {
     let wrong: Vec<String> = wrong.into_iter().collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -118,7 +119,7 @@ fn wrong_files(sources: Vec<Source>, rule: &str, is_wrong: impl Fn(&Source) -> b
         .collect()
 }
 
-/// The shaders that are passes, not the parts that several share.
+/// The shaders of passes, without the parts that several share.
 fn pass_files() -> Vec<Source> {
     sources("shaders", "wgsl")
         .into_iter()
@@ -146,7 +147,8 @@ fn only_the_gpu_layer_creates_on_the_device() {
     let outside = core_sources()
         .into_iter()
         .filter(|file| !file.path.starts_with("app-core/pipeline/src/gpu"))
-        // It paints over a finished picture, as any caller may by `Core::present_with`: of its own, and not counted.
+        // It paints over a finished picture, as any caller may by `Core::present_with`, with its
+        // own resources, which are not counted.
         .filter(|file| !file.path.ends_with("interface/painter.rs"))
         .collect();
     assert_none(wrong_files(
@@ -175,7 +177,7 @@ fn every_cpu_reference_that_a_shader_names_exists() {
     let references = |file: &Source| -> Vec<String> {
         let heads = file.text.lines().filter(|line| line.starts_with("//"));
         let named = heads.filter_map(|line| Some(line.split_once("CPU reference: ")?.1.to_owned()));
-        // "tests/reference/src/….rs", whatever follows.
+        // "tests/reference/src/….rs", followed by any text.
         let named = named.filter_map(|path| Some(path.strip_prefix("tests/reference/src/")?.to_owned()));
         named
             .map(|reference| {
@@ -236,7 +238,8 @@ fn the_core_has_no_clock_no_files_no_platform_and_no_unsafe_code() {
     assert_none(root);
 }
 
-/// What decides belongs to the core, and what knows a platform's interfaces to the packages beside a shell.
+/// Decisions belong to the core, and knowledge of a platform's interfaces to the packages beside a
+/// shell.
 #[test]
 fn shells_are_thin() {
     let n_lines = |shell: &str| -> usize {
@@ -250,7 +253,8 @@ fn shells_are_thin() {
     }
 }
 
-/// Android offers a mode first that draws as often as the processor can: whoever configures a surface does so in one place.
+/// Android first offers a mode that draws as often as the processor can: therefore only one place
+/// configures surfaces.
 #[test]
 fn surfaces_are_configured_in_one_place_that_waits_for_the_display() {
     let configured = rust_sources()

@@ -1,4 +1,4 @@
-//! Passes of the registry alone, without those before them: on numbers that no scene would show.
+//! Passes of the registry alone, without those before them, with numbers that occur in no scene.
 
 use crate::device::Device;
 use crate::errors::Errors;
@@ -8,11 +8,11 @@ use app_pipeline::shaders;
 use glam::{DVec4, UVec2, Vec4};
 use reference::raster::Raster;
 
-/// A binding's number, and what is bound.
+/// A binding's number, and the bound resource.
 pub(crate) type Binding<'a> = (u32, wgpu::BindingResource<'a>);
 pub(crate) type Bindings<'a> = Vec<Binding<'a>>;
 
-/// What results are drawn in: 32 bits, so that nothing is rounded to what the pass has.
+/// Format of the results: 32 bits, so that nothing is rounded to the format of the pass.
 pub(crate) const RESULT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 const RESULT_BYTES: u32 = 16;
 /// Rows of a copied texture begin on a multiple of this.
@@ -25,7 +25,7 @@ pub(crate) struct Draw<'a> {
     pub(crate) source: &'a str,
     pub(crate) fragment: &'a str,
     pub(crate) constants: &'a [(&'a str, f64)],
-    /// Which of its outputs is wanted.
+    /// Index of the requested output.
     pub(crate) output: usize,
     pub(crate) size: UVec2,
 }
@@ -48,9 +48,10 @@ pub(crate) fn source(shader: &str) -> String {
     shaders().find(|one| one.name == shader).unwrap().source()
 }
 
-/// Proof that a comparison can fail: `errors` of the pass with each fault, a text and one in its place, exceed `allowed`.
+/// Proof that a comparison can fail: with each fault, a text and its replacement, `errors` of the
+/// pass exceed `allowed`.
 ///
-/// The text occurs once. Where it can, it names no local, so that one may get another name.
+/// The text occurs once. If possible it contains no local, so that locals can be renamed.
 pub(crate) fn check_faults(
     shader: &str,
     faults: &[(&str, &str)],
@@ -71,7 +72,7 @@ pub(crate) fn check_faults(
 }
 
 impl Device {
-    /// What a fragment shader of the registry makes of the resources of the groups 0 and 1.
+    /// The output of a fragment shader of the registry for the resources of groups 0 and 1.
     pub(crate) fn draw(&self, draw: Draw<'_>, groups: [&[Binding<'_>]; 2]) -> Raster<DVec4> {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let texture = self
@@ -92,7 +93,7 @@ impl Device {
         self.read_texture(&texture, draw.size)
     }
 
-    /// Runs a compute shader on the resources of the groups 0 and 1.
+    /// Runs a compute shader with the resources of groups 0 and 1.
     pub(crate) fn compute(
         &self,
         source: &str,
@@ -192,7 +193,7 @@ impl Device {
         self.queue.submit([encoder.finish()]);
     }
 
-    /// Those of the groups that have anything, by their number.
+    /// The non-empty groups, by their number.
     fn groups(
         &self,
         groups: [&[Binding<'_>]; 2],

@@ -11,20 +11,20 @@ use crate::numbers::{number, numbers};
 use crate::scrambled::{Scrambled, buffers, views};
 use app_core::wgpu;
 
-/// Nothing, and surfaces of which the second and third are one.
+/// Depth of no surface, and depths of surfaces, the second and third of which count as one.
 const DEPTHS: [f64; 4] = [0.0, 0.25, 0.250_976_562_5, 0.5];
 
 struct Toy {
     depth: Raster<f64>,
-    /// g is 1 where one surface is seen.
+    /// g is 1 where a single surface is visible.
     validity: Raster<DVec4>,
-    /// Unit length, more or less.
+    /// Approximate unit length.
     normal: Raster<DVec4>,
     received: Raster<DVec4>,
     base: Raster<DVec4>,
 }
 
-/// What is kept of a pixel in one output.
+/// The part of a pixel that is stored in one output.
 type Part = fn(ToyPixel) -> DVec4;
 
 /// Patches of surfaces; evidence is sparse enough that some pixels have none in reach.
@@ -47,10 +47,10 @@ fn toy(size: UVec2) -> Toy {
     }
 }
 
-/// Nothing is computed of a colour but which pixel it is from. Measured: 0.
+/// A colour is only copied from another pixel. Measured: 0.
 const ALLOWED: f64 = 1e-6;
 
-/// How far colours, light and base colours are off that `source` makes.
+/// Errors of the colours, light and base colours that `source` makes.
 fn errors(source: &str) -> Errors {
     let (device, scene) = (Device::shared(), Scrambled::new());
     let size = scene.rect.size_px;
@@ -112,7 +112,8 @@ fn errors(source: &str) -> Errors {
     Errors::between(pairs)
 }
 
-/// Colour of the pixel that a source tells of: the squares around a texel are numbered row by row, eight to a row.
+/// Colour of the pixel that a source code refers to: the pixels of the square around a texel are
+/// numbered row by row, eight to a row.
 fn color_from(image: &Raster<DVec4>, texel: UVec2, source: f64) -> DVec4 {
     let number = (0..255).find(|number| (255.0 * source - f64::from(*number)).abs() < 0.5);
     let Some(number) = number else {

@@ -25,7 +25,7 @@ use crate::run::{crop, input, raster, scene};
 use crate::setups::{SETUPS, Setup};
 use crate::stand::Stand;
 
-/// What the device made of a setup by the published method.
+/// The device's results for a setup by the published method.
 struct BaselineRun {
     stand: Stand,
     is_textured: bool,
@@ -33,11 +33,11 @@ struct BaselineRun {
     frame: Raster<DVec3>,
     plate: Raster<DVec3>,
     eligible: Raster<LightSet>,
-    /// One a light.
+    /// One raster per light.
     warp: Vec<Raster<DVec4>>,
     terms: Raster<DVec4>,
     taps: Raster<DVec4>,
-    /// One a set of lights, from the set 1 on.
+    /// One raster per set of lights, from set 1 on.
     filtered: Vec<Raster<DVec4>>,
     visibility: Raster<DVec4>,
 }
@@ -45,9 +45,10 @@ struct BaselineRun {
 static RUNS: LazyLock<Result<Vec<BaselineRun>, String>> = LazyLock::new(|| {
     let decoded = Device::shared().decoded();
     let run = |(index, setup): (usize, Setup)| {
-        // What is eligible keeps some pixels away from every edge, so that the shadow must be larger than those.
+        // The eligible part excludes some pixels along every edge, so the shadow must be larger
+        // than those.
         let stand = Stand::new(setup.twice());
-        // Every other receiver is said to be uniform.
+        // Every other receiver is stated to be uniform.
         let run = BaselineRun::new(stand, index % 2 == 0, &decoded);
         run.map_err(|error| error.to_string())
     };
@@ -95,7 +96,8 @@ impl BaselineRun {
         errors.check(&format!("{}, {pass}", self.stand.setup.name), allowed, max);
     }
 
-    /// Texels of the shown shadows, with the lights that cast them and where those shadows came from.
+    /// Texels of the shown shadows, with the lights that cast them and the original positions of
+    /// those shadows.
     fn shaded(&self) -> impl Iterator<Item = (UVec2, Start)> + '_ {
         let size = self.region.size_px;
         let texels = texels_of(size);
@@ -111,7 +113,7 @@ impl BaselineRun {
     }
 }
 
-/// What lies below each other in a map.
+/// The layers that follow one another in a map, from top to bottom.
 fn layers(map: &Raster<DVec4>, size: UVec2) -> Vec<Raster<DVec4>> {
     let layer = |index| Raster::from_fn(size, |texel| map.at(texel + UVec2::new(0, index * size.y)));
     (0..map.size().y / size.y).map(layer).collect()
@@ -142,7 +144,8 @@ fn ring_search() {
         let taps = found
             .iter()
             .map(|(texel, found, _)| (run.taps.at(*texel).x, f64::from(found.n_taps)));
-        // A candidate within rounding of a texel's border may fall to either side; halves hold odd numbers up to 2048.
+        // A candidate within rounding of a texel's border may fall to either side; halves represent
+        // odd numbers up to 2048.
         run.check("taps", &Errors::between(taps), (1.0, 0.005), f64::INFINITY);
         let terms = found.iter().flat_map(|(texel, found, set)| {
             let expected = found.texel.map_or(DVec4::ZERO, |sample| {
@@ -153,7 +156,7 @@ fn ring_search() {
             let actual = run.terms.at(*texel);
             (0..4).map(move |channel| (actual[channel], expected[channel]))
         });
-        // Halves have 11 bits: values up to 2 are off by half of 2^-10.
+        // Halves have 11 bits: the error of values up to 2 is half of 2^-10.
         run.check("terms", &Errors::between(terms), (1e-3, 0.005), f64::INFINITY);
         let n_own = found.iter().filter(|(_, found, _)| found.n_taps == 0).count();
         let is_searched = |found: &Found| found.n_taps > 0 && found.texel.is_some();
@@ -180,7 +183,7 @@ fn box_filter() {
             let means = sums()
                 .filter_map(|(actual, expected)| mean(*actual).zip(mean(*expected)))
                 .flat_map(|(actual, expected)| channels(actual, expected));
-            // Two sums in halves, each off by half of 2^-10 of values up to 2.
+            // Two sums in halves, each with an error of half of 2^-10 for values up to 2.
             run.check("mean", &Errors::between(means), (2e-3, 0.0), 2e-3);
         }
     }
@@ -218,8 +221,8 @@ impl BaselineRun {
         assert!(values.contains(&1.0), "no light");
         let actual = self.visibility.texels().iter().map(|texel| texel[index]);
         let errors = Errors::between(actual.zip(values.iter().copied()));
-        // A tap within rounding of a texel's border may fall to either side, and a blocker more or less moves the
-        // radius, by which again a few taps change sides.
+        // A tap within rounding of a texel's border may fall to either side, and a blocker more or
+        // less changes the radius, which again moves a few taps to the other side.
         let tap = 1.0 / f64::from(BASELINE.n_filter_taps);
         self.check("pcss", &errors, (0.5 * tap, 0.01), 8.0 * tap);
     }

@@ -1,4 +1,5 @@
-//! A receiver seen from behind is none: what is known is where its front is, and what light falls there.
+//! A receiver that is seen from behind does not count: information exists where its front is
+//! visible, and where light falls on the front.
 
 use app_core::preset::Preset;
 use app_pipeline::geometry::view::View;
@@ -13,15 +14,16 @@ use crate::run::{input, plate_of, scene, texel_of};
 use crate::setups::{Setup, WALL};
 use crate::stand::Stand;
 
-/// Over the toy, and over the wall from behind it.
+/// Viewpoint over the toy, and viewpoint over the wall from behind it.
 const BEFORE: DVec3 = DVec3::new(0.1, 0.3, 0.4);
 const BEHIND: DVec3 = DVec3::new(0.12, 0.3, -0.42);
-/// Within this distance of the toy a pixel may have its colour, and of the table that of its seam.
+/// Distance from the toy within which a pixel may have the toy's colour, and the table that of the
+/// toy's seam.
 const BESIDE_PX: f64 = 3.0;
 
 const SETUP: Setup = WALL.of_size(195, 131);
 
-/// Texels that show the back of the wall, away from its end and clear of the toy in both poses.
+/// Texels that show the back of the wall, away from its end and from the toy in both poses.
 fn texels_of_back(stand: &Stand, region: &Region) -> Vec<UVec2> {
     let toys = [&stand.physical, &stand.shown].map(|posed| shows_toy(stand, posed, &stand.whole_image()));
     let end = region.size_px.as_dvec2() - 1.0;
@@ -38,7 +40,7 @@ fn texels_of_back(stand: &Stand, region: &Region) -> Vec<UVec2> {
     texels_of(region.size_px).filter(is_amid).collect()
 }
 
-/// The light on the wall is known from before it.
+/// The light on the wall is known from its front.
 #[test]
 fn nothing_moves_on_the_back_of_a_wall() {
     let before = Stand::seen_from(SETUP, BEFORE);

@@ -1,4 +1,5 @@
-//! The toy before the lights: what casts shadows, and from which points.
+//! The toy in front of the lights: the shapes that cast shadows, and the points from which they are
+//! cast.
 
 use app_core::scene::Light;
 use app_core::toy::PosedMesh;
@@ -19,12 +20,12 @@ impl Stand {
         points.iter().map(|point| point.as_dvec4()).collect()
     }
 
-    /// A posed toy under points over light `index`, as many as are planned, for each receiver.
+    /// A posed toy under points over light `index`, in the planned number, for each receiver.
     pub(crate) fn light_casters(&self, posed: &PosedMesh, index: usize, n_points: usize) -> Vec<Caster> {
         self.softened_casters(posed, (index, 1.0), n_points)
     }
 
-    /// The same where the light is taken for so many times as wide.
+    /// The same with the light this many times as wide.
     pub(crate) fn softened_casters(
         &self,
         posed: &PosedMesh,
@@ -45,7 +46,7 @@ impl Stand {
         })
     }
 
-    /// A posed toy under directions of the ambient light, as many as are planned, for each receiver.
+    /// A posed toy under directions of the ambient light, in the planned number, for each receiver.
     pub(crate) fn ambient_casters(&self, posed: &PosedMesh, n_directions: usize) -> Vec<Caster> {
         let directions = ambient_directions(n_directions);
         // Each receiver has its own hemisphere.

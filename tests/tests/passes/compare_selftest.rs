@@ -39,7 +39,7 @@ fn check<T: Texels>(expected: &T, actual: &T) -> Result<Difference, CompareError
     Pair { expected, actual }.check(EXACT)
 }
 
-/// The picture with one fault, which must be found; returns how it differs.
+/// The picture with one fault, which must be found; returns the difference.
 fn fault(spoil: impl Fn(&mut Image)) -> Difference {
     let (expected, mut actual) = (picture(), picture());
     spoil(&mut actual);

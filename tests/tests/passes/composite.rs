@@ -1,4 +1,4 @@
-//! `composite` where it shows the receiver, in codes of the finished picture.
+//! `composite` on the receiver, in codes of the finished picture.
 
 use app_core::shadow_style::ShadowStyle;
 use app_core::toy::PosedMesh;
@@ -15,7 +15,7 @@ use crate::run::{Run, runs};
 use crate::setups::SETUPS;
 use crate::stand::Stand;
 
-/// Whether the toy in a pose is, or may by rounding be, on any of the samples of a pixel of `rect`.
+/// Whether the toy in a pose covers, or may by rounding cover, any sample of a pixel of `rect`.
 pub(crate) fn shows_toy(stand: &Stand, posed: &PosedMesh, rect: &PixelRect) -> Raster<bool> {
     let occluder = stand.occluder(posed);
     Raster::from_fn(rect.size_px, |texel| {
@@ -33,7 +33,7 @@ fn receiver_in_codes() {
     runs().iter().for_each(check_receiver);
 }
 
-/// Shadows of half and of twice the strength, one of them softer than it is.
+/// Shadows of half and of twice the strength, one of them softer than the true one.
 #[test]
 fn styled_receiver_in_codes() {
     let decoded = Device::shared().decoded();
@@ -46,7 +46,7 @@ fn styled_receiver_in_codes() {
     }
 }
 
-/// Compares the picture with the reference where it shows the receiver.
+/// Compares the picture with the reference on the receiver.
 pub(crate) fn check_receiver(run: &Run) {
     let shown = Shown {
         visibility: run.shown_visibility.clone(),
@@ -68,17 +68,18 @@ pub(crate) fn check_receiver(run: &Run) {
                     f64::from(actual[channel]),
                     expected.map(|c| unrounded_code(c[channel])),
                 );
-                // How still the toy is decides between the two.
+                // The toy's motion decides between the two.
                 (actual, actual.clamp(a.min(b), a.max(b)))
             })
         });
-    // Half a code is rounding. A software driver encodes sRGB by a polynomial, which measures as 0.14 of a code more
-    // at worst and takes 5 % of the codes to their other neighbour; 8 bits of weight in the bilinear filters of a
-    // graphics card are 1/512 of the difference between two texels.
+    // Half a code is rounding. A software driver encodes sRGB by a polynomial, with an additional
+    // error of 0.14 of a code at worst, which moves 5 % of the codes to a neighbour; 8 bits of
+    // weight in the bilinear filters of a graphics card are 1/512 of the difference between two
+    // texels.
     Errors::between(pairs).check(&format!("{}, codes", run.stand.setup.name), (0.5, 0.1), 0.7);
 }
 
-/// Comparisons on setups that never meet a branch say nothing about it.
+/// Comparisons on setups that never reach a branch do not test it.
 #[test]
 fn setups_meet_every_branch() {
     type Condition = fn(&Run, UVec2) -> bool;

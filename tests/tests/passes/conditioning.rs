@@ -1,4 +1,5 @@
-//! Which lights' strengths the real shadow tells, and what is taken for the others.
+//! The lights whose strengths the real shadow constrains, and the values that are assumed for the
+//! others.
 
 use app_core::frame::Warning;
 use app_core::preset::Preset;
@@ -23,7 +24,7 @@ const fn bulb(x_m: f64) -> Light {
     }
 }
 
-/// Shares of the two lights in green, and the lights that are said not to be told.
+/// Shares of the two lights in green, and the lights that are reported as unconstrained.
 fn told(lights: &'static [Light]) -> (Vec<f32>, Option<Vec<usize>>) {
     let stand = Stand::new(Setup { lights, ..SETUPS[0] });
     let photo = Photo::plain(2);

@@ -1,4 +1,5 @@
-//! Cores that tests take turns with: devices and pipelines are made once, and a scene replaces all else.
+//! Cores that tests share in turn: devices and pipelines are created once, and a scene replaces
+//! everything else.
 
 use std::ops::{Deref, DerefMut};
 use std::sync::{Mutex, PoisonError};
@@ -10,7 +11,7 @@ use harness::open_core;
 
 static IDLE: Mutex<Vec<Core>> = Mutex::new(Vec::new());
 
-/// A core that goes back when it is dropped.
+/// A core that is returned when it is dropped.
 pub(crate) struct SharedCore(Option<Core>);
 
 impl Deref for SharedCore {
@@ -34,13 +35,13 @@ impl Drop for SharedCore {
     }
 }
 
-/// A core that no test uses, with whatever scene.
+/// A core that no test uses, with any scene.
 pub(crate) fn any_core() -> SharedCore {
     let idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner).pop();
     SharedCore(Some(idle.unwrap_or_else(open_core)))
 }
 
-/// A core that has a scene.
+/// A core with a scene.
 pub(crate) fn core_on(scene: Scene, preset: Preset) -> Result<SharedCore, CoreError> {
     let mut core = any_core();
     core.set_scene(scene, preset)?;

@@ -1,4 +1,5 @@
-//! `coverage`: the outline of the shown toy against rays through many places of each pixel.
+//! `coverage`: the outline of the shown toy compared with rays through many positions of each
+//! pixel.
 
 use app_core::preset::Preset;
 use app_core::sharpness::{Sharpness, Spread};
@@ -16,23 +17,23 @@ use crate::stand::Stand;
 
 /// Rays along each side of a pixel.
 const N_RAYS: u32 = 12;
-/// Part of a pixel by which 32 positions may miss the area: three times their RMS error of 0.020 at a straight edge.
-/// Measured: 0.056.
+/// Share of a pixel by which 32 positions may differ from the area: three times their RMS error of
+/// 0.020 at a straight edge. Measured: 0.056.
 const MISSED: f64 = 0.06;
-/// The same in the mean over the outline. Measured: up to 0.017.
+/// The same for the mean over the outline. Measured: up to 0.017.
 const MEAN_MISSED: f64 = 0.02;
-/// The same of 16 positions, whose RMS error is 0.035.
+/// The same for 16 positions, whose RMS error is 0.035.
 const MISSED_BY_16: [f64; 2] = [0.105, 0.035];
-/// Of 32 positions, this many may meet a sliver that all rays miss, or miss what all rays meet. Measured: 2, in one pixel of
-/// 5000.
+/// This many of 32 positions may hit a sliver that all rays miss, or miss one that all rays hit.
+/// Measured: 2, in one pixel of 5000.
 const SLIVER: f64 = 2.0 / 32.0;
-/// Part of the other pixels in which that may be.
+/// Largest share of the other pixels with such a sliver.
 const SLIVERS: f64 = 0.001;
-/// Whole codes divided by their number, in 32 bits.
+/// Integer codes divided by their number, in 32 bits.
 const ROUNDING: f64 = 1e-6;
 
-/// Part of each pixel where a ray meets the toy, above the table; `offset` is that of a place from the pixel's centre, by where it is in a square
-/// from 0 to 1.
+/// Share of each pixel in which a ray hits the toy, above the table; `offset` maps a position in
+/// the unit square to an offset from the pixel's centre.
 fn expected(run: &Run, offset: impl Fn(DVec2) -> DVec2) -> Raster<f64> {
     let stand = &run.stand;
     let occluder = stand.occluder(&stand.shown);
@@ -52,7 +53,7 @@ fn expected(run: &Run, offset: impl Fn(DVec2) -> DVec2) -> Raster<f64> {
     })
 }
 
-/// `missed` is that of a pixel of the outline, and that in the mean.
+/// `missed` is the limit for a pixel of the outline, and that for the mean.
 fn compare(run: &Run, missed: [f64; 2]) {
     compare_with(run, &expected(run, |place| place - 0.5), (missed, SLIVERS));
 }
@@ -68,7 +69,7 @@ fn compare_with(run: &Run, expected: &Raster<f64>, ([missed, mean_missed], slive
         "{name}: {:.3}",
         on_outline.mean()
     );
-    // All of a pixel is exactly 1: nothing shines through a toy.
+    // A full pixel is exactly 1: a toy is opaque.
     let elsewhere = pairs().filter(|(_, expected)| **expected == 0.0 || **expected == 1.0);
     Errors::between(elsewhere.map(|(a, e)| (*a, *e))).check(
         &format!("{name}, elsewhere"),
@@ -84,7 +85,7 @@ fn part_of_each_pixel() {
     }
 }
 
-/// As `fast` counts it.
+/// As `fast` samples it.
 #[test]
 fn part_of_each_pixel_by_sixteen_positions() {
     let stand = Stand::new(SETUPS[0]);
@@ -94,10 +95,11 @@ fn part_of_each_pixel_by_sixteen_positions() {
     compare(&run, MISSED_BY_16);
 }
 
-/// Part of a pixel by which 32 positions may miss the area in a soft picture, and that in the mean: a corner is spread over many pixels, and
-/// the outermost of both lattices lie elsewhere. Measured: .06, .013.
+/// Share of a pixel by which 32 positions may differ from the area in a soft picture, and the same
+/// for the mean: a corner is spread over many pixels, and the outermost positions of the two
+/// lattices differ. Measured: .06, .013.
 const MISSED_IN_SOFT: [f64; 2] = [0.09, 0.03];
-/// Part of the other pixels that one position alone may tell from. Measured: .007.
+/// Share of the other pixels in which a single position may hit. Measured: .007.
 const SLIVERS_IN_SOFT: f64 = 0.02;
 
 #[test]
@@ -110,7 +112,8 @@ fn part_of_each_pixel_in_a_soft_picture() {
     };
     let decoded = Device::shared().decoded();
     let run = Run::of(Preset::Balanced, (stand, sharpness), pictures, &decoded).unwrap();
-    // Of a pixel, and of the mean over three by three that it is read by.
+    // Standard deviation of a pixel and of the mean over three by three pixels with which it is
+    // read.
     let deviation = (1.5_f64 * 1.5 + 1.0 / 12.0 - 0.5).sqrt();
     let root = [deviation, 0.0, deviation];
     let expected = expected(&run, |place| spread_position(place, root) - 0.5);

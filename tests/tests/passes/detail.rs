@@ -1,4 +1,4 @@
-//! `detail` on scrambled inputs, some of whose residuals are noise and some are not.
+//! `detail` on scrambled inputs, whose residuals are partly noise.
 
 use app_core::wgpu;
 use glam::{DVec3, DVec4};
@@ -12,10 +12,11 @@ use crate::errors::{Errors, pairs_of};
 use crate::numbers::number;
 use crate::scrambled::{Scrambled, views};
 
-/// Of residuals up to a tenth of the plate, and of more where nothing is modelled. Measured: 1.2e-6.
+/// For residuals up to a tenth of the plate, and larger ones where nothing is modelled. Measured:
+/// 1.2e-6.
 const ALLOWED: f64 = 1e-4;
 
-/// A scene whose frame is near the model, by less and by more than noise.
+/// A scene whose frame differs from the model by less and by more than noise.
 fn scene() -> Scrambled {
     let mut scene = Scrambled::new();
     let (region, pictures) = (&scene.region, scene.pictures(0));
@@ -37,7 +38,7 @@ fn scene() -> Scrambled {
     scene
 }
 
-/// How far residuals are off that `source` makes.
+/// Errors of the residuals that `source` makes.
 fn errors(source: &str) -> Errors {
     let (device, scene) = (Device::shared(), scene());
     let size = scene.rect.size_px;

@@ -1,4 +1,5 @@
-//! A device of our own, for what the core does not show: how the driver decodes sRGB, and `fill` on any cells.
+//! A device of the tests' own, for values that the core does not expose: the driver's decoding of
+//! sRGB, and `fill` on any cells.
 
 use std::sync::LazyLock;
 
@@ -24,7 +25,7 @@ pub(crate) struct Device {
 }
 
 impl Device {
-    /// The one device of all tests.
+    /// The only device of all tests.
     pub(crate) fn shared() -> &'static Self {
         static DEVICE: LazyLock<Device> = LazyLock::new(Device::open);
         &DEVICE
@@ -54,7 +55,8 @@ impl Device {
 
     /// The linear value that shaders get for each code of an sRGB texture.
     ///
-    /// Drivers may round, and a software one uses a polynomial: inputs of a stage are what its shader saw.
+    /// Drivers may round, and a software driver uses a polynomial: the inputs of a stage are the
+    /// values that its shader read.
     pub(crate) fn decoded(&self) -> Vec<f64> {
         let codes: Vec<u8> = (0..=255u8).flat_map(|code| [code, code, code, 255]).collect();
         let texture = self.device.create_texture_with_data(
@@ -94,7 +96,7 @@ impl Device {
 
     /// Runs the `fill` of the registry over cells of values times certainties and their certainties.
     pub(crate) fn fill(&self, size: UVec2, cells: &[[f32; 4]]) -> Vec<[f32; 4]> {
-        // Something of another receiver comes first.
+        // Other cells of another receiver come first.
         const FIRST_CELL: usize = 3;
         let mut grids = Grids::default();
         grids.grids[0] = Grid {
@@ -107,7 +109,7 @@ impl Device {
             contents: bytemuck::bytes_of(&grids),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        // Coarser levels start as what was never written: they must not be read.
+        // Coarser levels start as unwritten memory: they must not be read.
         let mut pyramid = vec![[f32::NAN; 4]; FIRST_CELL];
         pyramid.extend(cells);
         pyramid.resize(2 * cells.len() + 256, [f32::NAN; 4]);

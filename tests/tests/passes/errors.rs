@@ -1,4 +1,4 @@
-//! How far two lists of numbers are apart.
+//! Differences between two lists of numbers.
 
 use glam::{DVec3, DVec4};
 use reference::raster::Raster;
@@ -15,13 +15,14 @@ pub(crate) fn channels(actual: DVec3, expected: DVec3) -> impl Iterator<Item = (
     (0..3).map(move |channel| (actual[channel], expected[channel]))
 }
 
-/// Differences between what the device made and what the reference says.
+/// Differences between the device's results and the reference.
 pub(crate) struct Errors {
     sorted: Vec<f64>,
 }
 
 impl Errors {
-    /// Of pairs (actual, expected). One that is not finite, on either side, differs without end.
+    /// Differences of pairs (actual, expected). A pair with a number that is not finite has an
+    /// infinite difference.
     pub(crate) fn between(pairs: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let difference = |(actual, expected): (f64, f64)| {
             let difference = (actual - expected).abs();
@@ -53,12 +54,13 @@ impl Errors {
         count(self.sorted.len() - n_within) / count(self.sorted.len())
     }
 
-    /// Fails unless all are within `max`; prints what was measured.
+    /// Fails unless all are within `max`; prints the measured values.
     pub(crate) fn check_all(&self, what: &str, max: f64) {
         self.check(what, (max, 0.0), max);
     }
 
-    /// Fails unless at most `max_share` are beyond `bound`, and none beyond `max`; prints what was measured.
+    /// Fails unless at most `max_share` are beyond `bound`, and none beyond `max`; prints the
+    /// measured values.
     pub(crate) fn check(&self, what: &str, (bound, max_share): (f64, f64), max: f64) {
         let (share, worst) = (self.share_beyond(bound), self.max());
         let measured = format!(

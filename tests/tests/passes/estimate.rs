@@ -1,4 +1,4 @@
-//! `estimate` on scrambled inputs; and, without a plate, the place made up from the frame.
+//! `estimate` on scrambled inputs; and, without a plate, the place reconstructed from the frame.
 
 use app_core::frame::Warning;
 use app_core::preset::Preset;
@@ -40,11 +40,11 @@ fn without_a_plate_the_light_is_found_and_the_shadow_moves() {
             .to_array()
             .into_iter()
             .zip(direct_fraction(&photo.solution).to_array());
-        // What is smooth is taken for shadow and shadow for what is smooth, which pulls shares to the expected half.
-        // Measured: 0.107 and 0.066.
+        // Smooth texture is mistaken for shadow and the reverse, which pulls shares towards the
+        // expected half. Measured: 0.107 and 0.066.
         Errors::between(pairs).check_all(&format!("{}, direct_fractions without a plate", setup.name), 0.12);
         let codes = codes_beside(&core, &stand, &photo);
-        // How far the frame itself is from what is asked for.
+        // Difference between the frame itself and the requested result.
         let still = pairs_beside(&stand, &frame, &photo.frame(&stand, &stand.shown));
         let rmse = |pairs: &[(f64, f64)]| {
             let squares: f64 = pairs.iter().map(|(a, b)| (a - b) * (a - b)).sum();
@@ -65,7 +65,7 @@ fn without_a_plate_the_light_is_found_and_the_shadow_moves() {
 /// Relative to colours up to 10, since a tenth of the light is enough. Measured: 1e-5.
 const ALLOWED: f64 = 1e-4;
 
-/// How far colours and alpha are off that `source` makes.
+/// Errors of the colours and alpha that `source` makes.
 fn errors(source: &str) -> Errors {
     let (device, scene) = (Device::shared(), Scrambled::new());
     let lit = scene.plane_grids().map(|grid| {
@@ -132,7 +132,7 @@ fn a_fault_in_the_completion_is_found() {
     check_faults("estimate", &faults, ALLOWED, errors);
 }
 
-/// Whether an estimated pixel is not as smooth as what is around.
+/// Whether an estimated pixel differs from a smooth version of its surroundings.
 fn is_own(scene: &Scrambled, known: &Known<'_>, color: DVec4, texel: glam::UVec2) -> bool {
     let Some(point) = scene.region.receiver_point(texel.as_dvec2() + 0.5) else {
         return false;

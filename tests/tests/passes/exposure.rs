@@ -19,11 +19,12 @@ use crate::stand::Stand;
 /// Exposure and white balance of two pictures in a row.
 const GAINS: [DVec3; 2] = [DVec3::new(0.62, 0.7, 0.81), DVec3::new(1.25, 1.1, 0.97)];
 
-/// Half the side of a table that goes on beyond toy and shadow, and what an exposure is off by there and otherwise, where
-/// places close to the toy have to do. Measured: 0.0023 and 0.018.
+/// Half the side of a table that extends beyond toy and shadow, and the exposure's error with it
+/// and with a small table, on which only places close to the toy can be used. Measured: 0.0023 and
+/// 0.018.
 const TABLES: [(Option<f64>, f64); 2] = [(Some(1.5), 0.005), (None, 0.025)];
 
-/// A camera at an offset from what it looks at.
+/// A camera at an offset from its target.
 fn stand(offset: DVec3, half_extent_m: Option<f64>) -> Stand {
     let stand = Stand::seen_from(SETUPS[3], SETUPS[3].distance_m * offset);
     match half_extent_m {
@@ -32,7 +33,7 @@ fn stand(offset: DVec3, half_extent_m: Option<f64>) -> Stand {
     }
 }
 
-/// What the plate is over what it was photographed as, in the mean over the receivers.
+/// Ratio of the plate to its photograph, as a mean over the receivers.
 fn exposure(core: &Core, stand: &Stand, photo: &Photo, rect: &PixelRect) -> DVec3 {
     let plate = raster(&core.read_map(Map::Plate).unwrap().unwrap());
     let region = stand.region(rect);

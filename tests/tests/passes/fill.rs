@@ -48,7 +48,7 @@ fn pull_push() {
                 .flat_map(|(actual, expected)| {
                     channels(DVec4::from(actual.map(f64::from)).truncate(), *expected)
                 });
-            // Some ten roundings of 32 bits of values up to 0.1.
+            // Some ten 32-bit roundings of values up to 0.1.
             Errors::between(pairs).check_all(&format!("fill of {size}"), 1e-7);
         }
     }

@@ -1,11 +1,13 @@
 //! `fit` with `fit_solve`: sums of 32 bits over workgroups against sums of 64.
 
+use app_core::gloss::Gloss;
 use app_core::scene::MAX_RECEIVERS;
 use glam::{DVec3, UVec2};
 use reference::fit::{
     FitConstants, MAX_BOUNCE, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, ToySample, fit_receiver, fit_toy,
     receiver_samples, toy_radiance,
 };
+use reference::gloss::{Glossy, SeenPoint};
 use reference::model::{ReceiverSolution, Solution, centre_px};
 use reference::raster::Raster;
 
@@ -16,6 +18,7 @@ use crate::photo::{Photo, truth};
 use crate::run::{Run, runs};
 use crate::setups::{NO_LIGHT, SETUPS};
 use crate::stand::Stand;
+use crate::toy;
 
 /// What the core starts from.
 fn start(n_lights: usize) -> Solution {
@@ -47,7 +50,7 @@ fn receiver() {
     runs().iter().for_each(check_receivers);
 }
 
-fn check_receivers(run: &Run) {
+pub(crate) fn check_receivers(run: &Run) {
     let constants = FitConstants::default();
     let samples = receiver_samples(&run.region, &run.pictures, run.plan.fit_stride_px);
     let mut expected = start(run.region.lights.len());
@@ -133,7 +136,7 @@ fn receiver_finds_the_light_that_was_there() {
 }
 
 /// Pixels that the device took for one surface of the toy, with normals from rays.
-fn toy_samples(run: &Run) -> Vec<ToySample> {
+fn toy_samples(run: &Run, glossy: Option<&Glossy>) -> Vec<ToySample> {
     let (stand, stride_px) = (&run.stand, run.plan.fit_stride_px);
     let occluder = stand.occluder(&stand.physical);
     let taken = Raster::from_fn(run.region.size_px / stride_px, |texel| texel * stride_px);
@@ -142,39 +145,74 @@ fn toy_samples(run: &Run) -> Vec<ToySample> {
         let hit = occluder
             .nearest(origin, direction)
             .filter(|_| run.validity.at(*texel).y > 0.0)?;
+        let point = SeenPoint {
+            in_anchor: origin + hit.distance * direction,
+            normal: stand.physical.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3(),
+            camera_in_anchor: origin,
+            material: toy::material(hit.triangle),
+            received: run.gbuffer_received.at(*texel),
+        };
         Some(ToySample {
             frame: run.pictures.frame.at(*texel),
             base: run.gbuffer_base.at(*texel),
-            normal: stand.physical.normals[stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3(),
-            received: run.gbuffer_received.at(*texel),
+            normal: point.normal,
+            received: point.received,
+            reflected: glossy.map_or(Vec::new(), |glossy| glossy.columns(&run.region, &point)),
         })
     };
     taken.texels().iter().filter_map(sample).collect()
 }
 
 #[test]
-fn toy() {
-    let constants = FitConstants::default();
-    for run in runs() {
-        let samples = toy_samples(run);
-        assert!(samples.len() > 80, "the toy is too small");
-        // Exposure and parts of the light are those of the receivers.
-        let start = Solution {
-            gain: run.solution.gain,
-            receivers: run.solution.receivers.clone(),
-            ..start(run.region.lights.len())
+fn matt_toy() {
+    runs().iter().for_each(|run| check_toy(run, None, 1e-3));
+}
+
+/// The light on a glossy toy is told by what it reflects, too.
+#[test]
+fn glossy_toy() {
+    for setup in SETUPS {
+        let stand = Stand::new(setup);
+        let gloss = Gloss {
+            roughness: 0.3,
+            strengths: [1.0, 1.0, 0.0, 1.6, 1.0, 1.0, 1.0, 1.0],
         };
-        let expected = fit_toy(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
-        // Three sides of boxes do not tell four unknowns apart; what they make of each normal is what counts.
-        let light = |solution: &Solution, sample: &ToySample| -> DVec3 {
-            toy_radiance(solution, sample.normal, sample.received)
+        let glossy = Glossy {
+            roughness: 0.3_f32.into(),
+            strengths: gloss.strengths.map(f64::from).to_vec(),
+            angular_radii_rad: stand.angular_radii_rad(),
         };
-        let pairs = samples
-            .iter()
-            .flat_map(|sample| channels(light(&run.solution, sample), light(&expected, sample)));
-        // Normals are stored in 16 bits, 5e-4 of their length. Measured: 1e-4.
-        Errors::between(pairs).check_all(&format!("{}, toy", run.stand.setup.name), 1e-3);
+        let photo = Photo {
+            gloss: Some(gloss),
+            ..Photo::plain(stand.setup.lights.len())
+        };
+        let pictures = [photo.plate(&stand), photo.frame(&stand, &stand.physical)];
+        let run = Run::glossy(gloss, stand, pictures, &Device::shared().decoded()).unwrap();
+        // Highlights are some ten times as bright as paint.
+        check_toy(&run, Some(&glossy), 5e-3);
     }
+}
+
+fn check_toy(run: &Run, glossy: Option<&Glossy>, allowed: f64) {
+    let constants = FitConstants::default();
+    let samples = toy_samples(run, glossy);
+    assert!(samples.len() > 80, "the toy is too small");
+    // Exposure and parts of the light are those of the receivers.
+    let start = Solution {
+        gain: run.solution.gain,
+        receivers: run.solution.receivers.clone(),
+        ..start(run.region.lights.len())
+    };
+    let expected = fit_toy(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
+    // Three sides of boxes do not tell four unknowns apart; what they make of each normal is what counts.
+    let light = |solution: &Solution, sample: &ToySample| -> DVec3 {
+        toy_radiance(solution, sample.normal, sample.received)
+    };
+    let pairs = samples
+        .iter()
+        .flat_map(|sample| channels(light(&run.solution, sample), light(&expected, sample)));
+    // Normals are stored in 16 bits, 5e-4 of their length. Measured: 1e-4.
+    Errors::between(pairs).check_all(&format!("{}, toy", run.stand.setup.name), allowed);
 }
 
 /// The map is worked out in 32 bits from the fit that the references are fed with.

@@ -15,7 +15,7 @@ const ENCODING: YcbcrEncoding = YcbcrEncoding {
     coefficients: LumaCoefficients::Bt709,
     range: CodeRange::Video,
 };
-/// The map from its codes: luma, Cb, Cr, each a column; then black and grey.
+/// The map from its codes, with luma, Cb and Cr as columns; then black and grey.
 const MAP: [f32; 16] = [
     1.164_383_6,
     1.164_383_6,
@@ -34,12 +34,12 @@ const MAP: [f32; 16] = [
     128.0 / 255.0,
     0.0,
 ];
-/// Draws the part alone.
+/// Draws only the part.
 const SHOWN: &str = "
 @fragment
 fn fs_frame(@builtin(position) at: vec4f) -> @location(0) vec4f { return vec4f(frame_at(vec2i(at.xy)), 1.0); }
 ";
-/// What 32 bits and the constants' seven digits make.
+/// Rounding of 32 bits and of constants with seven digits.
 const ALLOWED: f64 = 1e-5;
 
 fn linear(code: f64) -> f64 {
@@ -50,7 +50,7 @@ fn linear(code: f64) -> f64 {
     }
 }
 
-/// How far light is off that `source` reads.
+/// Errors of the light that `source` reads.
 fn errors(source: &str) -> Errors {
     let (device, scene) = (Device::shared(), Scrambled::new());
     let image_px = scene.stand.setup.image_px;

@@ -1,4 +1,4 @@
-//! Whole pictures that the bundled session has no case of: several lights, a wall, a moving camera.
+//! Whole pictures of cases that the bundled session lacks: several lights, a wall, a moving camera.
 
 use app_core::preset::Preset;
 use app_core::scene::Image;
@@ -11,7 +11,7 @@ use crate::run::{input, plate_of, scene};
 use crate::setups::{SETUPS, Setup, WALL};
 use crate::stand::Stand;
 
-/// Cameras of the moving one, as offsets from what they look at; the picture is that of the last.
+/// Viewpoints of the moving camera, as offsets from its target; the picture is that of the last.
 const VIEWS: [DVec3; 3] = [
     DVec3::new(-0.3, 0.42, 0.2),
     DVec3::new(0.0, 0.36, 0.42),
@@ -39,7 +39,7 @@ fn seen_in_passing(setup: Setup) -> Image {
     seen_by(&VIEWS.map(|offset| Stand::seen_from(setup, offset)))
 }
 
-/// What is made of the last of several views, with a plate of the first alone.
+/// The picture of the last of several views, with a plate of the first alone.
 fn seen_by(stands: &[Stand]) -> Image {
     let photo = Photo::plain(stands[0].setup.lights.len());
     let frames: Vec<_> = stands
@@ -69,7 +69,7 @@ fn pictures_are_their_goldens() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// The same bytes in whatever order receivers are listed.
+/// The bytes are the same for any order of the receivers.
 #[test]
 fn receivers_may_be_listed_in_any_order() {
     let stand = Stand::new(WALL);
@@ -88,7 +88,8 @@ fn receivers_may_be_listed_in_any_order() {
     }
 }
 
-/// A part of `cargo xtask bless`: makes them anew, and fails, so that someone looks.
+/// A part of `cargo xtask bless`: makes the goldens anew, and fails, so that a person inspects
+/// them.
 #[test]
 #[ignore = "writes the goldens"]
 fn bless() {

@@ -1,4 +1,5 @@
-//! `composite` with grain: what is added to made pixels, against the reference, and how a picture's noise is measured.
+//! `composite` with grain: the noise that is added to retargeted pixels, compared with the
+//! reference, and the measurement of a picture's noise.
 
 use app_core::frame::FrameInput;
 use app_core::grain::{Grain, Noise};
@@ -47,8 +48,8 @@ fn drawn(grain: Option<Grain>) -> Image {
     core.read_picture().unwrap()
 }
 
-/// Pixels either keep the camera's noise or have the reference's, of at most its variance; many have all of it, and the mean
-/// in linear light stays.
+/// Pixels either keep the camera's noise or have the reference's, with at most its variance; many
+/// have the full variance, and the mean in linear light is unchanged.
 #[test]
 fn made_pixels_have_the_reference_noise() {
     let (clean, grained) = (drawn(None), drawn(Some(grain())));
@@ -63,7 +64,7 @@ fn made_pixels_have_the_reference_noise() {
         for channel in 0..3 {
             let [before, after] = [codes.0, codes.1].map(|codes| linear(codes[channel]));
             let (added, most) = (after - before, deviation * noise[channel]);
-            // Both pictures are rounded, and a software driver's codes are 0.14 off.
+            // Both pictures are rounded, and a software driver's codes have an error of 0.14.
             let slack = 1.3
                 * (linear(codes.1[channel].saturating_add(1)) - before)
                     .abs()

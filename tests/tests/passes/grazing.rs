@@ -1,4 +1,5 @@
-//! Cameras close to the table's plane, which see little of the shadow: a warning says so where it matters, and only there.
+//! Cameras close to the table's plane, which see little of the shadow: a warning is given if that
+//! matters, and only then.
 
 use app_core::frame::Warning;
 use app_core::preset::Preset;
@@ -11,11 +12,11 @@ use crate::run::{input, scene, solution};
 use crate::setups::{SETUPS, Setup};
 use crate::stand::Stand;
 
-/// Of a direct fraction: what is nearer to the truth is measured, and what is farther from it is not.
+/// Error of a direct fraction up to which it counts as measured.
 const MEASURED: f64 = 0.05;
 const ASSUMED: f64 = 0.12;
 
-/// How far over the table's plane the camera stands.
+/// Elevation of the camera over the table's plane.
 const ELEVATIONS_DEG: [f64; 5] = [0.3, 1.0, 2.0, 3.0, 6.0];
 
 fn stand(setup: Setup, elevation_deg: f64, half_extent_m: Option<f64>) -> Stand {

@@ -1,4 +1,4 @@
-//! Visibility from outside: the device's own changes nothing, another is what is drawn.
+//! Injected visibility: the device's own changes nothing, and another one is drawn.
 
 use app_core::core::CoreError;
 use app_core::frame::PassGroup;
@@ -70,11 +70,12 @@ fn injected_visibility_takes_the_place_of_the_devices_own() {
     }
 }
 
-/// `composite` reads no visibility where it looks for no shadow. A map of its own visibilities, injected, would have it look where
-/// there is one all the same; and one that says a little is hidden everywhere has it look everywhere.
+/// `composite` reads no visibility outside the shadows' tiles. Injecting a map of its own
+/// visibilities keeps these tiles; a map in which a little is hidden everywhere makes it read
+/// everywhere.
 #[test]
 fn clear_of_shadows_all_is_composed_as_elsewhere() {
-    // What rounds to the code of 1.
+    // Values that round to the code of 1.
     let hides_nothing = |map: &FloatMap| FloatMap {
         texels: map
             .texels

@@ -1,4 +1,5 @@
-//! The light and the exposure of one picture against those of another: what changes is followed, and nothing else.
+//! Light and exposure of one picture compared with those of another: changes are followed, and
+//! nothing else changes.
 
 use app_core::core::Core;
 use app_core::preset::Preset;
@@ -17,7 +18,8 @@ use crate::run::{codes_at, input, scene, solution, texel_of};
 use crate::setups::{SETUPS, Setup, WALL};
 use crate::stand::Stand;
 
-/// Codes of the picture of the shown pose, and those of a photograph of it, where neither pose hides the receivers.
+/// Codes of the picture of the shown pose and of a photograph of it, in pixels where neither pose
+/// hides the receivers.
 pub(crate) fn codes_beside(core: &Core, stand: &Stand, photo: &Photo) -> Vec<(f64, f64)> {
     pairs_beside(
         stand,
@@ -26,7 +28,7 @@ pub(crate) fn codes_beside(core: &Core, stand: &Stand, photo: &Photo) -> Vec<(f6
     )
 }
 
-/// Codes of two pictures where neither pose hides the receivers.
+/// Codes of two pictures in pixels where neither pose hides the receivers.
 pub(crate) fn pairs_beside(stand: &Stand, actual: &Image, expected: &Image) -> Vec<(f64, f64)> {
     let hidden = [&stand.physical, &stand.shown].map(|posed| shows_toy(stand, posed, &stand.whole_image()));
     let beside =
@@ -77,9 +79,11 @@ fn exposure_white_balance_and_power_of_a_known_view_are_followed() {
                 colors.flat_map(|color| color.to_array()).collect::<Vec<_>>()
             };
             let pairs = values(&fitted).into_iter().zip(values(&later.solution));
-            // What a light is known by is its power times its share, which is 0.14 at least. Measured: 0.036.
+            // A light is measured by its power times its share, which is at least 0.14. Measured:
+            // 0.036.
             Errors::between(pairs).check_all(&format!("{name}, intensities"), 0.05);
-            // Edges of 32 light points, each up to three codes, against flattened meshes, and rounding of both pictures.
+            // Edges of 32 light points, each up to three codes, compared with flattened meshes, and
+            // rounding of both pictures.
             Errors::between(before).check(&format!("{name}, codes before"), (3.0, 0.002), 8.0);
             let after = codes_beside(&core, &stand, &later);
             Errors::between(after).check(&format!("{name}, codes after"), (3.0, 0.002), 8.0);
@@ -87,7 +91,7 @@ fn exposure_white_balance_and_power_of_a_known_view_are_followed() {
     }
 }
 
-/// Texels that show sides of the shown toy which are turned away in the physical pose.
+/// Texels of sides of the shown toy that face away in the physical pose.
 fn texels_of_hidden_sides(stand: &Stand) -> Vec<UVec2> {
     let occluder = stand.occluder(&stand.shown);
     let is_hidden = |texel: &UVec2| {
@@ -101,10 +105,10 @@ fn texels_of_hidden_sides(stand: &Stand) -> Vec<UVec2> {
     texels_of(stand.setup.image_px).filter(is_hidden).collect()
 }
 
-/// What the camera never saw of the toy is dimmed with the light that it turns to.
+/// Sides of the toy that the camera never saw are dimmed with the light to which they turn.
 #[test]
 fn hidden_sides_of_the_toy_follow_a_light() {
-    // So that the head turns what is hidden to camera and light.
+    // Such that the head turns its hidden side to camera and light.
     let stand = Stand::seen_from(
         Setup {
             image_px: UVec2::new(391, 263),
@@ -134,7 +138,7 @@ fn hidden_sides_of_the_toy_follow_a_light() {
     let dimmed_to = mean(&pictures[1]) / mean(&pictures[0]);
     let should = mean(&expected[1]) / mean(&expected[0]);
     eprintln!("dimmed to {dimmed_to}, should be {should}");
-    // Measured: 0.0096, and 0.11 where the fitted light does not follow.
+    // Measured: 0.0096, and 0.11 if the fitted light does not follow.
     assert!(
         (dimmed_to - should).abs().max_element() < 0.02,
         "{dimmed_to}, not {should}"

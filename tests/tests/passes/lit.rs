@@ -1,4 +1,4 @@
-//! `lit` on scrambled inputs, and onto what was known before.
+//! `lit` on scrambled inputs, with and without previous sums.
 
 use glam::{DVec4, UVec2};
 use reference::grid::{Taken, accumulate};
@@ -16,10 +16,11 @@ use crate::scrambled::{N_CELLS, Scrambled, buffers, views};
 /// Cells of the largest grid, in workgroups of 8 x 8.
 const WORKGROUPS: [u32; 3] = [8, 8, 2];
 
-/// What rounding makes.
+/// Limit for rounding.
 const ALLOWED: f64 = 1e-5;
 
-/// Sums of values times certainties, and of certainties: of some cells nothing, of some more than is kept.
+/// Sums of values times certainties, and of certainties: zero for some cells, and for some more
+/// than is kept.
 fn kept_before() -> Vec<[f32; 4]> {
     let cell = |k: u32| {
         let at = UVec2::new(k % 64, k / 64);
@@ -31,13 +32,13 @@ fn kept_before() -> Vec<[f32; 4]> {
     (0..u32::try_from(N_CELLS).unwrap()).map(cell).collect()
 }
 
-/// How far cells and sums are off that `source` makes, of all points and of two quarters.
+/// Errors of the cells and sums that `source` makes, for all points and for two quarters.
 fn errors(source: &str) -> Errors {
     let taken = [Taken::All, Taken::Quarter(1, 0), Taken::Quarter(0, 1)];
     Errors::between(taken.map(|taken| pairs(source, taken)).concat())
 }
 
-/// What the shader has for the points taken: the step from one to the next, then the first.
+/// The shader's form of the sampled points: the step from one to the next, then the first.
 fn step(taken: Taken) -> [u32; 4] {
     match taken {
         Taken::All => [1, 0, 0, 0],
@@ -45,7 +46,7 @@ fn step(taken: Taken) -> [u32; 4] {
     }
 }
 
-/// Cells and sums as they are and as they should be.
+/// Actual and expected cells and sums.
 fn pairs(source: &str, taken: Taken) -> Vec<(f64, f64)> {
     let (device, scene) = (Device::shared(), Scrambled::new());
     let kept_before = kept_before();
@@ -94,8 +95,8 @@ fn pairs(source: &str, taken: Taken) -> Vec<(f64, f64)> {
 
 #[test]
 fn lit_colours_are_pooled_onto_what_was_known() {
-    // A cell's point within rounding of two pixels may take the other, whose numbers are others. Measured: none does, and
-    // 1e-6 of values up to 8.
+    // A cell's point within rounding of a border between pixels may take the other pixel, whose
+    // numbers differ. Measured: none does, and 1e-6 for values up to 8.
     errors(&source("lit")).check("lit cells and sums", (ALLOWED, 0.01), 4.0);
 }
 

@@ -1,4 +1,4 @@
-//! Exposures of many plates: compared in few pairs, and matched all the same.
+//! Exposures of many plates, which are matched although few pairs are compared.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::plates::{HERE, SETUP, flat, turned};
 use crate::run::{plate_of, scene};
 use crate::stand::Stand;
 
-/// Relative, of any gain: as with three plates.
+/// Relative error of a gain: as with three plates.
 const MAX_OFF: f64 = 0.005;
 
 /// A camera of `n` around the toy.
@@ -37,7 +37,7 @@ fn scene_with(plates: Vec<Plate>) -> (Stand, Scene) {
     (stand, scene)
 }
 
-/// How far the gains of plates of these exposures are off, relative.
+/// Relative error of the gains of plates with these exposures.
 fn off(plates: Vec<Plate>, exposures: &[DVec3]) -> f64 {
     let (stand, scene) = scene_with(plates);
     let gains = match_plates(&scene, &stand.anchored);
@@ -61,7 +61,7 @@ fn exposures_all_around_the_toy_are_matched() {
     assert!(off < MAX_OFF, "{off}");
 }
 
-/// The first two share nothing, and what connects them comes last.
+/// The first two have no common points, and the plate that connects them comes last.
 #[test]
 fn exposures_are_matched_by_way_of_a_later_plate() {
     let here = Stand::seen_from(SETUP, HERE);
@@ -86,7 +86,7 @@ fn exposures_are_matched_by_way_of_a_later_plate() {
     assert!(off < MAX_OFF, "{off}");
 }
 
-/// Plates all around that share one picture.
+/// Plates all around, with the same picture.
 fn ring(n: usize, image: &Arc<Image>) -> Vec<Plate> {
     (0..n).map(|index| plate_of(&around(index, n), image)).collect()
 }
@@ -97,19 +97,19 @@ fn pairs_grow_with_the_number_of_plates_and_connect_them_all() {
         let (stand, scene) = scene_with(ring(n, &flat(128)));
         let compared = compared_plates(&scene, &stand.anchored);
         let n_pairs: usize = compared.iter().map(Vec::len).sum();
-        // All of them while they are few.
+        // All pairs as long as they are few.
         assert!(
             n_pairs <= 5 * n && n_pairs >= (n - 1) * n.min(5) / 2,
             "{n}: {n_pairs}"
         );
         assert_eq!(n_parts(&compared), 1, "{n}");
     }
-    // What tells no exposure is compared with nothing.
+    // A plate without any measure of exposure is compared with none.
     let (stand, scene) = scene_with(ring(20, &flat(255)));
     assert_eq!(n_parts(&compared_plates(&scene, &stand.anchored)), 20);
 }
 
-/// Parts that no pair connects with another.
+/// Number of parts that no pair connects.
 fn n_parts(compared: &[Vec<usize>]) -> usize {
     let mut part_of: Vec<usize> = (0..compared.len()).collect();
     for (later, others) in compared.iter().enumerate() {

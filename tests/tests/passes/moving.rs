@@ -1,4 +1,4 @@
-//! A camera that moves: what was learned of the place stays, and is added to.
+//! A moving camera: the estimates of the place stay, and are extended.
 
 use std::sync::Arc;
 
@@ -15,13 +15,14 @@ use crate::run::{input, plate_of, raster, scene};
 use crate::setups::{SETUPS, Setup};
 use crate::stand::Stand;
 
-/// Cameras, as offsets from what they look at: two that see what lies behind the toy for the third.
+/// Viewpoints, as offsets from the target: two of them see the area that the toy hides from the
+/// third.
 const VIEWS: [DVec3; 3] = [
     DVec3::new(-0.38, 0.42, 0.05),
     DVec3::new(-0.3, 0.45, 0.2),
     DVec3::new(0.2, 0.25, 0.38),
 ];
-/// On the table, behind the toy as the third camera sees it.
+/// A position on the table that the toy hides from the third camera.
 const BEHIND_TOY: DVec2 = DVec2::new(-0.055, -0.07);
 
 fn setup() -> Setup {
@@ -31,7 +32,7 @@ fn setup() -> Setup {
     }
 }
 
-/// A colour that the table throws back there.
+/// The colour of the table's reflection there.
 fn reflection(point: reference::model::ReceiverPoint) -> DVec3 {
     let from_middle = point.in_plane - BEHIND_TOY;
     0.05 * (-from_middle.length_squared() / 0.0008).exp() * DVec3::new(1.0, 0.7, 0.3)
@@ -59,7 +60,7 @@ fn shots() -> Shots {
 }
 
 impl Shots {
-    /// A core that has seen some of the views.
+    /// A core that has processed some of the views.
     fn core(&self, views: &[usize]) -> SharedCore {
         let mut core = core_on(self.scene.clone(), Preset::Balanced).unwrap();
         for view in views {

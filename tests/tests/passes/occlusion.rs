@@ -1,4 +1,4 @@
-//! `occlusion`: flattened meshes against rays.
+//! `occlusion`: flattened meshes compared with rays.
 
 use app_core::preset::Preset;
 use app_core::shadow_style::ShadowStyle;
@@ -25,8 +25,8 @@ const MAX_LIGHT_SHARE: f64 = 0.005;
 const MAX_AMBIENT_SHARE: f64 = 0.03;
 /// Light points that may fall on the other side of an edge in one texel. Measured: 1, and 2 of 32 before a wall.
 const MAX_POINTS: f64 = 2.0;
-/// What is stored of lights, of which each of 16, 32 or 64 points takes 16, 8 or 4 codes of 255, is off by so much at most; of the
-/// ambient light, in 16-bit floats, nothing is.
+/// Largest rounding error of stored values: each of a light's 16, 32 or 64 points has 16, 8 or 4
+/// codes of 255; the ambient light, in 16-bit floats, has none.
 const LIGHTS_STORED: f64 = 1.0 / 255.0;
 const AMBIENT_STORED: f64 = 0.0;
 
@@ -100,7 +100,7 @@ fn visibility_of_softened_lights() {
 /// In all channels of one map.
 #[test]
 fn visibility_of_four_lights() {
-    // What is seen does not matter to visibility.
+    // The picture's content does not affect visibility.
     let two_lights = Setup {
         lights: &FOUR_LIGHTS.lights[..2],
         ..FOUR_LIGHTS
@@ -130,8 +130,8 @@ fn visibility_of_the_ambient_light() {
     }
 }
 
-/// A spread that is wider along one axis, and the root of its covariance, with that of a pixel and without that of the mean over three by three
-/// texels that it is read by, worked out by hand.
+/// A blur that is wider along one axis, and the root of its covariance, with that of a pixel and
+/// without that of the mean over three by three texels with which it is read, computed by hand.
 const SOFT: Spread = Spread {
     xx_px2: 3.2,
     xy_px2: 0.9,

@@ -1,4 +1,5 @@
-//! What the model does not know stays as it was photographed: something on the table, and a light that no list names.
+//! Things unknown to the model stay as photographed: an object on the table, and a light that no
+//! list contains.
 
 use app_core::preset::Preset;
 use app_core::scene::{Image, Light};
@@ -15,10 +16,10 @@ use crate::run::{input, scene, texel_of};
 use crate::setups::{SETUPS, Setup};
 use crate::stand::Stand;
 
-/// Where the head's shadow is to fall, and half the width of what lies there.
+/// Position of the head's new shadow, and half the width of the object that lies there.
 const HAND: DVec2 = DVec2::new(-0.15, 0.0);
 const HAND_M: f64 = 0.04;
-/// On one side of the toy, so that their shadows overlap a little.
+/// Lights on one side of the toy, so that their shadows overlap slightly.
 const LIGHTS: [Light; 2] = [
     Light::Sphere {
         position_in_world: DVec3::new(0.32, 0.62, 0.02),
@@ -43,7 +44,7 @@ fn is_hand(point: ReceiverPoint) -> bool {
     point.in_plane.distance(HAND) < HAND_M
 }
 
-/// Mean difference of codes where `is_compared`.
+/// Mean difference of the codes for which `is_compared` is true.
 fn difference(a: &Image, b: &Image, is_compared: impl Fn(UVec2) -> bool) -> f64 {
     let texels = texels_of(UVec2::new(a.width_px, a.height_px));
     let (mut sum, mut n) = (0.0, 0.0);
@@ -57,7 +58,8 @@ fn difference(a: &Image, b: &Image, is_compared: impl Fn(UVec2) -> bool) -> f64 
     sum / n
 }
 
-/// A hand lies where the shadow of the head is to fall; it is not shaded, since its height is not known.
+/// A hand lies in the place of the head's new shadow; it is not shaded, since its height is not
+/// known.
 #[test]
 fn a_hand_in_the_new_shadow_stays() {
     let stand = Stand::new(setup());
@@ -91,7 +93,8 @@ fn a_hand_in_the_new_shadow_stays() {
         difference(&picture, &frame, is_compared),
         difference(&without, &frame, is_compared),
     );
-    // The hand's rim is pooled with what is beside it. Measured: 4.8 of 58, and 33 where it is not told from a shadow.
+    // The hand's rim is pooled with its surroundings. Measured: 4.8 of 58, and 33 if it is not
+    // distinguished from a shadow.
     assert!(off < 0.15 * hand, "{off} codes of the hand's {hand} are gone");
 }
 
@@ -99,7 +102,7 @@ fn a_hand_in_the_new_shadow_stays() {
 fn the_shadow_of_a_light_that_is_not_listed_stays() {
     let stand = Stand::new(setup());
     let mut photo = Photo::plain(2);
-    // More than a third of the light: what is fainter counts in part.
+    // More than a third of the light: fainter lights count in part.
     photo.solution.receivers[0].direct_fractions.swap(0, 1);
     let (plate, frame) = (photo.plate(&stand), photo.frame(&stand, &stand.physical));
     let one_listed = scene(&stand, &plate).with_lights(stand.setup.lights[..1].to_vec());

@@ -1,4 +1,5 @@
-//! Shadows of two lights that the real ones tell about, fully or not: the published method on injected visibilities.
+//! Overlapping shadows of two lights, for which the real shadows are samples, complete or
+//! incomplete: the published method on injected visibilities.
 
 use app_core::frame::{FrameInput, UnseenShadow, Warning};
 use app_core::preset::{BASELINE, Preset, Settings};
@@ -19,7 +20,7 @@ use crate::run::{crop, input, raster, scene};
 use crate::setups::SETUPS;
 use crate::stand::Stand;
 
-/// A core that has made one frame, what it was made from, and its work region.
+/// A core that has made one frame, its inputs, and its work region.
 struct Shot {
     core: SharedCore,
     input: FrameInput,
@@ -27,12 +28,12 @@ struct Shot {
 }
 
 impl Shot {
-    /// Of the setup with two lights, twice as large: what is eligible keeps away from edges.
+    /// A shot of the setup with two lights, twice as large, since the eligible part excludes edges.
     fn new(preset: Preset) -> Self {
         Self::of_scene(preset, |_| ())
     }
 
-    /// The same of a scene that was changed.
+    /// The same for a changed scene.
     fn of_scene(preset: Preset, change: impl FnOnce(&mut Scene)) -> Self {
         let stand = Stand::new(SETUPS[1].twice());
         let [plate, image] = photograph(&stand);
@@ -48,7 +49,7 @@ impl Shot {
         self.core.read_map(map).unwrap().unwrap()
     }
 
-    /// Makes the frame anew with the real shadow as `change` leaves the shown one.
+    /// Makes the frame anew; the real shadow is the shown one after `change`.
     fn learn(&mut self, change: impl Fn([f32; 4]) -> [f32; 4]) {
         let shown = self.map(Map::Visibility);
         let physical = FloatMap {
@@ -63,7 +64,7 @@ impl Shot {
         self.core.frame(&self.input).unwrap();
     }
 
-    /// The sets of lights that the new shadows' terms stand for.
+    /// The sets of lights of the new shadows' terms.
     fn sets_of_terms(&self) -> Vec<f32> {
         self.map(Map::Terms).texels.iter().map(|term| term[3]).collect()
     }
@@ -86,7 +87,7 @@ fn masks_follow_the_real_shadows_of_both_lights() {
     assert_eq!(lone, [true; 2], "each light has an umbra of its own");
 }
 
-/// Where the second light reaches wherever the first does not.
+/// Visibilities in which the second light reaches every place that the first does not.
 fn without_overlap([first, second, ..]: [f32; 4]) -> [f32; 4] {
     [first, if first < 1.0 { 1.0 } else { second }, 0.0, 1.0]
 }
@@ -145,7 +146,7 @@ fn constant_shadows_multiply() {
     let of_one = of_all.sqrt();
     let decoded = Device::shared().decoded();
     let mut shot = Shot::new(Preset::Flat);
-    // Rounding to codes goes both ways, and a block of pixels evens it out.
+    // Rounding to codes goes both ways, and averages out over a block of pixels.
     let block = Raster::from_fn(UVec2::splat(12), |at| at);
     let mean = |picture: &Raster<DVec3>| -> DVec3 { block.texels().iter().map(|at| picture.at(*at)).sum() };
     // At the exposure of the frame.
@@ -169,7 +170,7 @@ fn constant_shadows_multiply() {
         let picture = crop(&shot.core.read_picture().unwrap(), &shot.region, &decoded);
         let actual = mean(&picture) / plate;
         let error = (actual - expected).abs().max_element();
-        // Measured: 6e-3, most of it the driver's way of decoding sRGB.
+        // Measured: 6e-3, mostly from the driver's decoding of sRGB.
         assert!(error < 0.01, "{visibility:?}: {actual}, not {expected}");
     }
 }

@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use app_core::gloss::Gloss;
 use app_core::scene::Image;
 use app_core::toy::PosedMesh;
 use glam::{DVec2, DVec3, DVec4, UVec2};
 use reference::fit::toy_radiance;
+use reference::gloss::{Glossy, SeenPoint, reflected};
 use reference::model::{ReceiverPoint, ReceiverSolution, Region, Solution, centre_px};
 use reference::raster::Raster;
 use reference::self_shadow::received;
@@ -62,6 +64,7 @@ pub(crate) fn photograph(stand: &Stand) -> [Arc<Image>; 2] {
         albedo: wood,
         unmodelled: faint_light,
         paint: |_| DVec3::ONE,
+        gloss: None,
     };
     [photo.plate(stand), photo.frame(stand, &stand.physical)]
 }
@@ -75,6 +78,8 @@ pub(crate) struct Photo {
     pub(crate) unmodelled: fn(ReceiverPoint) -> DVec3,
     /// Factor on the toy's base colour, of a triangle.
     pub(crate) paint: fn(usize) -> DVec3,
+    /// How glossy the toy is, if it is.
+    pub(crate) gloss: Option<Gloss>,
 }
 
 impl Photo {
@@ -85,6 +90,7 @@ impl Photo {
             albedo: smooth,
             unmodelled: |_| DVec3::ZERO,
             paint: |_| DVec3::ONE,
+            gloss: None,
         }
     }
 
@@ -109,6 +115,21 @@ impl Photo {
     /// The toy in a pose, with its shadows.
     pub(crate) fn frame(&self, stand: &Stand, posed: &PosedMesh) -> Arc<Image> {
         self.frame_casting(stand, posed, |_| posed)
+    }
+
+    /// What the toy reflects at a point, over the gain.
+    fn reflected(&self, stand: &Stand, region: &Region, point: &SeenPoint) -> DVec3 {
+        let Some(gloss) = &self.gloss else {
+            return DVec3::ZERO;
+        };
+        let glossy = Glossy {
+            roughness: f64::from(gloss.roughness),
+            strengths: gloss.strengths.map(f64::from).to_vec(),
+            angular_radii_rad: stand.angular_radii_rad(),
+        };
+        reflected(&self.solution, &glossy.columns(region, point))
+            .into_iter()
+            .sum()
     }
 
     /// The toy in a pose, with each light's shadow of another.
@@ -136,10 +157,15 @@ impl Photo {
                 let at = origin + hit.distance * direction;
                 let received = received(&region, &occluder, &light_points, at, normal);
                 let light = toy_radiance(&self.solution, normal, received);
-                return self.solution.gain
-                    * (self.paint)(hit.triangle)
-                    * toy::base_color(hit.triangle)
-                    * light;
+                let point = SeenPoint {
+                    in_anchor: at,
+                    normal,
+                    camera_in_anchor: origin,
+                    material: toy::material(hit.triangle),
+                    received,
+                };
+                let base = (self.paint)(hit.triangle) * toy::base_color(hit.triangle);
+                return self.solution.gain * (base * light + self.reflected(stand, &region, &point));
             }
             let at = point_seen(&region, texel);
             let mut visibility = DVec4::ZERO;

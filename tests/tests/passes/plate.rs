@@ -1,4 +1,5 @@
-//! `plate` against its reference: cameras all around a table and a wall, and pictures of nothing but detail.
+//! `plate` compared with its reference: cameras all around a table and a wall, and pictures full of
+//! detail.
 
 use app_core::scene::MAX_RECEIVERS;
 use app_pipeline::passes::plate::{PlateView, PlateViews};
@@ -16,10 +17,10 @@ use crate::numbers::numbers;
 use crate::setups::WALL;
 use crate::stand::Stand;
 
-/// Before the wall, and behind it.
+/// Viewpoint in front of the wall, and one behind it.
 const BEFORE: DVec3 = DVec3::new(0.15, 0.34, 0.41);
 const BEHIND: DVec3 = DVec3::new(0.1, 0.25, -0.45);
-/// Beside the first, far to the side, closer, and behind the wall as well.
+/// Viewpoints beside the first, far to the side, closer, and behind the wall as well.
 const PLATES: [DVec3; 4] = [
     DVec3::new(0.26, 0.36, 0.34),
     DVec3::new(-0.4, 0.42, 0.12),
@@ -44,7 +45,7 @@ fn plates() -> Vec<(Stand, PlatePhoto)> {
         let photo = PlatePhoto {
             camera: viewpoint(&stand, &stand.whole_image()),
             picture: numbers(stand.setup.image_px, seed).map(DVec4::truncate),
-            // So that it is told which one a colour is from.
+            // The gain identifies the plate from which a colour comes.
             gain: DVec3::new(1.0, 0.5, 0.25) * f64::from(seed - 29),
         };
         (stand, photo)
@@ -52,7 +53,7 @@ fn plates() -> Vec<(Stand, PlatePhoto)> {
     (30..).zip(&PLATES).map(plate).collect()
 }
 
-/// What the shader is told, worked out from the cameras.
+/// The shader's uniform, computed from the cameras.
 fn plate_views(here: &Stand, plates: &[(Stand, PlatePhoto)]) -> PlateViews {
     let cameras = |stand: &Stand| {
         let mut cameras = [[0.0; 4]; MAX_RECEIVERS];
@@ -82,7 +83,8 @@ fn plate_views(here: &Stand, plates: &[(Stand, PlatePhoto)]) -> PlateViews {
     }
 }
 
-/// How far colours and alpha are off that `source` makes: of all plates, or of one from the other side of the wall.
+/// Errors of the colours and alpha that `source` makes: for all plates, or for one from the other
+/// side of the wall.
 fn errors(source: &str) -> Errors {
     let (device, plates) = (Device::shared(), plates());
     let views = [
@@ -95,7 +97,7 @@ fn errors(source: &str) -> Errors {
     Errors::between(of_views.concat())
 }
 
-/// Colours and alpha of a view's plate, as they are and as they should be.
+/// Actual and expected colours and alpha of a view's plate.
 fn pairs(device: &Device, source: &str, offset: DVec3, plates: &[(Stand, PlatePhoto)]) -> Vec<(f64, f64)> {
     let pictures: Vec<Raster<DVec4>> = plates
         .iter()
@@ -127,7 +129,8 @@ fn pairs(device: &Device, source: &str, offset: DVec3, plates: &[(Stand, PlatePh
     pairs_of(&actual, &expected)
 }
 
-/// A place in a plate is off by some 1e-5 of a pixel, and neighbours by up to 4. Measured: 1.1e-4.
+/// A position in a plate has an error of some 1e-5 of a pixel, and neighbours differ by up to 4.
+/// Measured: 1.1e-4.
 const ALLOWED: f64 = 1e-3;
 
 #[test]

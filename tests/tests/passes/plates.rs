@@ -20,7 +20,7 @@ use crate::run::{crop, input, plate_of, raster, runs, scene};
 use crate::setups::{Setup, WALL};
 use crate::stand::Stand;
 
-/// Offsets of cameras from what they look at: the view's, one beside it, and one from the other side.
+/// Offsets of cameras from their targets: the view's, one beside it, and one from the other side.
 pub(crate) const HERE: DVec3 = DVec3::new(0.15, 0.34, 0.41);
 const BESIDE: DVec3 = DVec3::new(0.26, 0.36, 0.34);
 const AWAY: DVec3 = DVec3::new(-0.4, 0.42, 0.12);
@@ -39,7 +39,7 @@ fn photo(stand: &Stand) -> Photo {
     Photo::plain(stand.setup.lights.len())
 }
 
-/// The plate of a frame from `HERE`, its region, and the core that made it.
+/// The plate of a frame from `HERE`, its region, and the core.
 fn plate_from(plates: Vec<Plate>, preset: Preset, stand: &Stand) -> (Raster<DVec4>, PixelRect, SharedCore) {
     let frame = photo(stand).frame(stand, &stand.physical);
     let with_plates = scene(stand, &frame).with_plates(plates);
@@ -56,7 +56,8 @@ fn points(region: &Region) -> impl Iterator<Item = (UVec2, ReceiverPoint)> + '_ 
     texels.filter_map(|texel| Some((texel, region.receiver_point(centre_px(texel))?)))
 }
 
-/// How far inside another camera's picture it shows a point; negative where it does not, or another receiver hides it.
+/// Distance of a point from the border of another camera's picture, inside it; negative if it is
+/// outside, or if another receiver hides it.
 fn inside_px(stand: &Stand, point: ReceiverPoint) -> f64 {
     let region = stand.region(&stand.whole_image());
     let px = region.receivers[point.receiver].region_px(point.in_plane);
@@ -67,7 +68,7 @@ fn inside_px(stand: &Stand, point: ReceiverPoint) -> f64 {
     seen.map_or(-1.0, |px| px.min(region.size_px.as_dvec2() - px).min_element())
 }
 
-/// Whether the filter's sixteen texels around a pixel all show one receiver, or that many around.
+/// Whether the filter's sixteen texels around a pixel all show one receiver.
 fn is_one_receiver(region: &Region, px: DVec2, receiver: usize) -> bool {
     let steps = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y, DVec2::ZERO];
     let mut around = steps.iter().map(|step| region.receiver_point(px + 4.0 * *step));
@@ -131,20 +132,20 @@ fn plate_of_another_camera_is_the_place_as_seen_from_here() {
         n_seen.iter().all(|n| *n > 1000) && n_hidden > 20,
         "{n_seen:?}, {n_hidden}"
     );
-    // Half a code of what is as dark as code 70 is 1 %; a quarter of a pixel would be as much. Measured: 0.013.
+    // Half a code at code 70 is 1 %; a quarter of a pixel would be equally large. Measured: 0.013.
     Errors::between(pairs).check_all("plate of another camera", 0.02);
 }
 
 #[test]
 fn what_no_plate_shows_is_not_there() {
     let setup = without_wall();
-    // Closer: it sees a part of the place.
+    // A closer camera: it sees only a part of the place.
     let (here, close) = (
         Stand::seen_from(setup, HERE),
         Stand::seen_from(setup, 0.4 * BESIDE),
     );
     let plates = vec![plate_of(&close, &photo(&close).plate(&close))];
-    // The published method keeps its plate as it was photographed.
+    // The published method keeps its plate as photographed.
     let (plate, rect, _) = plate_from(plates, Preset::Paper, &here);
     let region = here.region(&rect);
     let (mut n_seen, mut n_unseen) = (0, 0);
@@ -160,7 +161,7 @@ fn what_no_plate_shows_is_not_there() {
     assert!(n_seen > 1000 && n_unseen > 1000, "{n_seen}, {n_unseen}");
 }
 
-/// A picture of one code, which tells nothing of its exposure when it is white.
+/// A picture of one code, which is no measure of its exposure if it is white.
 pub(crate) fn flat(code: u8) -> Arc<Image> {
     let UVec2 { x, y } = SETUP.image_px;
     Arc::new(Image {
@@ -186,7 +187,8 @@ fn of_two_plates_the_one_that_saw_it_better_wins() {
             let color = plate.at(texel).x;
             if in_beside > 32.0 {
                 n_better += 1;
-                // The other is under the least weight that counts: what is left are codes in halves. Measured: 9e-5.
+                // The weight of the other plate is below the limit: the remaining error is that of
+                // codes in halves. Measured: 9e-5.
                 assert!((color - grey).abs() < 1e-3, "{texel}: {color}, not {grey}");
             } else if in_beside < 0.0 && in_away > 0.0 {
                 n_only += 1;
@@ -208,7 +210,7 @@ fn exposures_of_plates_are_matched_to_the_first() {
         plate_of(&stand, &first.exposed_plate(&stand, gain))
     });
     let plates: Vec<Plate> = plates.collect();
-    // Each of the exposed ones alone with the first, and both.
+    // Each of the differently exposed plates alone with the first, and both.
     for others in [vec![1], vec![2], vec![1, 2]] {
         let chosen = std::iter::once(0)
             .chain(others.clone())
@@ -229,7 +231,7 @@ fn exposures_of_plates_are_matched_to_the_first() {
     }
 }
 
-/// A camera turned about its own vertical axis, to the left, by so much.
+/// A camera turned to the left about its own vertical axis by this angle.
 pub(crate) fn turned(camera: &Camera, left_rad: f64) -> Camera {
     Camera {
         world_from_camera: camera.world_from_camera * DMat4::from_rotation_y(left_rad),
@@ -258,7 +260,7 @@ fn a_narrow_gap_between_plates_is_reported() {
     let scene_with = |plates| scene(&here, &frame).with_plates(plates);
     let together = scene_with(plates_apart_by(-HALF_GAP_PX, 0.0));
     let mut core = core_on(together.clone(), Preset::Balanced).unwrap();
-    // Wherever it lies between the pixels that are looked at.
+    // At any position relative to the tested pixels.
     let apart = [0.0, 4.0, 8.0, 12.0].map(|aside_px| scene_with(plates_apart_by(HALF_GAP_PX, aside_px)));
     for (scene, is_gap) in [(together, false)]
         .into_iter()
@@ -273,7 +275,7 @@ fn a_narrow_gap_between_plates_is_reported() {
     }
 }
 
-/// Low on either side of the toy, so that they look against each other, near and far.
+/// Low on either side of the toy, such that they face each other, one near and one far.
 #[test]
 fn what_only_a_plate_from_the_other_side_shows_is_there() {
     let setup = without_wall();

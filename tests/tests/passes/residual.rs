@@ -1,18 +1,18 @@
-//! `residual` with `fill`, from the light that the device fitted.
+//! `residual` with `fill`, for the light that the device fitted.
 
 use reference::fill::fill;
 use reference::residual::pool;
 
 use crate::errors::{Errors, channels};
-use crate::run::runs;
+use crate::run::{Run, runs};
 
 #[test]
 fn pooled_and_filled() {
-    let each = runs().iter().flat_map(|run| {
-        let receivers = run.residuals.iter().zip(&run.grids).enumerate();
-        receivers.map(move |receiver| (run, receiver))
-    });
-    for (run, (receiver, (actual, grid))) in each {
+    runs().iter().for_each(check_residuals);
+}
+
+pub(crate) fn check_residuals(run: &Run) {
+    for (receiver, (actual, grid)) in run.residuals.iter().zip(&run.grids).enumerate() {
         let cells = pool(&run.region, &run.pictures, &run.solution, (receiver, grid));
         assert_eq!(cells.size(), actual.size());
         let n_hidden = cells.texels().iter().filter(|cell| cell.certainty == 0.0).count();
@@ -28,9 +28,10 @@ fn pooled_and_filled() {
             .iter()
             .fold(0.0_f64, |most, value| most.max(value.abs().max_element()));
         assert!(largest > 0.005, "there is no residual: {largest}");
-        // A graphics card's bilinear filter has weights of 8 bits, 1/512 of the difference of two texels of the ambient
-        // map, which is 0.3 at a contact; and a cell's point within rounding of two pixels may take the other.
-        // Measured in software, which filters in 32 bits: 2e-7 without such a point, 2.3e-4 with one.
+        // A graphics card's bilinear filter has weights of 8 bits, 1/512 of the difference of two
+        // texels of the ambient map, which is 0.3 at a contact; and a cell's point within rounding
+        // of two pixels may read the other one. Measured in software, which filters in 32 bits:
+        // 2e-7 without such a point, 2.3e-4 with one.
         Errors::between(pairs).check_all(&format!("{}, residual on {receiver}", run.stand.setup.name), 5e-4);
     }
 }

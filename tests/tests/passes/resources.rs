@@ -1,4 +1,4 @@
-//! What a pass alone reads: buffers, and textures of any numbers.
+//! Inputs of a single pass: buffers, and textures of any numbers.
 
 use app_core::wgpu;
 use bytemuck::Pod;
@@ -30,7 +30,7 @@ impl Device {
         })
     }
 
-    /// A texture of 32 bits, to load texels from: a layer each.
+    /// A texture of 32 bits for loading texels, with one layer each.
     fn layers(&self, layers: &[&Raster<DVec4>]) -> wgpu::Texture {
         let texels: Vec<[f32; 4]> = layers
             .iter()
@@ -59,7 +59,8 @@ impl Device {
             .create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    /// Multiples of 1/256 in one channel of halves, to be filtered: of 8 bits a driver may filter 8 bits.
+    /// Multiples of 1/256 in one channel of halves, for filtering: a driver may filter 8-bit
+    /// formats in 8 bits.
     pub(crate) fn filterable(&self, numbers: &Raster<u8>) -> wgpu::TextureView {
         let halves: Vec<u16> = numbers.texels().iter().map(|number| half(*number)).collect();
         let bytes = bytemuck::cast_slice(&halves);
@@ -67,7 +68,7 @@ impl Device {
         texture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
-    /// Multiples of 1/256 in four channels of halves, to be filtered.
+    /// Multiples of 1/256 in four channels of halves, for filtering.
     pub(crate) fn filterable_colors(&self, numbers: &Raster<[u8; 4]>) -> wgpu::TextureView {
         let numbers_of_all = numbers.texels().as_flattened().iter();
         let halves: Vec<u16> = numbers_of_all.map(|number| half(*number)).collect();
@@ -96,7 +97,7 @@ impl Device {
             .create_texture_with_data(&self.queue, &descriptor, order, bytes)
     }
 
-    /// A depth map, which cannot be uploaded: it is drawn.
+    /// A depth map, which is drawn, since it cannot be uploaded.
     pub(crate) fn depth(&self, depths: &Raster<f64>) -> wgpu::TextureView {
         let format = wgpu::TextureFormat::Depth32Float;
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
@@ -132,7 +133,7 @@ impl Device {
     }
 }
 
-/// One level, one sample a texel.
+/// A texture with one level and one sample per texel.
 pub(crate) fn texture_of(
     size: UVec2,
     n_layers: u32,
@@ -155,7 +156,8 @@ pub(crate) fn texture_of(
     }
 }
 
-/// `number` / 256 as an IEEE 754 half: 5 bits of exponent, which is off by 15, and 10 of what follows the leading 1.
+/// `number` / 256 as an IEEE 754 half: 5 bits of exponent with a bias of 15, and 10 bits of
+/// mantissa after the leading 1.
 fn half(number: u8) -> u16 {
     let Some(exponent) = number.checked_ilog2() else {
         return 0;

@@ -1,4 +1,5 @@
-//! `retarget` where it shows the receiver, on scattered masks, half shadows of two lights and terms of some of their sets.
+//! `retarget` on the receiver, with scattered masks, half shadows of two lights and terms of some
+//! of their sets.
 
 use app_core::wgpu;
 use app_pipeline::baseline::uniform::Baseline as BaselineUniform;
@@ -40,7 +41,7 @@ fn settings(shade: Shade) -> BaselineUniform {
     }
 }
 
-/// Visibility of two lights: often none or all of one.
+/// Visibility of two lights, often 0 or 1 for one of them.
 fn visibility(at: UVec2) -> DVec4 {
     let of_light = |seed| (2.0 * number(at, seed) - 0.5).clamp(0.0, 1.0);
     DVec4::new(of_light(150), of_light(151), 0.0, 1.0)
@@ -48,7 +49,8 @@ fn visibility(at: UVec2) -> DVec4 {
         .as_dvec4()
 }
 
-/// Sums of a few terms, or of none: of whole patches, so that a set is missed by itself and with others.
+/// Sums of a few terms, or of none: zero in whole patches, so that a set is missing alone and
+/// together with others.
 fn terms(size: UVec2, set: u32) -> Raster<DVec4> {
     Raster::from_fn(size, |at| {
         let count = (4.0 * number(at / 5, 160 + set) - 1.0).floor().max(0.0);
@@ -57,7 +59,7 @@ fn terms(size: UVec2, set: u32) -> Raster<DVec4> {
     })
 }
 
-/// Colours as they are and as they should be, with every way to shade.
+/// Actual and expected colours, for every way of shading.
 fn errors(source: &str) -> Errors {
     let device = Device::shared();
     let pairs = SHADES.map(|shade| pairs(device, source, shade));

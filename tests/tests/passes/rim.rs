@@ -13,9 +13,9 @@ use crate::errors::Errors;
 use crate::numbers::number;
 use crate::scrambled::{N_CELLS, Scrambled, buffers, views};
 
-/// Relative to colours of up to 10.
+/// Relative to colours up to 10.
 const ALLOWED: f64 = 1e-4;
-/// A place of 64 may lie in another texel by rounding.
+/// One of 64 positions may lie in another texel by rounding.
 const ONE_PLACE: f64 = 1.0 / 64.0 + 1e-6;
 
 const BOX: PixelRect = PixelRect {
@@ -31,8 +31,8 @@ fn spread() -> Spread {
     }
 }
 
-/// The root of the spread and of a pixel's own, without that of means over three by three texels; and the root of that one. Worked out by
-/// hand.
+/// The root of the blur and a pixel's own, without that of means over three by three texels; and
+/// the root of the latter. Computed by hand.
 fn root() -> ([f64; 3], f64) {
     let narrowest: f64 = 1.8 - 1.13_f64.sqrt();
     let of_means = 0.5 * narrowest.min(1.0);
@@ -103,7 +103,7 @@ fn errors(source: &str) -> Errors {
         if (actual.w - part).abs() > ONE_PLACE {
             pairs.push((actual.w, part));
         }
-        // A part next to none or all may be that by rounding.
+        // A share next to 0 or 1 may have become that by rounding.
         if part > ONE_PLACE && part < 1.0 - ONE_PLACE {
             n_mixed += 1;
             let expected = shown_receiver(&scene.region, &pictures, &learned, in_region);

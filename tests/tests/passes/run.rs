@@ -4,7 +4,9 @@ use std::sync::{Arc, LazyLock};
 
 use app_core::core::CoreError;
 use app_core::frame::{FrameInput, Warning};
+use app_core::gloss::Gloss;
 use app_core::preset::Preset;
+use app_core::reflection::Reflection;
 use app_core::scene::{Image, Plate, Scene};
 use app_core::shadow_style::ShadowStyle;
 use app_core::sharpness::Sharpness;
@@ -14,10 +16,11 @@ use app_pipeline::model::plan::Plan;
 use app_pipeline::model::state::solution::{Fit, ReceiverFit};
 use app_pipeline::model::state::tints::TintMap;
 use app_pipeline::readback::{FloatMap, Map};
-use glam::{DVec3, DVec4, UVec2, Vec4};
+use glam::{DVec2, DVec3, DVec4, UVec2, Vec3, Vec4};
 use reference::grid::PlaneGrid;
 use reference::model::{Pictures, ReceiverSolution, Region, Solution};
 use reference::raster::Raster;
+use reference::reflection::Reflection as KnownReflection;
 
 use crate::cores::core_on;
 use crate::device::Device;
@@ -103,6 +106,17 @@ impl Run {
         Self::made((preset, &input), stand, [plate, frame], decoded)
     }
 
+    /// The same of a glossy toy.
+    pub(crate) fn glossy(
+        gloss: Gloss,
+        stand: Stand,
+        [plate, frame]: [Arc<Image>; 2],
+        decoded: &[f64],
+    ) -> Result<Self, CoreError> {
+        let input = input(&stand, &frame).with_gloss(gloss);
+        Self::made((Preset::Balanced, &input), stand, [plate, frame], decoded)
+    }
+
     /// The same with a shadow to taste.
     pub(crate) fn styled(
         style: ShadowStyle,
@@ -111,6 +125,17 @@ impl Run {
         decoded: &[f64],
     ) -> Result<Self, CoreError> {
         let input = input(&stand, &frame).with_shadow_style(style);
+        Self::made((Preset::Balanced, &input), stand, [plate, frame], decoded)
+    }
+
+    /// The same on a table that reflects.
+    pub(crate) fn reflecting(
+        reflection: Reflection,
+        stand: Stand,
+        [plate, frame]: [Arc<Image>; 2],
+        decoded: &[f64],
+    ) -> Result<Self, CoreError> {
+        let input = input(&stand, &frame).with_reflection(Some(reflection));
         Self::made((Preset::Balanced, &input), stand, [plate, frame], decoded)
     }
 
@@ -140,7 +165,12 @@ impl Run {
         let picture = core.read_picture()?;
         let residuals = core.read_residuals()?;
         Ok(Self {
-            region: stand.region(&plan.region),
+            region: Region {
+                reflection: input
+                    .reflection
+                    .map(|reflection| known_reflection(&stand, &reflection)),
+                ..stand.region(&plan.region)
+            },
             pictures: Pictures {
                 frame: crop(&frame, &plan.region, decoded),
                 plate: plate.map(|texel| {
@@ -171,6 +201,17 @@ impl Run {
             stand,
             plan,
         })
+    }
+}
+
+/// How a stand's table reflects, as the references have it.
+fn known_reflection(stand: &Stand, reflection: &Reflection) -> KnownReflection {
+    KnownReflection {
+        channel: stand.setup.lights.len(),
+        alpha: reflection.roughness,
+        surroundings: Vec3::from(reflection.surroundings).as_dvec3(),
+        toy_above_surroundings: Vec3::from(reflection.toy_above_surroundings).as_dvec3(),
+        eye_in_plane: stand.camera_ray(DVec2::ZERO).0,
     }
 }
 

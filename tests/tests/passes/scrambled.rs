@@ -1,5 +1,5 @@
-//! Inputs of the passes that learn which hold everything that can be, in neighbouring pixels: what is seen and what is not,
-//! light and none, photographed or estimated.
+//! Inputs for the capture passes with every combination of cases in neighbouring pixels: visible or
+//! hidden, lit or unlit, photographed or estimated.
 
 use app_core::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 use app_core::wgpu;
@@ -18,7 +18,7 @@ use crate::photo::truth;
 use crate::setups::WALL;
 use crate::stand::Stand;
 
-/// Pixels of the region for a texel of the ambient map.
+/// Pixels of the region per texel of the ambient map.
 const AMBIENT_DIVISOR: u32 = 5;
 
 /// A work region within the picture of a table and a wall under two lights.
@@ -27,14 +27,14 @@ pub(crate) struct Scrambled {
     pub(crate) rect: PixelRect,
     pub(crate) region: Region,
     pub(crate) solution: Solution,
-    /// What it shows of the camera's picture.
+    /// Its part of the camera's picture.
     pub(crate) image: Raster<DVec4>,
-    /// Colours, and alpha: 1, a quarter, or 0.
+    /// Colours; alpha is 1, a quarter, or 0.
     pub(crate) plate: Raster<DVec4>,
     /// Each 0 or 1.
     pub(crate) validity: Raster<DVec4>,
     pub(crate) visibility: Raster<DVec4>,
-    /// In steps of 1/256.
+    /// Values in steps of 1/256.
     pub(crate) ambient: Raster<u8>,
 }
 
@@ -48,9 +48,9 @@ impl Scrambled {
         let size = rect.size_px;
         let mut solution = truth(2);
         solution.intensities = vec![DVec3::new(0.7, 0.8, 0.6), DVec3::new(1.2, 1.1, 1.3)];
-        // So that no light at all may be left in a channel.
+        // A channel may have no light at all.
         solution.receivers[1].bounce.z = 0.0;
-        // So that what faces straight down has none, where no light falls on it.
+        // A surface that faces straight down is black where no light falls on it.
         solution.toy[1] = DVec3::ZERO;
         let one_in = |n: u32, seed: u32| move |at: UVec2| number(at, seed) * f64::from(n) < 1.0;
         Self {
@@ -58,7 +58,7 @@ impl Scrambled {
             image: numbers(size, 1),
             plate: Raster::from_fn(size, |at| {
                 let alpha = [1.0, 0.25, 1.0, 0.0][(at.x / 3 + at.y / 7) as usize % 4];
-                // Much of it is as dark as what tells nothing.
+                // Much of it is as dark as unusable pixels.
                 let color = DVec3::from([40, 41, 42].map(|seed| number(at, seed).powi(3)));
                 color.as_vec3().as_dvec3().extend(alpha)
             }),
@@ -86,7 +86,7 @@ impl Scrambled {
         }
     }
 
-    /// What the references see; `seen` is a channel of the evidence.
+    /// The inputs of the references; `seen` is a channel of the evidence.
     pub(crate) fn pictures(&self, seen: usize) -> Pictures {
         Pictures {
             frame: self.image.map(DVec4::truncate),
@@ -97,13 +97,13 @@ impl Scrambled {
         }
     }
 
-    /// Globals and fit, which are group 0.
+    /// Globals and fit, the resources of group 0.
     pub(crate) fn shared(&self, device: &Device) -> [wgpu::Buffer; 2] {
         let fit = device.storage(bytemuck::bytes_of(&fit(&self.solution)));
         [device.uniform(&self.stand.globals(&self.rect)), fit]
     }
 
-    /// What is seen, which is the rest of group 0 for passes that look at the camera's picture.
+    /// The camera's picture, the rest of group 0 for passes that read it.
     pub(crate) fn seen(&self, device: &Device) -> Seen {
         let whole = Raster::from_fn(self.stand.setup.image_px, |at| {
             let is_in = at.cmpge(self.rect.origin_px) & at.cmplt(self.rect.origin_px + self.rect.size_px);
@@ -121,7 +121,7 @@ impl Scrambled {
         }
     }
 
-    /// Grids that do not quite hold the receivers, nor start at the first cell.
+    /// Grids that do not quite contain the receivers, and do not start at the first cell.
     pub(crate) fn grids(&self) -> Grids {
         let mut grids = Grids::default();
         grids.grids[0] = Grid {
@@ -141,7 +141,7 @@ impl Scrambled {
         grids
     }
 
-    /// As the references have them.
+    /// The grids in the references' form.
     pub(crate) fn plane_grids(&self) -> [PlaneGrid; 2] {
         let grids = self.grids().grids;
         [PlaneGrid::from(&grids[0]), PlaneGrid::from(&grids[1])]
@@ -163,10 +163,10 @@ impl Seen {
     }
 }
 
-/// Number of cells that all grids can have.
+/// Maximum number of cells of all grids.
 pub(crate) const N_CELLS: usize = MAX_RECEIVERS * MAX_CELLS;
 
-/// What references found, as the device has it.
+/// The references' solution, in the device's form.
 fn fit(solution: &Solution) -> Fit {
     let color = |value: &DVec3| value.as_vec3().extend(1.0).to_array();
     let mut fit: Fit = bytemuck::Zeroable::zeroed();
@@ -189,14 +189,14 @@ fn fit(solution: &Solution) -> Fit {
     fit
 }
 
-/// Buffers bound from a number on, in order.
+/// Buffers, bound from a number on, in order.
 pub(crate) fn buffers(first: u32, buffers: &[wgpu::Buffer]) -> Bindings<'_> {
     (first..)
         .zip(buffers.iter().map(wgpu::Buffer::as_entire_binding))
         .collect()
 }
 
-/// Texture views bound from a number on, in order.
+/// Texture views, bound from a number on, in order.
 pub(crate) fn views(first: u32, views: &[wgpu::TextureView]) -> Bindings<'_> {
     (first..)
         .zip(views.iter().map(wgpu::BindingResource::TextureView))

@@ -1,4 +1,5 @@
-//! `search` on few and scattered samples, some of them nowhere: warps that point within the region and beyond it.
+//! `search` on few, scattered samples, some of them missing, with warps that point inside the
+//! region and outside.
 
 use app_core::scene::MAX_RECEIVERS;
 use app_pipeline::baseline::uniform::Baseline as BaselineUniform;
@@ -21,13 +22,14 @@ const RINGS: Rings = Rings {
     n_directions: 8,
     n_rings: 60,
 };
-/// The overlap of both lights is said to occur, and does not.
+/// The overlap of both lights is stated to occur, but does not.
 const SEEN: [LightSet; 3] = [LightSet(1), LightSet(2), LightSet(3)];
 
-/// Share of values that rounding may decide, since a candidate may be on either side of a texel's border. Measured: 0.
+/// Share of values that rounding may decide, since a candidate may be on either side of a texel's
+/// border. Measured: 0.
 const ALLOWED_SHARE: f64 = 0.001;
 
-/// Where the shadows of two lights came from, alpha 1 where there is one.
+/// Original positions of two lights' shadows; alpha is 1 where there is a shadow.
 fn warp(size: UVec2, light: u32) -> Raster<DVec4> {
     Raster::from_fn(size, |at| {
         let toward = DVec2::from([0, 1].map(|k| number(at, 100 + 2 * light + k)));
@@ -38,7 +40,7 @@ fn warp(size: UVec2, light: u32) -> Raster<DVec4> {
     })
 }
 
-/// One texel in a few hundred can be sampled, or in a few dozen, for one light or the other.
+/// One texel in a few hundred is eligible, or in a few dozen, for one light or the other.
 fn eligible(size: UVec2) -> Raster<u8> {
     Raster::from_fn(size, |at| {
         let share = if at.x < size.x / 2 { 0.004 } else { 0.04 };
@@ -58,7 +60,7 @@ fn settings() -> BaselineUniform {
     }
 }
 
-/// Terms with labels, and taps, as they are and as they should be.
+/// Actual and expected terms with labels, and taps.
 fn pairs(source: &str) -> [Vec<(f64, f64)>; 2] {
     let (device, stand) = (Device::shared(), Stand::new(SETUPS[1]));
     let rect = PixelRect {
@@ -151,7 +153,7 @@ fn a_fault_in_the_search_is_found() {
         ("2u * countOneBits(", "0u * countOneBits("),
         (", vec3f(1.0)),", ", vec3f(1e9)),"),
     ];
-    // A fault is what is wrong in more places than rounding decides.
+    // An error counts as a fault if it occurs in more places than rounding decides.
     let errors = |source: &str| {
         let share = pairs(source).map(|pairs| Errors::between(pairs).share_beyond(1e-5));
         Errors::between([(share[0].max(share[1]), 0.0)])

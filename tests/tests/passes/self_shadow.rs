@@ -1,4 +1,4 @@
-//! `self_shadow` with `object`: depth maps against rays.
+//! `self_shadow` with `object`: depth maps compared with rays.
 
 use glam::{DVec2, DVec3, DVec4, UVec2};
 use reference::model::centre_px;
@@ -9,17 +9,17 @@ use reference::self_shadow::received;
 use crate::errors::Errors;
 use crate::run::{Run, runs};
 
-/// Rays that tell whether an edge is near.
+/// Offsets of rays that detect a nearby edge.
 const AROUND_PX: [DVec2; 4] = [
     DVec2::new(-1.5, 0.0),
     DVec2::new(1.5, 0.0),
     DVec2::new(0.0, -1.5),
     DVec2::new(0.0, 1.5),
 ];
-/// Difference of received light that a side's perspective makes over that distance, and more.
+/// Difference of received light that exceeds the effect of a side's perspective over that distance.
 const ALIKE: f64 = 0.02;
 
-/// What the camera sees of the physical toy at a place of the region: side of a box, point and normal.
+/// The surface of the physical toy at a position of the region: side of a box, point and normal.
 fn surface(run: &Run, region_px: DVec2) -> Option<(usize, DVec3, DVec3)> {
     let stand = &run.stand;
     let (origin, direction) = stand.camera_ray(run.plan.region.origin_px.as_dvec2() + region_px);
@@ -38,7 +38,8 @@ fn light_points(run: &Run) -> Vec<Vec<DVec4>> {
     points.collect()
 }
 
-/// Away from the edges of sides and shadows a depth map answers as rays do: fully lit, fully dark, or the same half shade.
+/// Away from the edges of sides and shadows a depth map agrees with rays: fully lit, fully dark, or
+/// the same half shade.
 #[test]
 fn received_light() {
     let (mut n_lit, mut n_shadowed) = (0, 0);
@@ -78,7 +79,7 @@ fn received_light() {
             }
         }
         let name = run.stand.setup.name;
-        // 16 bits of normal and result. Measured: 6.4e-4.
+        // 16 bits for normal and result. Measured: 6.4e-4.
         Errors::between(away).check_all(&format!("{name}, away from edges"), 2e-3);
         // A texel of the depth maps moves an edge by less than a pixel. Measured: 0.4 % and 0.10.
         Errors::between(everywhere).check(&format!("{name}, received light"), (0.1, 0.02), 0.5);

@@ -1,19 +1,19 @@
-//! What the passes are compared on: lights, a camera's distance, and whether there is a wall.
+//! The setups for comparing the passes: lights, a camera's distance, and an optional wall.
 
 use app_core::scene::Light;
 use glam::{DVec3, UVec2};
 
-/// What a pass is compared on.
+/// A setup for comparing a pass.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Setup {
     pub(crate) name: &'static str,
     pub(crate) image_px: UVec2,
     pub(crate) lights: &'static [Light],
-    /// Distance of the camera from the toy; what is far off leaves room around the work region.
+    /// Distance of the camera from the toy; a larger one leaves room around the work region.
     pub(crate) distance_m: f64,
-    /// Height of the toy's feet over the receiver: tracking is never quite right.
+    /// Height of the toy's feet over the receiver, since tracking is never exact.
     pub(crate) feet_m: f64,
-    /// Whether a wall stands behind the toy, so that its shadow is broken by the crease.
+    /// Whether there is a wall behind the toy, so that its shadow is broken by the crease.
     pub(crate) has_wall: bool,
 }
 
@@ -41,7 +41,7 @@ const OTHER_BULB: Light = Light::Sphere {
     position_in_world: DVec3::new(-0.3, 0.7, 0.25),
     radius_m: 0.03,
 };
-/// Unit vector: -3, 6, -2 over 7, away from the camera, which then sees the shadow.
+/// Unit vector: -3, 6, -2 over 7, away from the camera, so that the camera sees the shadow.
 const SKY: Light = Light::Directional {
     direction_to_light_in_world: DVec3::new(-3.0 / 7.0, 6.0 / 7.0, -2.0 / 7.0),
     angular_radius_rad: 0.06,
@@ -51,12 +51,12 @@ const POINT: Light = Light::Sphere {
     position_in_world: DVec3::new(0.3, 0.5, -0.2),
     radius_m: 0.0,
 };
-/// Low and before the toy: its shadow goes up the wall.
+/// Low and in front of the toy: its shadow continues up the wall.
 const LOW_BULB: Light = Light::Sphere {
     position_in_world: DVec3::new(-0.22, 0.27, 0.36),
     radius_m: 0.02,
 };
-/// Beyond the wall, which it does not shine on.
+/// Behind the wall, whose front it does not light.
 const BACK_BULB: Light = Light::Sphere {
     position_in_world: DVec3::new(0.05, 0.75, -0.4),
     radius_m: 0.04,
@@ -70,7 +70,8 @@ const NEAR: Setup = Setup {
     feet_m: 0.0,
     has_wall: false,
 };
-/// The shadow of one light goes up a wall that ends within the picture; another light is beyond it.
+/// The shadow of one light continues up a wall that ends within the picture; another light is
+/// behind it.
 pub(crate) const WALL: Setup = Setup {
     name: "wall",
     image_px: UVec2::new(163, 119),
@@ -79,13 +80,13 @@ pub(crate) const WALL: Setup = Setup {
     has_wall: true,
     ..NEAR
 };
-/// Light from all around alone.
+/// Ambient light alone.
 pub(crate) const NO_LIGHT: Setup = Setup {
     name: "no light",
     lights: &[],
     ..NEAR
 };
-/// As many lights as there can be.
+/// The maximum number of lights.
 pub(crate) const FOUR_LIGHTS: Setup = Setup {
     name: "four lights",
     image_px: UVec2::new(131, 75),
@@ -93,8 +94,8 @@ pub(crate) const FOUR_LIGHTS: Setup = Setup {
     distance_m: 0.72,
     ..NEAR
 };
-/// One light close by, two lights, a directional light on a sunken toy, the hard edge of a lifted one from afar, and a
-/// second receiver.
+/// One light close by, two lights, a directional light on a sunken toy, the hard edge of a lifted
+/// one from a distance, and a second receiver.
 pub(crate) const SETUPS: [Setup; 5] = [
     NEAR,
     Setup {

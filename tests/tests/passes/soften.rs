@@ -1,4 +1,4 @@
-//! `soften` on pictures of nothing but detail, by taps along axes of any direction.
+//! `soften` on pictures full of detail, with taps along axes of any direction.
 
 use app_core::wgpu;
 use bytemuck::{Pod, Zeroable};
@@ -12,10 +12,10 @@ use crate::errors::{Errors, pairs_of};
 use crate::numbers::number;
 
 const SIZE: UVec2 = UVec2::new(67, 41);
-/// A colour is of up to 2; between texels it is weighed in steps of 1/256 by drivers.
+/// Colours are up to 2; between texels, drivers interpolate in steps of 1/256.
 const ALLOWED: f64 = 4e-3;
 
-/// As the shader has it.
+/// The taps in the shader's form.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct OnDevice {
@@ -25,7 +25,7 @@ struct OnDevice {
     pad: [f32; 3],
 }
 
-/// A round spread, one aslant, one by a motion, and none.
+/// A round blur, an oblique one, a motion blur, and none.
 fn grids() -> [Taps; 4] {
     let taps = |first: [f64; 2], second: [f64; 2], spacing: f64, n_beside: u32| Taps {
         steps_px: [first.into(), second.into()],
@@ -40,7 +40,7 @@ fn grids() -> [Taps; 4] {
     ]
 }
 
-/// In steps of 1/256, times an alpha of a half or none: patches were not photographed.
+/// Colours in steps of 1/256, times an alpha of a half or zero: patches were not photographed.
 #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
 fn plate() -> Raster<[u8; 4]> {
     Raster::from_fn(SIZE, |at| {

@@ -40,6 +40,18 @@ pub(crate) struct Stand {
 }
 
 impl Stand {
+    /// Of each light, seen from the middle of the toy.
+    pub(crate) fn angular_radii_rad(&self) -> Vec<f64> {
+        let bounds = self.toy.bounds_of_pose(&self.physical_pose).unwrap();
+        let middle = self
+            .world_from_object
+            .transform_point3(0.5 * (bounds.min + bounds.max).as_dvec3());
+        let lights = self.setup.lights.iter();
+        lights
+            .map(|light| light.angular_radius_rad_from(middle))
+            .collect()
+    }
+
     /// Height over the first receiver of the box around the toy, over the physical pose and the whole clip.
     pub(crate) fn tallest_m(&self) -> f64 {
         let over_clip = self

@@ -1,4 +1,4 @@
-//! What stands in the picture beside the toy, in the validity mask.
+//! Objects beside the toy, in the validity mask.
 
 use glam::{DMat3, DVec3, DVec4, UVec2};
 use reference::raster::Raster;
@@ -10,14 +10,15 @@ use crate::errors::{Errors, pairs_of};
 use crate::numbers::numbers;
 use crate::scrambled::{buffers, views};
 
-/// Blocks of each code, in a picture that is not the region's.
+/// Blocks of each code, in a picture other than the region's.
 fn things() -> Things {
     let codes = [0, THING, 0, BEFORE_TOY, WRONG_PLATE];
     Things {
         codes: Raster::from_fn(UVec2::new(97, 83), |at| {
             codes[at.element_sum() as usize / 6 * 7 % 5]
         }),
-        // Not exact in binary, so that no place lies on the border of two pixels; behind its camera to one side.
+        // Not exact in binary, so that no position lies on the border of two pixels; behind its
+        // camera on one side.
         codes_px_from_region_px: DMat3::from_cols(
             DVec3::new(0.803, 0.0511, -0.0113),
             DVec3::new(-0.0417, 0.7907, 0.00031),
@@ -26,7 +27,7 @@ fn things() -> Things {
     }
 }
 
-/// How far marks are off that `source` makes.
+/// Errors of the marks that `source` makes.
 fn errors(source: &str) -> Errors {
     let (device, things) = (Device::shared(), things());
     let size = UVec2::new(123, 101);

@@ -1,4 +1,5 @@
-//! `tint` and `tint_fill`: what the device made of a frame, and what becomes of parts that no camera saw.
+//! `tint` and `tint_fill`: the device's tints for a frame, and the filled tints of parts that no
+//! camera saw.
 
 use app_core::preset::Preset;
 use app_pipeline::core::inspect::Inspect;
@@ -16,13 +17,13 @@ use crate::run::{Run, codes_at, input, runs, scene};
 use crate::setups::SETUPS;
 use crate::stand::Stand;
 
-/// Triangles of a box of the toy, each of which has a material of its own.
+/// Triangles of a box of the toy, each with a material of its own.
 const N_TRIANGLES: usize = 12;
-/// Boxes of the toy.
+/// Index of the body among the toy's boxes.
 const BODY: usize = 2;
 const HEAD: usize = 3;
 
-/// What a run's frame shows of the toy, by rays.
+/// The toy in a run's frame, by rays.
 fn seen(run: &Run) -> Vec<SeenPaint> {
     let occluder = run.stand.occluder(&run.stand.physical);
     let taken = texels_of(run.region.size_px).filter(|texel| {
@@ -60,12 +61,13 @@ fn tint_of_all_cells() {
                 let cells = actual.iter().zip(expected.cells());
                 cells.flat_map(|(actual, expected)| (0..4).map(|k| (f64::from(actual[k]), expected[k])))
             });
-        // 16 bits of normal and light. Measured: 2.1e-4; a point at a wall between cells may fall on either side.
+        // 16 bits for normal and light. Measured: 2.1e-4; a point at the border of two cells may
+        // fall on either side.
         Errors::between(pairs).check(&format!("{}, tints", run.stand.setup.name), (1e-3, 0.01), 0.05);
     }
 }
 
-/// Paints that the toy's file does not know, one a box.
+/// Paints other than those of the toy's file, one per box.
 fn repainted(triangle: usize) -> DVec3 {
     let paints = [
         DVec3::new(0.6, 0.8, 1.2),
@@ -76,15 +78,15 @@ fn repainted(triangle: usize) -> DVec3 {
     paints[triangle / N_TRIANGLES]
 }
 
-/// Which box of a posed toy is seen at a place of the picture.
+/// The box of a posed toy that is visible at a position of the picture.
 fn box_at(stand: &Stand, occluder: &Occluder, image_px: DVec2) -> Option<usize> {
     let (origin, direction) = stand.camera_ray(image_px);
     let hit = occluder.nearest(origin, direction)?;
     Some(hit.triangle / N_TRIANGLES)
 }
 
-/// Codes by which the body differs, where the head hid it and has moved away, from what it would look like: the mean over
-/// pixels and channels.
+/// Difference in codes between the body where the head had hidden it before moving away, and its
+/// true look: the mean over pixels and channels.
 fn error_of_what_was_hidden(paint: fn(usize) -> DVec3) -> f64 {
     let stand = Stand::new(SETUPS[0]);
     let photo = Photo {
@@ -109,7 +111,7 @@ fn error_of_what_was_hidden(paint: fn(usize) -> DVec3) -> f64 {
     Errors::between(pairs).mean()
 }
 
-/// The tints that a frame of one paint gives, and a second one of another.
+/// The tints from a frame with one paint, and from a second one with another.
 fn tints_of_two_frames(paints: [fn(usize) -> DVec3; 2]) -> [Vec<Vec<[f32; 4]>>; 2] {
     let stand = Stand::new(SETUPS[0]);
     let plain = Photo::plain(stand.setup.lights.len());
@@ -134,13 +136,13 @@ fn what_frames_before_have_shown_of_the_paint_counts() {
         let cells = first.iter().zip(both);
         cells.flat_map(|(first, both)| (0..3).map(|k| (f64::from(both[k] / first[k]), expected[k])))
     });
-    // Codes are rounded, and what is nearly black counts as expected. Measured: 0.013. Were the first
-    // frame forgotten, 0.13.
+    // Codes are rounded, and almost black pixels count as expected. Measured: 0.013. If the first
+    // frame were forgotten, it would be 0.13.
     let off = Errors::between(pairs).mean();
     assert!(off < 0.03, "{off:.3}");
 }
 
-/// Another paint than the model's also changes the light that is fitted, so some of the error stays.
+/// A paint that differs from the model's also changes the fitted light, so some of the error stays.
 #[test]
 fn what_was_hidden_is_of_the_paint_that_is_seen() {
     let errors = [|_| DVec3::ONE, repainted].map(error_of_what_was_hidden);

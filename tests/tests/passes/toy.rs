@@ -28,6 +28,11 @@ pub(crate) fn base_color(triangle: usize) -> glam::DVec3 {
     glam::Vec3::from(PARTS[triangle / 12].color).as_dvec3()
 }
 
+/// Index of the material of a triangle.
+pub(crate) fn material(triangle: usize) -> usize {
+    triangle / 12
+}
+
 /// The file. In a second the head rises, moves across the body and turns by 60 degrees.
 pub(crate) fn glb() -> Vec<u8> {
     let mut glb = Glb::new();

@@ -12,25 +12,26 @@ use crate::numbers::number;
 
 const SIZE: UVec2 = UVec2::new(147, 93);
 
-/// Patches of a toy with slopes of their own and more or less rough; in between nothing, or a speck.
+/// Patches of a toy with different slopes and roughness; between them nothing, or a speck.
 fn depth(at: UVec2) -> f64 {
     let patch = at / 24;
     let is_speck = at.x % 41 == 20 && at.y % 37 == 18;
     if number(patch, 140) < 0.55 && !is_speck {
         return 0.0;
     }
-    // In steps of 2^-12, which 32 bits add up exactly; two of them are as much as a surface may bend here.
+    // In steps of 2^-12, which 32 bits add up exactly; two of them are the limit for the bend of a
+    // surface.
     let slope = |seed: u32, x: u32| (8.0 * number(patch, seed)).floor() * f64::from(x % 24);
     let rough = (6.0 * number(patch, 143) * number(at, 144)).floor();
     (1024.0 + slope(141, at.x) + slope(142, at.y) + rough) / 4096.0
 }
 
-/// Marks as they are and as they should be.
+/// Actual and expected marks.
 fn errors(source: &str) -> Errors {
     let device = Device::shared();
     let depth = Raster::from_fn(SIZE, depth);
     let map = device.depth(&depth);
-    // Of a sharp picture, and of a soft one.
+    // For a sharp picture, and for a soft one.
     let pairs = [0, 3].map(|soft_px: i32| {
         let uniform = device.uniform(&soft_px);
         let own: Bindings<'_> = vec![

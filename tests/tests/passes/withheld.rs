@@ -1,4 +1,4 @@
-//! A shadow that is withheld tells nothing, and is rebuilt all the same.
+//! A withheld shadow has no effect on the estimates, and is reconstructed all the same.
 
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ use crate::stand::Stand;
 
 const MAGENTA: [u8; 4] = [255, 0, 255, 255];
 
-/// Makes the physical pose from a photograph.
+/// Draws the physical pose from a photograph.
 fn rebuilt(core: &mut Core, stand: &Stand, photograph: &Arc<Image>) -> Image {
     let input = input(stand, photograph).with_shown_pose(stand.physical_pose.clone());
     core.frame(&input).unwrap();
@@ -64,7 +64,7 @@ fn a_withheld_shadow_is_rebuilt_and_tells_nothing() {
     pairs(&of_defaced, &again).check_all("codes of a defaced shadow", 1.0);
 }
 
-/// How far marks are off that `source` makes.
+/// Errors of the marks that `source` makes.
 fn errors(source: &str) -> Errors {
     let (device, scene) = (Device::shared(), Scrambled::new());
     let maps = [

@@ -1,4 +1,5 @@
-//! Camera frames as phones deliver them: layouts of planes, time, fading, and how they lie on a screen.
+//! Camera frames as phones deliver them: layouts of planes, time, blending, and placement on a
+//! screen.
 
 use app_core::camera_frame::{
     Arrival, Arrivals, CameraImage, CodeRange, Display, Fade, Fit, LumaCoefficients, PlanarImage, Plane,
@@ -20,7 +21,8 @@ const VIDEO_709: YcbcrEncoding = YcbcrEncoding {
     range: CodeRange::Video,
 };
 
-/// Colour bars at full amplitude as tables of the standards and of JFIF have them, rounded to codes: luma, Cb, Cr, then red, green, blue.
+/// Colour bars at full amplitude from the tables of the standards and of JFIF, rounded to codes:
+/// luma, Cb, Cr, then red, green, blue.
 const BARS: [(YcbcrEncoding, [u8; 3], [u8; 3]); 15] = [
     (FULL_601, [255, 128, 128], [255, 255, 255]),
     (FULL_601, [0, 128, 128], [0, 0, 0]),
@@ -54,7 +56,8 @@ fn colour_bars_have_their_colours() {
         let worst = (0..3).map(|k| pixel[k].abs_diff(rgb[k])).max().unwrap();
         assert!(worst <= 2, "{encoding:?} {ycbcr:?}: {pixel:?}, not {rgb:?}");
     }
-    // Red of the one is not red of the other: a table that is read with the wrong coefficients would show it.
+    // The reds of two standards differ: a table that is read with the wrong coefficients would be
+    // detected.
     let mistaken = first_pixel(VIDEO_601, [63, 102, 240]);
     assert!(mistaken[0].abs_diff(255) > 20, "{mistaken:?}");
 }
@@ -76,7 +79,8 @@ fn red_of(row: usize, column: usize) -> u8 {
     number(201 + 4 * row + column)
 }
 
-/// Rows of samples `row_stride` bytes apart with other bytes between them; the last row ends with its last sample.
+/// Rows of samples `row_stride` bytes apart with other bytes between them; the last row ends with
+/// its last sample.
 fn padded(
     [columns, rows]: [usize; 2],
     (row_stride, pixel_stride): (usize, usize),
@@ -91,7 +95,7 @@ fn padded(
     bytes
 }
 
-/// Two components by turns.
+/// Two components, interleaved.
 fn pairs(row_stride: usize, samples: [fn(usize, usize) -> u8; 2]) -> Vec<u8> {
     let mut bytes = vec![77; 2 * row_stride + 2 * HALF[0]];
     for row in 0..HALF[1] {
@@ -156,7 +160,7 @@ fn pixels_are_those_of_the_reference() {
         let luma = f64::from(luma_of(index / 7, index % 7));
         let expected = decoded(VIDEO_709, [luma, at(blue_of, [x, y]), at(red_of, [x, y])]);
         let actual = DVec3::from([actual[0], actual[1], actual[2]].map(f64::from));
-        // Rounding to codes, and 32 bits.
+        // Rounding to codes, and to 32 bits.
         let error = (actual - expected).abs().max_element();
         assert!(error < 0.51, "at {x}, {y}: {actual}, not {expected}");
     }
@@ -281,7 +285,8 @@ fn a_screen_shows_the_middle_upright_and_its_corners_where_they_belong() {
             assert!(at.abs_diff_eq(DVec2::new(960.0, 720.0), 1e-9), "{at}");
         }
     }
-    // A phone held upright shows the sensor's landscape picture turned clockwise: its left border is at the top.
+    // A phone in upright position shows the sensor's landscape picture turned clockwise: its left
+    // border is at the top.
     let portrait = [1125, 2436];
     let scale = 1920.0 / 2436.0;
     let top_middle = of(1, Fit::Fill, portrait, [562.5, 0.0]);
@@ -294,7 +299,7 @@ fn a_screen_shows_the_middle_upright_and_its_corners_where_they_belong() {
         right.abs_diff_eq(DVec2::new(960.0, 720.0 - 562.5 * scale), 1e-9),
         "{right}"
     );
-    // Three quarters are one the other way round, two are upside down.
+    // Three quarter turns are one in the other direction, two are upside down.
     let top_middle = of(3, Fit::Fill, portrait, [562.5, 0.0]);
     assert!(
         top_middle.abs_diff_eq(DVec2::new(1920.0, 720.0), 1e-9),
@@ -302,7 +307,8 @@ fn a_screen_shows_the_middle_upright_and_its_corners_where_they_belong() {
     );
     let origin = of(2, Fit::Fill, [1920, 1440], [0.0, 0.0]);
     assert!(origin.abs_diff_eq(DVec2::new(1920.0, 1440.0), 1e-9), "{origin}");
-    // A screen twice as wide: the whole picture leaves half of it black, a full one crops half of it.
+    // A screen twice as wide: the whole picture leaves half of it black; a picture that fills the
+    // screen loses half of itself.
     let left = of(0, Fit::Whole, [3840, 1440], [960.0, 0.0]);
     assert!(left.abs_diff_eq(DVec2::ZERO, 1e-9), "{left}");
     let top = of(0, Fit::Fill, [3840, 1440], [0.0, 0.0]);
@@ -326,7 +332,7 @@ fn a_picture_is_as_old_as_a_clock_of_the_same_kind_tells() {
     };
     assert_eq!(stamp.age_ms(5_041_500_000), Some(41.5));
     assert_eq!(stamp.age_ms(5_000_000_000), Some(0.0));
-    // Another clock, by which the picture is of the future, or of long ago.
+    // Another clock, by which the picture is from the future, or very old.
     for now_ns in [4_999_999_999, 6_000_000_001, i64::MIN, i64::MAX] {
         assert_eq!(stamp.age_ms(now_ns), None, "{now_ns}");
     }

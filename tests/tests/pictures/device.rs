@@ -1,5 +1,6 @@
-//! What a device is given for a frame, by the device's own trace rather than by what the core says of itself: the passes
-//! that the report names, and no new object where only pose, picture or view are new.
+//! The work that a device gets for a frame, by the device's own trace rather than by the core's
+//! report: the passes are those of the report, and no object is created if only pose, picture or
+//! view are new.
 
 use std::collections::BTreeMap;
 use std::thread;
@@ -20,7 +21,7 @@ use measure::planar::{BT601_FULL, planar};
 
 use crate::trace::Traced;
 
-/// Runs a pass and makes a buffer that no report tells of.
+/// Runs a pass and creates a buffer, neither of which is in a report.
 fn plant(traced: &Traced) {
     let _ = traced.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
@@ -38,12 +39,12 @@ fn plant(traced: &Traced) {
     traced.queue.submit([encoder.finish()]);
 }
 
-/// Objects that the core says it made.
+/// Number of objects that the core reports as created.
 fn n_counted(core: &Core) -> u64 {
     core.n_created().iter().map(|(_, n)| n).sum()
 }
 
-/// The passes of a report as a trace has them.
+/// The passes of a report in the form of a trace.
 fn reported(report: &FrameReport) -> BTreeMap<&str, u32> {
     let mut passes = BTreeMap::new();
     for run in &report.ran {
@@ -87,7 +88,7 @@ fn from_beside(input: &FrameInput) -> FrameInput {
     })
 }
 
-/// The frames after which nothing but one thing changes, and what that is.
+/// The frames that each change a single thing, and that change.
 fn steady_frames(first: &FrameInput) -> [(Change, FrameInput); 4] {
     let pose = later(first);
     let picture = photographed_again(&later(&pose));
@@ -108,7 +109,7 @@ fn a_steady_frame_makes_nothing_and_is_what_its_report_says() {
     let mut first = FrameInput::from(&session.frame(0).unwrap());
     first.image = as_planes(first.image.rgba());
     let mut traced = Traced::new("steady");
-    // The others run a part of what these run.
+    // The other presets run a part of the passes of these.
     for preset in [Preset::Paper, Preset::Best] {
         traced.core.set_scene(session.scene().clone(), preset).unwrap();
         let (report, given) = traced.frame(&first);
@@ -150,7 +151,7 @@ fn a_warm_up_on_another_thread_leaves_nothing_to_compile() {
         .unwrap();
     let mut first = FrameInput::from(&session.frame(0).unwrap());
     let pixels = first.image.rgba().clone();
-    // As a phone delivers it: of pixels the pipelines are compiled when the first come.
+    // As a phone delivers it: the pipelines for pixels are compiled when the first come.
     first.image = as_planes(&pixels);
     traced.core.frame(&first).unwrap();
     assert_eq!(traced.given().n_created("Pipeline"), 0);
@@ -159,7 +160,7 @@ fn a_warm_up_on_another_thread_leaves_nothing_to_compile() {
     assert!(traced.given().n_created("Pipeline") > 0);
 }
 
-/// What a core does past its count and its report is found.
+/// Work that the core neither counts nor reports is detected.
 #[test]
 fn a_planted_pass_and_a_planted_buffer_are_found() {
     let session = bundled_session();

@@ -1,10 +1,10 @@
-//! What a driver has compiled is handed out, and taken back by the next device.
+//! The driver's compiled pipelines are exported, and accepted by the next device.
 
 use app_core::preset::Preset;
 use app_core::{Core, wgpu};
 
-/// Compiles a preset on a device of its own with what an earlier one has kept. What is kept then, or why it was not taken; none where the
-/// driver hands nothing out.
+/// Compiles a preset on a new device with an earlier one's data. Returns the new data, or the
+/// reason why the old ones were refused; `None` if the driver exports none.
 fn compiled(data: Option<&[u8]>) -> Option<Result<Vec<u8>, String>> {
     let core: Core = harness::open_core();
     core.pipelines_key()?;
@@ -15,7 +15,8 @@ fn compiled(data: Option<&[u8]>) -> Option<Result<Vec<u8>, String>> {
         fallback: false,
     };
     let scope = device.raw().push_error_scope(wgpu::ErrorFilter::Validation);
-    // SAFETY: the data are none, or what a device of the same driver has handed out; wgpu looks at their head before the driver does.
+    // SAFETY: the data are `None`, or were exported by a device of the same driver; wgpu checks
+    // their header before the driver does.
     let cache = unsafe { device.raw().create_pipeline_cache(&descriptor) };
     if let Some(refused) = pollster::block_on(scope.pop()) {
         return Some(Err(refused.to_string()));
@@ -39,7 +40,7 @@ fn compiled_pipelines_are_handed_from_device_to_device_and_nothing_else_is() {
         .expect("what it has handed out");
     assert_eq!(again.len(), first.len(), "what was known is not kept once more");
     let mut of_another = first;
-    // In the head, which names wgpu's version, the device and its driver.
+    // In the header, which names wgpu's version, the device and its driver.
     of_another[12] ^= 0xff;
     let refused = compiled(Some(&of_another)).expect("the same driver");
     assert!(refused.is_err(), "{refused:?}");

@@ -1,4 +1,5 @@
-//! What each preset makes of the bundled session, against the golden pictures and against the photograph of the moved toy.
+//! Each preset's picture of the bundled session, compared with the golden pictures and with the
+//! photograph of the moved toy.
 
 use app_core::core::Core;
 use app_core::gpu::AdapterChoice;
@@ -7,7 +8,8 @@ use app_core::wgpu;
 use desk::metrics::Scores;
 use harness::golden::{Goldens, ON_HARDWARE, ON_SOFTWARE, SOFTWARE_ADAPTER, name_of, render};
 
-/// The fastest adapter, and the software one besides where both are there. No adapter at all is a failure.
+/// The fastest adapter, and the software one if both exist. It is a failure if there is no adapter
+/// at all.
 fn cores() -> Vec<Core> {
     let instance = wgpu::Instance::default();
     let open = |choice: &AdapterChoice| pollster::block_on(Core::headless(&instance, choice));
@@ -18,10 +20,10 @@ fn cores() -> Vec<Core> {
     cores
 }
 
-/// Most that the error of a preset may be, RMSE in codes over the shadow's surroundings and over the moved toy.
+/// Largest error of a preset, RMSE in codes over the shadow's surroundings and over the moved toy.
 ///
-/// Measured: flat 4.25 and 15.6, paper 2.49 and 15.6, fast 1.00 and 6.59, of one sample a pixel, balanced 0.83 and 5.50,
-/// best 0.84 and 4.29.
+/// Measured: flat 4.25 and 15.6, paper 2.49 and 15.6, fast 1.00 and 6.59 with one sample per pixel,
+/// balanced 0.83 and 5.50, best 0.84 and 4.29.
 fn ceilings(preset: Preset) -> [f64; 2] {
     match preset {
         Preset::Flat => [4.4, 16.0],
@@ -46,7 +48,7 @@ fn too_far_from_truth(preset: Preset, scores: &Scores) -> Vec<String> {
     beyond.collect()
 }
 
-/// The ceilings of the presets that are ours lie below what the published method reaches.
+/// The ceilings of our own presets are below the published method's errors.
 #[test]
 fn ceilings_can_be_broken() {
     let mut core = cores().remove(0);

@@ -1,4 +1,5 @@
-//! The governor against a simulated phone: it comes back into a frame's time, comes up again, and does not swing.
+//! The governor with a simulated phone: it returns to a frame's time, restores quality, and does
+//! not oscillate.
 
 use app_core::governor::{
     BALANCED_QUALITY_LADDER, Exhausted, Governor, Measured, QualitySetting, SETTLE_FRAMES, Thermal, Turned,
@@ -7,21 +8,21 @@ use app_core::governor::{
 
 /// A screen's frame at 60 Hz.
 const SCREEN_MS: f64 = 1e3 / 60.0;
-/// Frames until a device time is known.
+/// Number of frames until a device time is known.
 const N_DELAY: usize = 2;
-/// Frames of a minute.
+/// Number of frames in a minute.
 const MINUTE: usize = 3600;
 
-/// A device whose steps bring something else than the front expects.
+/// A device whose steps have other gains than the governor expects.
 struct Phone {
     governor: Governor,
     /// Time of a frame at full quality.
     full_ms: f64,
-    /// Power of what a step is expected to bring: 1 as expected, 0 nothing.
+    /// Exponent of a step's expected gain: 1 is the expected gain, 0 is none.
     truth: f64,
     /// Relative standard deviation of a frame's time.
     noise: f64,
-    /// Part of the frames that take three times as long.
+    /// Share of frames that take three times as long.
     spikes: f64,
     has_stamps: bool,
     thermal: Thermal,
@@ -55,7 +56,7 @@ impl Phone {
         (self.state >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A frame's time on the device: the steps that are taken, noise and spikes.
+    /// A frame's time on the device, from the steps taken, noise and spikes.
     fn time_ms(&mut self) -> f64 {
         let taken = self.governor.turned_down().iter();
         let cost = taken.filter(|step| step.setting != QualitySetting::FramesPerSecond);
@@ -74,7 +75,7 @@ impl Phone {
             let time_ms = self.time_ms();
             self.times_ms.push(time_ms);
             let known = self.times_ms.len().checked_sub(1 + N_DELAY);
-            // A screen shows a frame for a whole number of its own.
+            // A screen shows a frame for an integer number of its own.
             let screens = (time_ms / SCREEN_MS).ceil().max(self.budget_ms() / SCREEN_MS);
             let frame = Measured {
                 gpu_ms: known
@@ -93,14 +94,14 @@ impl Phone {
         self.governor.turned_down().len()
     }
 
-    /// Share of the latest frames that took longer than a frame may.
+    /// Share of the latest frames that took longer than permitted.
     fn late_share(&self, n_frames: usize) -> f64 {
         let latest = &self.times_ms[self.times_ms.len() - n_frames..];
         let n_late = latest.iter().filter(|time| **time > self.budget_ms()).count();
         n_late as f64 / n_frames as f64
     }
 
-    /// Changes of direction among the latest turns.
+    /// Number of changes of direction among the latest steps.
     fn n_reversals(&self, from: usize) -> usize {
         let ups: Vec<bool> = self
             .turns
@@ -122,7 +123,7 @@ fn noise_alone_turns_nothing() {
 
 #[test]
 fn a_step_of_the_load_is_answered_within_half_a_second_and_taken_back_when_it_is_over() {
-    // What the steps bring, from half as much as expected to half as much again.
+    // Exponent of the steps' gains, from half to one and a half times the expected.
     for truth in [0.5, 1.0, 1.5] {
         let mut phone = Phone::new(0.6 * SCREEN_MS);
         phone.truth = truth;
@@ -130,7 +131,8 @@ fn a_step_of_the_load_is_answered_within_half_a_second_and_taken_back_when_it_is
         assert_eq!(phone.level(), 0);
         phone.full_ms = 1.2 * SCREEN_MS;
         let begin = phone.times_ms.len();
-        // Two looks, the second where the steps brought less than expected: two thirds of a second.
+        // Two decisions, the second because the gain was less than expected: two thirds of a
+        // second.
         phone.run(40);
         let level = phone.level();
         phone.run(30);
@@ -179,7 +181,7 @@ fn whatever_the_load_it_comes_to_rest() {
 fn slow_heat_goes_down_step_by_step_and_comes_back_only_when_it_lasts() {
     let mut phone = Phone::new(0.7 * SCREEN_MS);
     for minute in 0..20 {
-        // The phone throttles: its frames take longer by the minute.
+        // The phone throttles: its frames take longer with every minute.
         phone.full_ms = 0.7 * SCREEN_MS * (1.0 + 0.04 * f64::from(minute));
         phone.thermal = match minute {
             0..6 => Thermal::Nominal,
@@ -197,7 +199,7 @@ fn slow_heat_goes_down_step_by_step_and_comes_back_only_when_it_lasts() {
     assert_eq!(ups.count(), 0, "{:?}", phone.turns);
     let hot = phone.level();
     assert!(hot >= 3, "{:?}", phone.turns);
-    // A phone that says in turn that it is cool and that it is not is not believed.
+    // A phone that alternately reports being cool and not being cool is not believed.
     phone.full_ms = 0.5 * SCREEN_MS;
     for _ in 0..20 {
         phone.thermal = Thermal::Nominal;
@@ -215,7 +217,7 @@ fn slow_heat_goes_down_step_by_step_and_comes_back_only_when_it_lasts() {
 fn without_device_times_late_frames_tell_and_trials_grow_rare() {
     let mut phone = Phone::new(0.6 * SCREEN_MS);
     phone.has_stamps = false;
-    // Where hardly a frame is late for another reason, nothing else keeps it from trying.
+    // If hardly a frame is late for another reason, nothing else prevents trials.
     (phone.noise, phone.spikes) = (0.01, 0.0);
     phone.run(5 * MINUTE);
     assert_eq!(phone.turns, []);
@@ -223,13 +225,14 @@ fn without_device_times_late_frames_tell_and_trials_grow_rare() {
     phone.run(MINUTE);
     assert!(phone.level() > 0);
     phone.run(30 * MINUTE);
-    // Half an hour under a load that only the steps hold: each trial is late for less than a second.
+    // Half an hour under a load that only the steps reduce: each trial is late for less than a
+    // second.
     assert!(
         phone.late_share(30 * MINUTE) < 0.03,
         "{}",
         phone.late_share(30 * MINUTE)
     );
-    // The wait has doubled to its most, 9600 frames; a trial turns twice.
+    // The wait has doubled to its maximum, 9600 frames; a trial changes direction twice.
     let last = phone.times_ms.len() - 10 * MINUTE;
     let n_late = phone.turns.iter().filter(|(at, _)| *at > last).count();
     assert!(n_late <= 10, "{:?}", phone.turns);
@@ -238,7 +241,7 @@ fn without_device_times_late_frames_tell_and_trials_grow_rare() {
     assert_eq!(phone.level(), 0, "{:?}", phone.turns);
 }
 
-/// A governor that never waits swings: the measure of swinging finds it.
+/// A governor that never waits oscillates, and the test's measure detects it.
 #[test]
 fn a_planted_swing_is_found() {
     let mut phone = Phone::new(0.6 * SCREEN_MS);

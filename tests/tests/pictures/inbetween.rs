@@ -1,4 +1,5 @@
-//! Frames between two prints of the bundled llama: its photographs in two poses of one clip, and the truth between them.
+//! Frames between two prints of the bundled llama: its photographs in two poses of one clip, and
+//! the ground truth between them.
 
 use std::fs;
 
@@ -19,7 +20,7 @@ use serde_json::{Value, json};
 
 use crate::core::bundled::core;
 
-/// The bundled session's folder with one photograph more.
+/// The bundled session's folder with an additional photograph.
 struct WithPhotograph {
     folder: Folder,
     png: Vec<u8>,
@@ -35,7 +36,7 @@ impl Files for WithPhotograph {
 }
 
 const SESSION: &str = "sessions/llama";
-/// What the second photograph is disturbed by: pixels to the left, and parts of the light.
+/// Disturbance of the second photograph: pixels to the left, and factors for the light.
 const NUDGE_PX: f64 = 1.3;
 const BRIGHTER: f32 = 1.04;
 
@@ -105,7 +106,7 @@ fn a_frame_between_two_prints_is_near_its_truth_though_camera_and_lamp_were_dist
     assert!(said.contains("key 1: the camera moved by"), "{said}");
     assert!(!said.contains("key 0: the camera"), "{said}");
 
-    // The head as it is at two thirds of the way.
+    // The head at two thirds of the way.
     let session = bundled_session();
     let truth = session.truth(1).unwrap().unwrap();
     let scores = |picture: &Image| {

@@ -1,4 +1,4 @@
-//! What is drawn, decided and counted: the core, its plans, its reports and the app on top of it.
+//! Drawing, decisions and counts: the core, its plans, its reports and the app on top of it.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 

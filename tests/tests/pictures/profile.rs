@@ -1,4 +1,4 @@
-//! Profiles: a trace as viewers take it, and the layout of Table 1, from whichever file.
+//! Profiles: a trace for viewers, and the layout of Table 1, from any file.
 
 use app_core::preset::Preset;
 use app_core::profile::{DEVICE, FRAME, PROCESSOR, Profile};
@@ -37,7 +37,7 @@ fn a_profile_is_a_trace_whose_scopes_lie_within_their_frames() {
             frame.dur
         );
     }
-    // As any reader of JSON has it, by the names of the format.
+    // As any reader of JSON sees it, by the names of the format.
     let text = serde_json::to_string(&profile).unwrap();
     let value: Value = serde_json::from_str(&text).unwrap();
     let events = value["traceEvents"].as_array().unwrap();
@@ -59,7 +59,7 @@ fn a_profile_is_a_trace_whose_scopes_lie_within_their_frames() {
             (&read.name, &read.ph, read.tid),
             (&written.name, &written.ph, written.tid)
         );
-        // Decimals are rounded on their way.
+        // Decimals are rounded in between.
         assert!((read.ts - written.ts).abs() < 1e-3 && (read.dur - written.dur).abs() < 1e-3);
         assert_eq!(
             (&read.args.kind, read.args.bytes),
@@ -70,7 +70,8 @@ fn a_profile_is_a_trace_whose_scopes_lie_within_their_frames() {
     assert!(TASKS.iter().all(|(name, _)| tables.contains(name)), "{tables}");
 }
 
-/// Two frames as a phone may write them, with a counter among them that viewers show and the tables do not.
+/// Two frames as a phone may write them, with a counter between them that viewers show and the
+/// tables do not.
 const FROM_A_PHONE: &str = r#"{"traceEvents":[
     {"name":"frame","ph":"X","ts":1000,"dur":3000,"pid":1,"tid":1,"args":{"number":0,"kind":"picture","heat":"fair","camera_to_present_ms":41.5,"dropped":0}},
     {"name":"align","ph":"X","ts":1000,"dur":2000,"pid":1,"tid":1},

@@ -1,10 +1,10 @@
-//! The core's self-test: every preset passes it here, and what a device may do wrong does not.
+//! The core's self-test: every preset passes it here, and faults of a device fail it.
 
 use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::self_test::{self, Difference, SIZE_PX, SelfTestError};
 
-/// A picture whose pixels are made of those of another.
+/// A picture whose pixels are functions of another's.
 fn changed(picture: &Image, pixel: impl Fn(usize, usize) -> [u8; 4]) -> Image {
     let [width, height] = SIZE_PX.map(|side| side as usize);
     let pixels = (0..width * height).flat_map(|i| pixel(i % width, i / width));
@@ -19,7 +19,7 @@ fn at(picture: &Image, x: usize, y: usize) -> [u8; 4] {
     picture.rgba8[i..i + 4].try_into().unwrap()
 }
 
-/// What a device may do wrong, as it shows in the picture.
+/// Possible faults of a device, by their effect on the picture.
 fn faults(picture: &Image) -> Vec<(&'static str, Image)> {
     let [width, height] = SIZE_PX.map(|side| side as usize);
     let photograph = self_test::photograph().unwrap();
@@ -94,7 +94,7 @@ fn every_preset_passes_and_no_fault_does() {
             self_test::check(&small, preset),
             Err(SelfTestError::Size { .. })
         ));
-        // Nothing of it is left on the screen.
+        // It leaves nothing on the screen.
         assert!(core.read_picture().is_err());
     }
 }

@@ -1,5 +1,5 @@
-//! What a device was given, by its own trace: objects, and draws, attachments and bindings of each pass, worked out from
-//! nothing else.
+//! The work that a device gets, by its own trace: objects, and draws, attachments and bindings of
+//! each pass, computed from the trace alone.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs;
@@ -10,13 +10,13 @@ use app_core::frame::{FrameInput, FrameReport};
 use app_core::wgpu::{self, Instance, InstanceDescriptor};
 use app_pipeline::gpu::context::phone_limits;
 
-/// A core on a device that writes down what it is given.
+/// A core on a device that records its work.
 pub(crate) struct Traced {
     pub(crate) core: Core,
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
     trace: PathBuf,
-    /// What was read of the trace.
+    /// Number of bytes of the trace that are read.
     n_read: usize,
     objects: Objects,
 }
@@ -24,7 +24,7 @@ pub(crate) struct Traced {
 impl Traced {
     pub(crate) fn new(name: &str) -> Self {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        // What an earlier run left.
+        // Files of an earlier run.
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir_all(&folder).unwrap();
         let instance = Instance::new(InstanceDescriptor::new_without_display_handle());
@@ -50,7 +50,7 @@ impl Traced {
         fs::read_to_string(&self.trace).unwrap()
     }
 
-    /// What the device was given since the last look.
+    /// The device's work since the previous call.
     pub(crate) fn given(&mut self) -> Given {
         let text = self.text();
         let given = self.objects.take(&text[self.n_read..]);
@@ -58,7 +58,7 @@ impl Traced {
         given
     }
 
-    /// Makes the picture of a frame; with its report, what the device was given for it.
+    /// Makes the picture of a frame; returns its report and the device's work for it.
     pub(crate) fn frame(&mut self, input: &FrameInput) -> (FrameReport, Given) {
         self.given();
         let report = self.core.frame(input).unwrap();
@@ -66,23 +66,23 @@ impl Traced {
     }
 }
 
-/// What a device was given.
+/// The work of a device.
 #[derive(Debug, Default)]
 pub(crate) struct Given {
-    /// By the passes' labels.
+    /// Passes by their labels.
     pub(crate) passes: BTreeMap<String, Pass>,
-    /// How often each action that makes an object.
+    /// Number of calls of each action that creates an object.
     pub(crate) created: BTreeMap<String, u64>,
 }
 
 impl Given {
-    /// Objects of which the action that makes them has `what` in its name.
+    /// Number of objects whose creating action has `what` in its name.
     pub(crate) fn n_created(&self, what: &str) -> u64 {
         let of_kind = self.created.iter().filter(|(action, _)| action.contains(what));
         of_kind.map(|(_, n)| n).sum()
     }
 
-    /// How often each pass ran.
+    /// Number of runs of each pass.
     pub(crate) fn runs(&self) -> BTreeMap<&str, u32> {
         let passes = self.passes.iter();
         passes
@@ -99,7 +99,7 @@ pub(crate) struct Pass {
     pub(crate) triangles: u64,
     pub(crate) vertices: u64,
     pub(crate) bytes_written: u64,
-    /// None of a compute pass, whose shader alone knows what it looks at.
+    /// `None` for a compute pass, whose shader alone determines its reads.
     pub(crate) bytes_read: Option<u64>,
 }
 
@@ -126,19 +126,20 @@ enum Kind {
         is_written: bool,
     },
     Depth,
-    /// A sampler that compares: depths that are bound with it are seen from elsewhere than what is drawn.
+    /// A sampler that compares: depths that are bound with it are sampled at positions other than
+    /// the drawn ones.
     Comparison,
     Other,
 }
 
-/// Objects that the device has.
+/// Objects that exist on the device.
 #[derive(Debug, Default)]
 pub(crate) struct Objects {
     textures: HashMap<u64, Texture>,
     views: HashMap<u64, View>,
     buffers: HashMap<u64, u64>,
     layouts: HashMap<u64, Vec<Kind>>,
-    /// Layout, then what is bound.
+    /// Layout, then the bound resources.
     groups: HashMap<u64, (u64, Vec<u64>)>,
 }
 
@@ -154,13 +155,13 @@ fn pointer(line: &str) -> Option<u64> {
     after(line, "PointerId(")
 }
 
-/// The first number after `key` in some lines; none where the first such line has `None`.
+/// The first number after `key` in some lines; `None` if the first such line has `None`.
 fn number(lines: &[&str], key: &str) -> Option<u64> {
     let line = lines.iter().find(|line| line.trim_start().starts_with(key))?;
     after(line, key)
 }
 
-/// Bytes of a texel, by the names of WebGPU.
+/// Bytes of a texel, by WebGPU's name of the format.
 fn texel_bytes(format: &str) -> u64 {
     match format {
         "r8unorm" => 1,
@@ -172,7 +173,7 @@ fn texel_bytes(format: &str) -> u64 {
     }
 }
 
-/// Lines from `first` on to the one that closes what it opens, at the same depth.
+/// Lines from `first` on to the one that closes its bracket, at the same depth.
 fn block<'a>(lines: &'a [&'a str], first: usize) -> &'a [&'a str] {
     let depth = |line: &str| line.len() - line.trim_start().len();
     let own = depth(lines[first]);
@@ -182,7 +183,7 @@ fn block<'a>(lines: &'a [&'a str], first: usize) -> &'a [&'a str] {
     &lines[first..(first + n_lines).min(lines.len())]
 }
 
-/// Pixels that are drawn in by what a pass draws from line `first` on: no two of its parts have one in common.
+/// Number of pixels covered by a pass's draws from line `first` on: its parts are disjoint.
 fn n_drawn_from(text: &[&str], first: usize) -> u64 {
     let is = |index: usize, name: &str| text[index].trim_start().starts_with(name);
     let part_of = |draw: usize| (0..draw).rev().find(|index| is(*index, "SetScissor("));
@@ -196,7 +197,7 @@ fn n_drawn_from(text: &[&str], first: usize) -> u64 {
 }
 
 impl Objects {
-    /// Takes a part of a trace; returns what is in it.
+    /// Processes a part of a trace; returns its content.
     pub(crate) fn take(&mut self, trace: &str) -> Given {
         let lines: Vec<&str> = trace.lines().collect();
         let mut given = Given::default();
@@ -259,7 +260,7 @@ impl Objects {
         (self.textures[&view.of], view)
     }
 
-    /// Bytes of one sample of all of a view's texels.
+    /// Bytes of one sample of all texels of a view.
     fn view_bytes(&self, id: u64) -> u64 {
         let (texture, view) = self.view(id);
         texture.size[0] * texture.size[1] * view.n_layers * texture.texel_bytes
@@ -318,7 +319,7 @@ impl Objects {
         }
     }
 
-    /// Pixels of a pass and bytes that its attachments load; those that they store are added.
+    /// Pixels of a pass, and bytes that its attachments load; the bytes that they store are added.
     fn attachments(&self, text: &[&str], given: &mut Pass) -> (u64, u64) {
         let (mut n_pixels, mut read, mut current) = (None, 0, None);
         let first = text
@@ -343,7 +344,8 @@ impl Objects {
         (n_pixels.unwrap(), read)
     }
 
-    /// Bytes that a group has a pass read and write, but for what it has seen.
+    /// Bytes that a pass reads and writes through a group, without resources that are already in
+    /// `seen`.
     fn bound(&self, group: u64, n_pixels: u64, seen: &mut BTreeSet<[u64; 3]>) -> (u64, u64) {
         let (layout, bound) = &self.groups[&group];
         let (mut read, mut written) = (0, 0);

@@ -120,7 +120,8 @@ impl Desk {
 
     /// Draws on an invisible screen, and returns its picture.
     ///
-    /// # Errors As [`Live::screenshot`].
+    /// # Errors
+    /// As [`Live::screenshot`].
     pub fn screenshot(&mut self, screen: &Screen, time_s: f64) -> Result<Image, CoreError> {
         let (image, commands) = self.live.screenshot(screen, time_s)?;
         self.drawn(commands, time_s);

@@ -82,7 +82,8 @@ impl Feed {
 
     /// All frames of a stored session, and its toy's file.
     ///
-    /// # Errors When one cannot be read.
+    /// # Errors
+    /// When one cannot be read.
     pub fn of_stored(stored: Stored) -> anyhow::Result<Self> {
         let index: Index = serde_json::from_slice(&stored.read(SESSION_FILE, MAX_INDEX_BYTES)?)?;
         let toy_file = stored.read(&index.toy.file, MAX_TOY_BYTES)?;

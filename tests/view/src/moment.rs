@@ -59,7 +59,8 @@ impl Moment {
     /// Draws it with every preset on its own device, without alignment, and writes the page into a
     /// folder; returns the page's path.
     ///
-    /// # Errors When there is no device, a preset refuses, or nothing can be written.
+    /// # Errors
+    /// When there is no device, a preset refuses, or nothing can be written.
     pub fn write(&self, folder: &Path) -> anyhow::Result<std::path::PathBuf> {
         let instance = wgpu::Instance::default();
         let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;

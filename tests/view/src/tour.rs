@@ -109,7 +109,8 @@ impl<'a> Tour<'a> {
 
     /// Makes the whole tour, and returns the pictures in their order.
     ///
-    /// # Errors When the app reaches a wrong step.
+    /// # Errors
+    /// When the app reaches a wrong step.
     pub fn go(mut self) -> Result<Vec<PathBuf>, TourError> {
         self.welcome()?;
         self.find_table()?;

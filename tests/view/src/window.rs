@@ -57,7 +57,8 @@ pub struct Options {
 
 /// Opens the window, and returns when it is closed.
 ///
-/// # Errors When there is no display, no device, or the device is lost for good.
+/// # Errors
+/// When there is no display, no device, or the device is lost for good.
 pub fn open(feed: Feed, options: Options) -> Result<()> {
     let event_loop = EventLoop::new().context("no display to open a window on; --tour needs none")?;
     let mut app = Shell {

@@ -1,4 +1,4 @@
-//! The fake's functions in C, but those of images.
+//! The fake's functions in C, without those for images.
 
 #![expect(
     clippy::undocumented_unsafe_blocks,
@@ -10,7 +10,7 @@ use std::ffi::c_void;
 use super::super::ffi::*;
 use super::{IMAGES, World, world};
 
-/// Numbers of poses that were given begin here.
+/// First number of a pose that was given.
 const GIVEN: usize = 1000;
 
 macro_rules! give_back {
@@ -59,7 +59,7 @@ create! {
     database_create("database", ArAugmentedImageDatabase);
 }
 
-/// Functions that write what an object holds into places.
+/// Functions that write properties of an object to output arguments.
 macro_rules! get {
     ($($name:ident($kind:literal, $object:ty, $($place:ident: $type:ty),+) $write:expr;)*) => {$(
         pub(super) unsafe extern "C" fn $name(session: *const ArSession, object: *const $object, $($place: *mut $type),+) {
@@ -114,7 +114,7 @@ of_plane! {
     plane_pixel_stride(stride: i32) |plane, stride| *stride = plane.2;
 }
 
-/// Functions that only say that they were called, and maybe fail.
+/// Functions that only record their calls, and may fail.
 macro_rules! act {
     ($($name:ident($called:literal, $($argument:ty),*);)*) => {$(
         pub(super) unsafe extern "C" fn $name(session: *mut ArSession, $(_: $argument),*) -> i32 {
@@ -284,7 +284,7 @@ pub(super) unsafe extern "C" fn metadata_entry(
 ) -> i32 {
     world(|world| {
         world.used("metadata", metadata);
-        // Autofocus is a mode of continuous focus for videos, once it works.
+        // Autofocus is the mode of continuous focus for videos, once it works.
         world.focus_mode = if world.stuck_focus > 0 { 0 } else { 3 };
         let (kind, data): (u8, *const u8) = match tag {
             0xE_0000 => (3, (&raw const world.exposure.0).cast()),
@@ -342,10 +342,11 @@ pub(super) unsafe extern "C" fn pose_create(_: *const ArSession, raw: *const f32
     });
 }
 
-/// What the pose of the camera in the display's axes stands for.
+/// Number of the pose of the camera in the display's axes.
 const DISPLAY: usize = usize::MAX;
 
-/// A pose stands for the camera's, for that of the plane before its number, or from [`GIVEN`] on for one that was given.
+/// A pose's number is 0 for the camera, one more than its index for a plane, or from [`GIVEN`] on
+/// for a given pose.
 pub(super) unsafe extern "C" fn pose_raw(_: *const ArSession, pose: *const ArPose, numbers: *mut f32) {
     let raw = world(|world| match world.used("pose", pose) {
         0 => world.pose,

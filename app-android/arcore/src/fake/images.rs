@@ -1,4 +1,4 @@
-//! The fake's functions of images that are looked for.
+//! The fake's functions for tracked images.
 
 #![expect(
     clippy::undocumented_unsafe_blocks,

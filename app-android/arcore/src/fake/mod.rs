@@ -1,5 +1,5 @@
-//! A fake of ARCore's library: what it answers is set by a test, what it is asked is written down, and whatever it hands
-//! out must come back once.
+//! A fake of ARCore's library: a test sets its answers, its calls are recorded, and every object
+//! that it returns must be released once.
 
 #![allow(clippy::unwrap_used, reason = "a test's, which is to fail")]
 
@@ -23,73 +23,74 @@ pub struct FakePlane {
     pub state: i32,
     /// `ArPlaneType`.
     pub kind: i32,
-    /// As `ArPose_getPoseRaw` has it.
+    /// Pose in the order of `ArPose_getPoseRaw`.
     pub pose: [f32; 7],
     /// Corners, `x` and `z` in turn, metres.
     pub outline: Vec<f32>,
 }
 
-/// What the fake answers, and what it was asked.
+/// The fake's answers, and the recorded calls.
 pub struct World {
-    /// What `checkAvailability` says, one after the other; the last for good.
+    /// Successive results of `checkAvailability`; the last one remains.
     pub availability: Vec<i32>,
     /// Status and outcome of `requestInstall`.
     pub install: (i32, i32),
-    /// Status by name of the function; success where none is set.
+    /// Status by the name of the function; success if it is not listed.
     pub fails: BTreeMap<&'static str, i32>,
     /// Modes of the camera: width, height, frames a second.
     pub modes: Vec<[i32; 3]>,
-    /// Modes of a camera that faces the person, by their places.
+    /// Modes of a camera that faces the person, by their indices.
     pub fronts: Vec<usize>,
-    /// Whether a filter that asks for anything finds no mode.
+    /// Whether a filter with any condition finds no mode.
     pub filters_all: bool,
-    /// Modes in which no picture comes.
+    /// Modes in which no picture arrives.
     pub silent: Vec<usize>,
-    /// Settings of a configuration that are refused, by their names, each with what it must not be.
+    /// Refused settings of a configuration: names and refused values.
     pub refuses: Vec<(&'static str, i32)>,
-    /// The mode that is set.
+    /// Index of the present mode.
     mode: usize,
-    /// Whether the filter asks for anything.
+    /// Whether the filter has any condition.
     is_filtered: bool,
-    /// Settings of the configuration under way.
+    /// Settings of the configuration that is being made.
     config: BTreeMap<&'static str, i32>,
-    /// `ACAMERA_CONTROL_AF_MODE` of pictures, until so many pauses.
+    /// Number of pauses after which `ACAMERA_CONTROL_AF_MODE` of pictures becomes right.
     pub stuck_focus: u32,
     /// Quarter turns from the sensor to the display.
     pub display_turns: u8,
     focus_mode: u8,
-    /// Of the frame.
+    /// Time of the frame.
     pub time_ns: i64,
     /// State and reason of a failure.
     pub tracking: (i32, i32),
-    /// Of the camera.
+    /// Pose of the camera.
     pub pose: [f32; 7],
     /// Focal lengths and principal point, pixels.
     pub intrinsics: [f32; 4],
-    /// Of the picture.
+    /// Size of the picture.
     pub size_px: [i32; 2],
-    /// Of the picture, as `AIMAGE_FORMAT_*`.
+    /// Format of the picture, as `AIMAGE_FORMAT_*`.
     pub format: i32,
     /// Bytes, row stride and pixel stride of each plane.
     pub image: Vec<(Vec<u8>, i32, i32)>,
-    /// Nanoseconds and ISO speed of the picture, and the type that the camera says the speed is of.
+    /// Nanoseconds and ISO speed of the picture, and the type that the camera reports for the
+    /// speed.
     pub exposure: (i64, i32, u8),
-    /// What is found.
+    /// Planes that are found.
     pub planes: Vec<FakePlane>,
-    /// Images that are followed; their kind is the tracking method.
+    /// Images that are tracked; their kind is the tracking method.
     pub images: Vec<FakePlane>,
-    /// Whether the list was asked for images.
+    /// Whether images were requested for the list.
     lists_images: bool,
     /// `ArTrackingState` of the anchor.
     pub anchor_state: i32,
     /// Poses that were given.
     given: Vec<[f32; 7]>,
-    /// Calls that a test looks at, in order.
+    /// Calls of interest to a test, in order.
     pub calls: String,
-    /// Handed out and not given back: address, kind, and what it stands for.
+    /// Objects that are not yet released: address, kind, and number.
     alive: BTreeMap<usize, (&'static str, usize)>,
     n_made: usize,
-    /// What was given back or used without being alive.
+    /// Objects that were released or used when they did not exist.
     pub wrong: Vec<String>,
 }
 
@@ -137,20 +138,20 @@ impl Default for World {
     }
 }
 
-/// Numbers of images begin here.
+/// First number of an image.
 const IMAGES: usize = 500;
 
 thread_local! {
-    /// Each test runs on a thread of its own.
+    /// Each test runs on its own thread.
     static WORLD: RefCell<World> = RefCell::default();
 }
 
-/// Looks at the fake, or changes what it answers.
+/// Reads the fake, or changes its answers.
 pub fn world<T>(look: impl FnOnce(&mut World) -> T) -> T {
     WORLD.with_borrow_mut(look)
 }
 
-/// Kinds of what has not been given back.
+/// Kinds of the objects that are not yet released.
 pub fn alive() -> Vec<&'static str> {
     world(|world| world.alive.values().map(|(kind, _)| *kind).collect())
 }
@@ -177,7 +178,7 @@ impl World {
         }
     }
 
-    /// What an object stands for.
+    /// Number of an object.
     fn used<T>(&mut self, kind: &'static str, object: *const T) -> usize {
         match self.alive.get(&object.addr()) {
             Some((of, stands_for)) if *of == kind => *stands_for,
@@ -189,7 +190,7 @@ impl World {
         }
     }
 
-    /// The modes that the filter lets through, by their places.
+    /// Indices of the modes that pass the filter.
     fn listed(&self) -> Vec<usize> {
         let all = 0..self.modes.len();
         all.filter(|index| !self.is_filtered || !(self.filters_all || self.fronts.contains(index)))
@@ -201,7 +202,7 @@ impl World {
         let half_turned = f32::from(self.display_turns) * std::f32::consts::FRAC_PI_4;
         let [qx, qy, qz, qw, tx, ty, tz] = self.pose;
         let (sin, cos) = half_turned.sin_cos();
-        // The pose's rotation, then one about its own z.
+        // The pose's rotation, then a rotation about its own z.
         [
             qx * cos + qy * sin,
             qy * cos - qx * sin,

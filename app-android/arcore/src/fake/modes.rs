@@ -1,4 +1,4 @@
-//! The fake's functions of the camera's modes, and of the filter that they are asked for by.
+//! The fake's functions for the camera's modes, and for their filter.
 
 #![expect(
     clippy::undocumented_unsafe_blocks,

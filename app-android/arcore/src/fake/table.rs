@@ -1,4 +1,4 @@
-//! The table of the fake's functions, as that of a library.
+//! The table of the fake's functions, in the form of a library's.
 
 use super::super::ffi::Functions;
 use super::functions::*;

@@ -1,4 +1,4 @@
-//! What a frame of ARCore holds, and when there is none.
+//! The content of ARCore's frames, and the cases without a frame.
 
 use app_core::camera_frame::{CameraImage, Stamp, Tracking};
 use glam::{DMat4, DVec2, DVec3};
@@ -93,7 +93,7 @@ fn the_card_is_where_it_is_seen_and_nowhere_else() {
         outline: Vec::new(),
     };
     let mut tracker = running();
-    // Tracked and seen, where it was seen last, paused, stopped.
+    // Tracked and visible, at its last visible pose, paused, stopped.
     let seen = [(0, 1), (0, 2), (1, 1), (2, 0)].map(|(state, method)| {
         world(|world| {
             world.images = vec![card(state, method)];
@@ -151,11 +151,12 @@ fn a_picture_is_turned_as_the_display_lies() {
         let frame = update(&mut tracker).expect("no error").expect("a frame");
         frame.display.quarter_turns
     };
-    // Before anything is known: as nearly every phone's.
+    // Before any pose is known: the value of nearly every phone.
     assert_eq!([turns(1, 3, 1), turns(3, 3, 1), turns(0, 3, 1)], [0, 2, 1]);
-    // As it is told.
+    // With the display's rotation.
     assert_eq!([turns(1, 0, 0), turns(3, 2, 0), turns(0, 1, 0)], [0, 2, 1]);
-    // A sensor that lies otherwise, as in some tablets: learned, and known while the pose is not.
+    // A sensor with another rotation, as in some tablets: it is determined, and stays known while
+    // the pose is not.
     assert_eq!([turns(0, 0, 0), turns(1, 0, 1), turns(3, 0, 1)], [0, 3, 1]);
     assert_eq!(tracker.run(&mut Desk, ANEW), Step::Ready);
     drop(tracker);

@@ -1,4 +1,4 @@
-//! The session's life, against the fake.
+//! The life cycle of the session, with the fake.
 
 mod frames;
 mod nasty;
@@ -17,7 +17,7 @@ use super::status::{Failure, Remedy, STATUSES, told};
 use super::tracker::{Geometry, Run, Step, Tracker, Wait};
 use crate::java::{Java, JavaHost};
 
-/// Somebody with two pointers that nothing follows.
+/// A provider of two pointers that are never dereferenced.
 struct Desk;
 
 impl JavaHost for Desk {
@@ -54,7 +54,7 @@ fn look(tracker: &mut Tracker) -> Step {
     tracker.run(&mut Desk, LOOK)
 }
 
-/// At a time at which nothing is late.
+/// Updates at a time at which nothing is late.
 fn update(tracker: &mut Tracker) -> Result<Option<CameraFrame>, FrameError> {
     tracker.update(Duration::ZERO)
 }
@@ -65,7 +65,7 @@ fn running() -> Tracker {
     tracker
 }
 
-/// Nothing is left, nothing was given back twice or used after.
+/// Nothing is left, and nothing was released twice or used after its release.
 fn assert_clean() {
     assert_eq!(alive(), Vec::<&str>::new());
     assert_eq!(world(|world| world.wrong.clone()), Vec::<String>::new());

@@ -1,5 +1,5 @@
-//! Platforms that do not do what is asked: refused configurations, cameras without pictures, an install in the middle, an interruption,
-//! a second start, in every combination.
+//! Platforms that do not fulfil requests: refused configurations, cameras without pictures, an
+//! installation in between, an interruption, a second start, in every combination.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ const WITH_CARD: Run = Run {
     ..LOOK
 };
 
-/// Lets time go on, with a new frame each tenth of a second.
+/// Lets time pass, with a new frame each tenth of a second.
 fn seconds(tracker: &mut Tracker, from_s: f64, n_s: f64) -> Vec<Result<bool, String>> {
     let steps = (0..)
         .take_while(|step| 0.1 * f64::from(*step) < n_s - 1e-9)
@@ -60,7 +60,7 @@ fn what_is_refused_is_done_without_one_thing_at_a_time() {
             .unwrap_or_default()
             .trim_end_matches(" resume");
         assert!(configured.ends_with(expected), "{refuses:?}: {said}");
-        // What was refused is not asked for again.
+        // Refused parts are not requested again.
         let n_before = world(|world| world.calls.len());
         assert_eq!(
             tracker.run(
@@ -78,7 +78,7 @@ fn what_is_refused_is_done_without_one_thing_at_a_time() {
         drop(tracker);
         assert_clean();
     }
-    // Nothing helps: only then there is no AR.
+    // No smaller configuration is accepted either: only then AR is unavailable.
     world(|world| world.fails.insert("configure", -8));
     let mut tracker = tracker();
     assert_eq!(tracker.run(&mut Desk, WITH_CARD), Step::Refused(Failure(-8)));
@@ -100,7 +100,7 @@ fn a_camera_without_pictures_is_set_to_smaller_ones_and_that_is_kept() {
         world(|world| world.time_ns += 1);
         feed.poll(&mut Desk, Duration::from_secs_f64(s))
     };
-    // A loop that stood still for long has asked too seldom to judge.
+    // A loop that stood still for long has polled too rarely for a verdict.
     assert!(poll(&mut feed, 10.0).is_none());
     assert!(poll(&mut feed, 20.0).is_none());
     assert!((0..5).all(|_| poll(&mut feed, 20.0).is_none()));
@@ -117,14 +117,14 @@ fn a_camera_without_pictures_is_set_to_smaller_ones_and_that_is_kept() {
     assert_eq!(feed.take_kept(), None, "told once");
     drop(feed);
     assert_clean();
-    // The next start does not try what did not come.
+    // The next start does not try the mode that delivered nothing.
     let mut feed = Feed::new(Some(FUNCTIONS)).with_kept("1280x720 2\n");
     assert_eq!(feed.take_kept().as_deref(), Some("1280x720 1"));
     assert!(feed.run(&mut Desk, LOOK).is_none());
     assert!(calls().contains("mode=1"));
     assert!(matches!(poll(&mut feed, 0.0), Some(ShellEvent::Frame(_))));
     assert_eq!(feed.take_kept(), None);
-    // After some starts larger ones are tried again: they may have been slow once.
+    // After some starts larger modes are tried again: they may have been slow only once.
     world(|world| world.silent.clear());
     let mut feed = Feed::new(Some(FUNCTIONS)).with_kept("1280x720 1");
     assert_eq!(feed.take_kept().as_deref(), Some("1280x720 0"));
@@ -176,7 +176,7 @@ fn a_camera_that_stops_is_begun_anew_and_one_that_never_comes_is_said() {
     world(|world| world.silent = vec![0, 1]);
     let steps = seconds(&mut tracker, 8.0, 7.0);
     let errors: Vec<_> = steps.iter().filter_map(|step| step.as_ref().err()).collect();
-    assert_eq!(errors, ["the camera gives no picture, of whatever size"]);
+    assert_eq!(errors, ["the camera delivers no picture in any size"]);
     assert_eq!(tracker.limited_to(), None, "a later start tries all again");
     world(|world| world.silent.clear());
     assert_eq!(tracker.run(&mut Desk, ANEW), Step::Ready);
@@ -195,7 +195,7 @@ fn a_camera_whose_focus_is_stuck_is_paused_and_resumed_once() {
         assert_eq!(calls().matches("pause resume").count(), n_pauses, "{stuck_focus}");
         drop(tracker);
     }
-    // Where autofocus was refused there is nothing to wait for.
+    // If autofocus was refused, there is nothing to wait for.
     world(|world| {
         world.stuck_focus = 1;
         world.refuses = vec![("focus", 1)];
@@ -244,7 +244,7 @@ fn the_camera_of_another_app_is_asked_for_again_until_it_is_free() {
         matches!(told, Some(ShellEvent::ArTrouble(ArSession::Interrupted, _))),
         "{told:?}"
     );
-    // The app pauses what it has not.
+    // The app pauses a camera that it does not have.
     feed.pause();
     world(|world| world.fails.insert("resume", -13));
     calls();
@@ -298,7 +298,7 @@ fn a_package_without_arcore_says_so() {
             "{told:?}"
         );
     }
-    // What had the camera may have let it go while the app was away.
+    // The other app may have released the camera while the app was away.
     let mut feed = Feed::new(Some(FUNCTIONS));
     world(|world| world.fails.insert("resume", -13));
     let told = feed.run(&mut Desk, LOOK);
@@ -350,10 +350,10 @@ fn an_install_in_the_middle_is_told_and_waited_for() {
     assert_clean();
 }
 
-/// What may go wrong, each with the number of its kinds.
+/// Number of variants of each possible fault.
 const N_KINDS: [u64; 7] = [5, 4, 4, 4, 3, 3, 2];
 
-/// Makes the world as bad as `index` says.
+/// Makes the world as faulty as the number `index` encodes.
 fn spoil(index: u64) {
     let mut left = index;
     let kinds = N_KINDS.map(|n| {
@@ -381,7 +381,8 @@ fn spoil(index: u64) {
     });
 }
 
-/// Runs a feed as an app does, for so many seconds: whether a frame came, and what was told last.
+/// Runs a feed as an app does, for this many seconds; returns whether a frame came, and the last
+/// reported state.
 fn live(feed: &mut Feed, from_s: u64, n_s: u64) -> (bool, Option<ArSession>) {
     let (mut has_frame, mut state) = (false, None);
     let mut told = vec![feed.run(&mut Desk, LOOK)];
@@ -399,7 +400,7 @@ fn live(feed: &mut Feed, from_s: u64, n_s: u64) -> (bool, Option<ArSession>) {
                     assert!(words.ends_with('.'), "{words}");
                     state = Some(ar_session);
                     if ar_session != ArSession::Installing {
-                        // Whatever does not go on is paused by the app.
+                        // The app pauses a camera that does not continue.
                         feed.pause();
                     }
                 }
@@ -438,7 +439,8 @@ fn in_every_combination_frames_come_or_it_is_said_why_not_and_a_healed_phone_goe
         } else {
             n_told += 1;
         }
-        // Left and come back to, after whatever it was has been mended: a second start in one process, too.
+        // The app is left and restarted after the fault was removed: also as a second start in one
+        // process.
         feed.pause();
         spoil(0);
         let mut second = Feed::new(Some(FUNCTIONS));

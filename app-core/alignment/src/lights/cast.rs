@@ -77,6 +77,16 @@ impl<'a> Caster<'a> {
         taken.into_iter().map(|[taken]| taken).collect()
     }
 
+    /// The part of a lobe that the toy hides from each pixel of the first receiver; of eyes behind it in its space, homogeneous.
+    pub(super) fn image(&self, raster: &mut Rasterizer, pixels: &[FloorPixel], eyes: &[DVec4]) -> Vec<f32> {
+        let mut hidden = vec![[0.0]; pixels.len()];
+        if !self.receivers.is_empty() {
+            let eyes = eyes.iter().map(|eye| (*eye, [1.0]));
+            self.add(raster, pixels, 0, eyes.collect(), &mut hidden);
+        }
+        hidden.into_iter().map(|[hidden]| hidden).collect()
+    }
+
     /// Irradiance of each pixel's receiver from a lamp, relative to the foot of the toy there.
     pub(super) fn lit(&self, pixels: &[FloorPixel], lamp: &Lamp) -> Vec<f32> {
         let seen = self.receivers.iter().map(|receiver| {
@@ -215,7 +225,7 @@ fn on_plane(point: DVec3, light: DVec4, camera_from_plane: &DMat4) -> DVec3 {
 }
 
 /// Irradiance of the plane from a point of a light, up to a factor.
-fn irradiance(point: DVec4, at: DVec3) -> f64 {
+pub(super) fn irradiance(point: DVec4, at: DVec3) -> f64 {
     let to = point.truncate() - point.w * at;
     let falloff = if point.w == 0.0 {
         to.length()

@@ -70,20 +70,30 @@ pub(crate) struct Compared {
     pub(crate) ratio: Color,
     /// The model's value of it.
     pub(crate) model: Color,
-    /// Standard deviation of the ratio's noise.
+    /// Index of the receiver that is there.
+    pub(crate) on: usize,
+    /// Noise of the ratio, as a deviation.
     pub(crate) noise: f32,
     /// Probability of the receiver.
     pub(crate) receiver: f32,
 }
 
-/// Compares a level's pixels beside the toy with the prediction from the plate and given lights;
-/// `None` if too few pixels are visible, no plate shows the place, or no shadow of the lights does.
+/// A level's pixels beside the toy, in given lights.
+pub(crate) struct Comparison {
+    pub(crate) pixels: Vec<Compared>,
+    /// The light on each receiver.
+    pub(super) shading: Shading,
+    pub(super) lamps: Vec<Lamp>,
+}
+
+/// Compares a level's pixels beside the toy with what given lights make of the plate; none where too little is seen, no plate shows the
+/// place, or no shadow of the lights does.
 pub(crate) fn compare(
     lights: &[Light],
     (shape, receivers): (&Shape, &[SeenReceiver]),
     level: &Level,
     world_from_camera: &DMat4,
-) -> Option<Vec<Compared>> {
+) -> Option<Comparison> {
     level.plate.as_ref()?;
     let camera_from_world = world_from_camera.inverse();
     let lamps = lights
@@ -103,16 +113,21 @@ pub(crate) fn compare(
     let gain = open_gain(&shadows, &taken)?;
     let shares = shares(&shadows, &taken, &gain)?;
     let mut mixture = Mixture::new(&shadows, &taken, level.frame.size_px);
-    let shading = first_shading(&shares, &gain, shadows.caster.receivers.len());
+    let mut shading = first_shading(&shares, &gain, shadows.caster.receivers.len());
     mixture.predict(&shadows, &shading);
     mixture.classify(FIRST_DEVIATION);
     for _ in 0..N_ROUNDS {
         mixture.weigh(&mut shadows);
-        let shading = shadows.shaded(&taken).fit(receivers.len(), ROBUST_FAR);
+        shading = shadows.shaded(&taken).fit(receivers.len(), ROBUST_FAR);
         mixture.predict(&shadows, &shading);
         mixture.classify(mixture.deviation());
     }
-    Some(mixture.compared)
+    let pixels = mixture.compared;
+    Some(Comparison {
+        pixels,
+        shading,
+        lamps,
+    })
 }
 
 /// The pixels around toy and shadows, with some unaffected surroundings.
@@ -295,6 +310,7 @@ impl<'a> Mixture<'a> {
             });
             Compared {
                 at: pixel.at,
+                on: pixel.receiver,
                 ratio: [1.0; 3],
                 model: [1.0; 3],
                 noise: noise.into_iter().fold(0.0, f32::max),

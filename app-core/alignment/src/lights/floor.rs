@@ -35,7 +35,20 @@ pub(super) struct FloorPixel {
 }
 
 impl FloorPixel {
-    /// Whether all channels are reliable.
+    /// One whose colours nobody asks for, of the only receiver.
+    pub(super) fn bare(at: IVec2, point: DVec3) -> Self {
+        Self {
+            at,
+            receiver: 0,
+            point,
+            gain: [0.0; QUADRATIC],
+            frame: [0.0; 3],
+            plate: [0.0; 3],
+            precision: [0.0; 3],
+        }
+    }
+
+    /// Whether all channels of it say something.
     pub(super) fn is_told(&self) -> bool {
         self.precision.iter().all(|precision| *precision > 0.0)
     }

@@ -38,7 +38,7 @@ const LEAST_EXPLAINED: f64 = 0.3;
 /// Its smallest share of the light at the toy's foot: less is within the noise of a plate. Measured
 /// .14, .15 and .79 there.
 const LEAST_SHARE: f64 = 0.1;
-/// Largest share of a light: some is always ambient. As in `fit`.
+/// Largest share of a light, since part of it is always ambient. The same as in `fit`.
 const MOST_SHARE: f64 = 0.98;
 /// Rounds of reweighting.
 const N_ROUNDS: usize = 3;

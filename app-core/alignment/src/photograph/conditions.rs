@@ -3,12 +3,25 @@
 use glam::DMat4;
 
 use super::Photograph;
-use crate::{pose, softness, things};
+use crate::found_planes::FoundReceiver;
+use crate::lights::FoundReflection;
+use crate::{gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
+use app_scene::geometry::nearest_receivers::nearest_receivers;
+use app_scene::gloss::Gloss;
 use app_scene::scene::{Camera, Light, Scene};
 use app_scene::sharpness::{Sharpness, Spread};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
+
+/// What stands beside the toy.
+#[derive(Default)]
+pub(crate) struct Sighted {
+    /// None where nothing tells of any.
+    pub(crate) things: Option<Things>,
+    /// Planes that things have.
+    pub(crate) planes: Vec<FoundReceiver>,
+}
 
 impl Photograph {
     /// With the plate blurred by a spread, in pixels of the picture.
@@ -26,6 +39,55 @@ impl Photograph {
         }
     }
 
+    /// How the receiver that the toy stands on reflects, in given lights; none where the picture does not tell.
+    pub(crate) fn reflection(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        lights: &[Light],
+    ) -> Result<Option<FoundReflection>, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let world_from_camera = &input.camera.world_from_camera;
+        Ok(lights::reflection(
+            lights,
+            (&shape, &self.receivers),
+            &self.pyramid,
+            world_from_camera,
+        ))
+    }
+
+    /// As if the receiver that the toy stands on were matt.
+    pub(crate) fn freed_of(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        found: &FoundReflection,
+    ) -> Result<Self, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let mut level = self.pyramid.level(0).clone();
+        let reflection = &found.reflection;
+        let (surroundings, toy) = (reflection.surroundings, reflection.toy_above_surroundings);
+        for (at, reflectance, hidden) in lights::reflected((&shape, &self.receivers), &level, reflection) {
+            #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
+            let light = |channel: usize, hidden: f64, gain: f64| {
+                let light = f64::from(surroundings[channel]) + hidden * f64::from(toy[channel]);
+                (-gain * reflectance * light) as f32
+            };
+            level.frame.add(
+                at,
+                [0, 1, 2].map(|channel| light(channel, hidden, found.gain[channel])),
+            );
+            if let Some(plate) = &mut level.plate {
+                plate.add(at, [0, 1, 2].map(|channel| light(channel, 0.0, 1.0)));
+            }
+        }
+        Ok(Self {
+            pyramid: self.pyramid.with_largest(level),
+            receivers: self.receivers.clone(),
+            camera_from_world: self.camera_from_world,
+        })
+    }
+
     /// Other things beside the toy in its place, under given lights; `None` if they cannot be
     /// detected.
     pub(crate) fn things(
@@ -33,7 +95,8 @@ impl Photograph {
         scene: &Scene,
         input: &FrameInput,
         lights: &[Light],
-    ) -> Result<Option<Things>, ToyError> {
+        wants_planes: bool,
+    ) -> Result<Sighted, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let paint = pose::Paint::new(scene, &self.camera_from_object(&input.world_from_object))?;
         let found = things::find(&things::Sight {
@@ -43,16 +106,51 @@ impl Photograph {
             pyramid: &self.pyramid,
             lights,
             world_from_camera: &input.camera.world_from_camera,
+            wants_planes,
+        });
+        let Some(found) = found else {
+            return Ok(Sighted::default());
+        };
+        let toy_in_world = input.world_from_object.w_axis.truncate();
+        let in_scene = nearest_receivers(&scene.receivers, &[toy_in_world]);
+        let planes = found.planes.into_iter().map(|found| {
+            let receiver = found.plane.receiver(
+                format!("{:.0} mm up", 1e3 * found.report.height_m),
+                &input.camera.world_from_camera,
+            );
+            FoundReceiver {
+                receiver,
+                instead_of: found.instead_of.and_then(|index| in_scene.get(index).copied()),
+                report: found.report,
+            }
         });
         // Camera of the largest level, which may be smaller than the picture.
         let camera = Camera {
             intrinsics: input.camera.intrinsics.scaled(self.pyramid.picture_px().recip()),
             ..input.camera
         };
-        Ok(found.and_then(|(size_px, marks)| Things::new(size_px.as_uvec2(), marks, camera)))
+        Ok(Sighted {
+            planes: planes.collect(),
+            things: Things::new(found.size_px.as_uvec2(), found.marks, camera),
+        })
     }
 
-    /// The same for given camera and pose.
+    /// How glossy the toy is in its place, in given lights.
+    pub(crate) fn gloss(
+        &self,
+        scene: &Scene,
+        world_from_object: &DMat4,
+        lights: &[Light],
+    ) -> Result<Gloss, ToyError> {
+        let shape = self.shape(scene, world_from_object)?;
+        let paint = pose::Paint::new(scene, &self.camera_from_object(world_from_object))?;
+        let level = self.pyramid.level(0);
+        let surfels = paint.surfels(level, &pose::covered(&shape, level), gloss::MOST_SURFELS);
+        let lights = gloss::Lights::new(lights, &self.camera_from_world);
+        Ok(gloss::gloss(&gloss::Look::new(&shape, &surfels, &lights)))
+    }
+
+    /// How soft it is, for given camera and pose.
     pub(crate) fn sharpness_as_given(
         &self,
         scene: &Scene,

@@ -90,9 +90,10 @@ fn luma_row(image: &CameraImage, y: usize, row: &mut Vec<u8>) {
 /// Sums of squares, and their number.
 #[derive(Clone, Copy, Debug, Default)]
 struct Energy {
-    /// Of second differences along rows and columns.
+    /// Second differences along rows and columns.
     fine: f32,
-    /// Of the second difference along columns of that along rows: noise has it, edges hardly.
+    /// The second difference along columns of that along rows, which noise has and edges hardly
+    /// have.
     noise: f32,
     n: f32,
 }

@@ -48,7 +48,7 @@ const LESS_SEEN: f64 = 0.1;
 struct Seen<'a> {
     lit: Option<Lit<'a>>,
     optics: Optics,
-    /// None if the toy has none, or another one than its model.
+    /// `None` if the toy has none, or another one than its model.
     texture: Option<&'a Texture>,
 }
 
@@ -192,14 +192,15 @@ impl Search<'_> {
         }
     }
 
-    /// The model's paint about where the toy is; none if it has no texture there.
+    /// The model's paint near the toy's pose; `None` if it has no texture there.
     fn texture(&mut self, lit: Lit<'_>, placement: &Placement) -> Option<Texture> {
         let posed = self.posed(placement, Some(lit));
         Texture::new(posed.shaded.as_ref()?, self.pyramid.level(0), &posed.coverage)
     }
 
-    /// Freely, by the outline and by the toy's texture if that is its model's; from where the outline is, or else, since an outline may
-    /// slide away from a texture, from where the toy was given.
+    /// Estimates the pose freely, by the outline and by the toy's texture if it is the model's. It
+    /// starts from the outline's result, or else from the given pose, since an outline may slide
+    /// away from a texture.
     fn textured<'a>(
         &mut self,
         seen: Seen<'a>,

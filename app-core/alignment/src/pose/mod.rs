@@ -47,7 +47,7 @@ use placement::Placement;
 use settle::{LEAST_EVIDENCE, STEP};
 use sides::Beside;
 
-pub(super) use paint::Paint;
+pub(super) use paint::{Paint, Surfel};
 pub use regions::ViewDirection;
 pub(super) use regions::{Standing, TINY_PIXELS, changed, guesses, standing_guesses};
 pub(super) use resting::find_resting;

@@ -90,7 +90,7 @@ impl Held {
         step_of(DVec3::ZERO, by_m.x * self.across[0] + by_m.y * self.across[1])
     }
 
-    /// As [`solve`] with only these degrees of freedom.
+    /// Like [`solve`], with only these degrees of freedom.
     pub(super) fn solve(
         &self,
         measured: &[Measured],

@@ -57,6 +57,7 @@ pub(crate) struct Paint {
 #[derive(Clone, Debug)]
 struct Face {
     corners: [u32; 3],
+    material: usize,
     color: Color,
     texture: Option<(usize, [Wrap; 2])>,
 }
@@ -87,6 +88,30 @@ impl Paint {
         }
         .shaded(&placement, level, coverage);
         Some(coverage.pixels().map(|at| shaded.at(at)).collect())
+    }
+
+    /// What pixels show of the toy where it is given, with one of so many.
+    pub(crate) fn surfels(&self, level: &Level, coverage: &Coverage, most: usize) -> Vec<Surfel> {
+        let placement = Placement::of(RigidMotion::none(DVec3::ZERO, 1.0));
+        let seen = self.seen(&placement, &level.intrinsics, coverage);
+        let within = within(coverage);
+        let stride = within.len().div_ceil(most).max(1);
+        let surfels = within.into_iter().step_by(stride).filter_map(|at| {
+            let (surface, shown) = (seen.at(at)?, level.frame.get(at)?);
+            let hit = seen.nearest[index_in(seen.size_px, at - seen.origin_px)?];
+            let k = &level.intrinsics;
+            let depth_m = hit.inverse_depth.recip();
+            let on_plane =
+                (at.as_dvec2() + 0.5 - DVec2::new(k.cx_px, k.cy_px)) / DVec2::new(k.fx_px, k.fy_px);
+            Some(Surfel {
+                shown,
+                base: surface.color,
+                normal: surface.normal,
+                point: depth_m * DVec3::new(on_plane.x, -on_plane.y, -1.0),
+                material: self.faces[hit.face as usize].material,
+            })
+        });
+        surfels.collect()
     }
 
     /// The light on the toy, from `level` and the toy's estimated place; `None` if too little of it
@@ -185,6 +210,7 @@ fn faces(toy: &Toy) -> Vec<Face> {
         let corners = toy.indices()[part.indices.start as usize..part.indices.end as usize].chunks_exact(3);
         corners.map(move |corners| Face {
             corners: [corners[0], corners[1], corners[2]],
+            material: part.material,
             color: [r, g, b],
             texture,
         })
@@ -274,6 +300,27 @@ impl Seen<'_> {
     }
 }
 
+/// Pixels well within the outline.
+fn within(coverage: &Coverage) -> Vec<IVec2> {
+    let reach = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y].map(|step| WITHIN_PX * step);
+    let is_within = |at: &IVec2| reach.iter().all(|step| coverage.at(*at + *step) >= 1.0);
+    coverage.pixels().filter(is_within).collect()
+}
+
+/// What a pixel shows of the toy.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surfel {
+    /// By the photograph.
+    pub(crate) shown: Color,
+    /// Of the model's paint.
+    pub(crate) base: Color,
+    /// Unit vector in camera space, as is the place.
+    pub(crate) normal: DVec3,
+    pub(crate) point: DVec3,
+    /// Index of the material.
+    pub(crate) material: usize,
+}
+
 /// The toy's surface at a pixel.
 #[derive(Clone, Copy, Debug)]
 struct Surface {
@@ -309,9 +356,7 @@ impl Light {
     /// Fits the light to the visible surface in a photograph, by iteratively reweighted least
     /// squares; `None` if too little of it is visible.
     fn fitted(seen: &Seen<'_>, level: &Level, coverage: &Coverage) -> Option<Self> {
-        let reach = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y].map(|step| WITHIN_PX * step);
-        let is_within = |at: IVec2| reach.iter().all(|step| coverage.at(at + *step) >= 1.0);
-        let within: Vec<IVec2> = coverage.pixels().filter(|at| is_within(*at)).collect();
+        let within = within(coverage);
         let stride = within.len().div_ceil(MOST_PIXELS).max(1);
         let pixels = within.into_iter().step_by(stride);
         let pixels: Vec<(Surface, Color)> = pixels
@@ -397,6 +442,13 @@ impl Shaded<'_> {
     /// `None` if the toy does not cover the pixel's centre.
     pub(super) fn at(&self, at: IVec2) -> Option<Color> {
         self.seen.at(at).map(|surface| self.light.shade(&surface))
+    }
+
+    /// The toy's own colour there, whatever the light.
+    pub(super) fn color(&self, at: IVec2) -> Option<Color> {
+        self.seen
+            .at(at)
+            .map(|surface| surface.color.map(|channel| channel.max(DARKEST_PAINT)))
     }
 
     /// The point of the toy that a pixel's centre shows, where the toy was given, in camera space.

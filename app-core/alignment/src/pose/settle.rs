@@ -104,7 +104,7 @@ pub(super) struct Balance<'a> {
 struct Weighted {
     block: IVec2,
     row: Unknowns,
-    /// In pixels for the outline, as a logarithm for the texture.
+    /// In pixels for the outline, a difference of logarithms for the texture.
     residual: f64,
     weight: f64,
 }
@@ -249,7 +249,7 @@ impl Misfit {
         self.texture.is_some_and(|texture| texture.is_of_model())
     }
 
-    /// Logarithm of how much likelier the picture is with this outline and texture than with others.
+    /// Logarithm of the likelihood ratio of this outline and texture to others.
     pub(super) fn likelier_than(&self, other: &Self) -> f64 {
         // An outline that cannot be measured has no other information.
         let length_px = if other.length_px > 0.0 {

@@ -1,9 +1,11 @@
-//! The toy's own paint in the picture: where its texture and its creases lie, which an outline does not show.
+//! Fits the toy's own texture, which an outline does not show.
 //!
-//! Points of the surface carry the logarithm of the shaded model, as soft as the picture, and its gradient. Each step moves the points
-//! until the logarithms of the picture under them are the model's, but for one gain in each cell of the picture and in each channel:
-//! light that the model does not have changes slowly, a texture does not. Source: forward additive alignment with the template's own
-//! gradient, Baker and Matthews 2004, section 3.
+//! Points of the surface carry the logarithm of the shaded model, as soft as the picture, and the
+//! gradient of its paint alone: shading does not move with the surface. Each step moves the points
+//! until the logarithms of the picture under them are the model's, but for one gain in each cell
+//! of the picture and in each channel: light that the model does not have changes slowly, a
+//! texture does not. Source: Baker and Matthews 2004, section 3 (forward additive alignment), with
+//! the template's own gradient.
 
 use std::collections::BTreeMap;
 
@@ -41,8 +43,9 @@ const ROBUST: f64 = 3.0;
 const LEAST_DEVIATION: f64 = 0.01;
 /// Scale of the robust loss, as a logarithm.
 const LOSS_SCALE: f64 = 0.1;
-/// Area of the picture whose values err alike, in square pixels: it counts as one piece of evidence.
-const ALIKE_PX2: f64 = 200.0;
+/// Area of points whose values err alike, in square pixels, which counts as one piece of evidence: points lie along the edges of the
+/// texture, three pixels wide, and an outline counts once for 20 px.
+const ALIKE_PX2: f64 = 60.0;
 /// Correlation of model and picture within the cells, from which the model's paint is the toy's.
 const LEAST_CORRELATION: f64 = 0.5;
 /// Rounds of gains and weights.
@@ -73,7 +76,9 @@ struct Point {
     cell: usize,
     /// Logarithms of the shaded model.
     shown: Color,
-    /// Their gradients over the picture, in 1/px.
+    /// Logarithms of its paint.
+    paint: Color,
+    /// Gradients of these over the picture, in 1/px.
     gradients: [DVec2; 3],
 }
 
@@ -114,8 +119,14 @@ impl Likeness {
 impl Texture {
     /// Of a toy about where it is; none if it has no texture there.
     pub(super) fn new(shaded: &Shaded<'_>, level: &Level, coverage: &Coverage) -> Option<Self> {
-        let model = coverage.pixels().map(|at| shaded.at(at).unwrap_or(UNKNOWN));
-        let model = Picture::of(coverage.size_px, model.collect());
+        let of_toy = |color: &dyn Fn(IVec2) -> Option<Color>| {
+            let pixels = coverage.pixels().map(|at| color(at).unwrap_or(UNKNOWN));
+            Picture::of(coverage.size_px, pixels.collect())
+        };
+        let model = Template {
+            shown: of_toy(&|at| shaded.at(at)),
+            paint: of_toy(&|at| shaded.color(at)),
+        };
         let origin_px = coverage.origin_px - MARGIN_PX;
         let around = places(coverage.size_px + 2 * MARGIN_PX).map(|place| level.frame.get(origin_px + place));
         let unclipped = around.map(|color| {
@@ -125,9 +136,13 @@ impl Texture {
         });
         let frame = Picture::of(coverage.size_px + 2 * MARGIN_PX, unclipped.collect());
         let layer = |spread_px: &f64| {
-            let logs = |picture: &Picture| picture.spread(*spread_px).map(logarithms);
-            Layer::new(*spread_px, (logs(&model), shaded), coverage.origin_px).map(|points| Layer {
-                picture: logs(&frame),
+            Layer::new(
+                *spread_px,
+                (&model.logarithms(*spread_px), shaded),
+                coverage.origin_px,
+            )
+            .map(|points| Layer {
+                picture: logarithms(&frame, *spread_px),
                 origin_px,
                 ..points
             })
@@ -148,17 +163,33 @@ impl Texture {
     }
 }
 
-fn logarithms(color: Color) -> Color {
-    color.map(|value| (value.max(0.0) + FLOOR).ln())
+/// The model over the toy's pixels.
+struct Template {
+    shown: Picture,
+    paint: Picture,
+}
+
+impl Template {
+    fn logarithms(&self, spread_px: f64) -> Self {
+        Self {
+            shown: logarithms(&self.shown, spread_px),
+            paint: logarithms(&self.paint, spread_px),
+        }
+    }
+}
+
+fn logarithms(picture: &Picture, spread_px: f64) -> Picture {
+    let logarithm = |color: Color| color.map(|value| (value.max(0.0) + FLOOR).ln());
+    picture.spread(spread_px).map(logarithm)
 }
 
 impl Layer {
     /// Points with texture, and no picture yet; none if they are too few.
-    fn new(spread_px: f64, (model, shaded): (Picture, &Shaded<'_>), corner_px: IVec2) -> Option<Self> {
+    fn new(spread_px: f64, (model, shaded): (&Template, &Shaded<'_>), corner_px: IVec2) -> Option<Self> {
         #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
         let cell_px = (f64::from(CELL_PX) * spread_px.max(1.0)) as i32;
-        let mut points: Vec<(IVec2, Point)> = places(model.size_px)
-            .filter_map(|place| Some((place, point(&model, place, spread_px, shaded, corner_px)?)))
+        let mut points: Vec<(IVec2, Point)> = places(model.shown.size_px)
+            .filter_map(|place| Some((place, point(model, place, spread_px, shaded, corner_px)?)))
             .collect();
         let stride = points.len().div_ceil(MOST_POINTS).max(1);
         points = points.into_iter().step_by(stride).collect();
@@ -190,15 +221,15 @@ impl Layer {
 
 /// The point of the toy that a pixel of the model shows; none where it has no texture.
 fn point(
-    model: &Picture,
+    model: &Template,
     place: IVec2,
     spread_px: f64,
     shaded: &Shaded<'_>,
     corner_px: IVec2,
 ) -> Option<Point> {
-    let shown = model.get(place)?;
+    let (shown, paint) = (model.shown.get(place)?, model.paint.get(place)?);
     let [left, right, above, below] =
-        [IVec2::NEG_X, IVec2::X, IVec2::NEG_Y, IVec2::Y].map(|step| model.get(place + step));
+        [IVec2::NEG_X, IVec2::X, IVec2::NEG_Y, IVec2::Y].map(|step| model.paint.get(place + step));
     let (left, right, above, below) = (left?, right?, above?, below?);
     let gradients = [0, 1, 2].map(|channel| {
         let across = right[channel] - left[channel];
@@ -214,6 +245,7 @@ fn point(
         given: shaded.given(corner_px + place)?,
         cell: 0,
         shown,
+        paint,
         gradients,
     })
 }
@@ -341,7 +373,7 @@ impl<'a> Compared<'a> {
     }
 
     fn likeness(&self) -> Option<Likeness> {
-        let means_shown = self.means(|index, channel| f64::from(self.layer.points[index].shown[channel]));
+        let means = self.means(|index, channel| f64::from(self.layer.points[index].paint[channel]));
         let (mut loss, mut n) = (0.0, 0.0);
         let (mut of_both, mut of_model, mut of_picture) = (0.0, 0.0, 0.0);
         for (index, point) in self.layer.points.iter().enumerate() {
@@ -350,7 +382,7 @@ impl<'a> Compared<'a> {
             };
             for channel in 0..3 {
                 let weight = self.weights[index][channel];
-                let model = f64::from(point.shown[channel]) - means_shown[point.cell][channel];
+                let model = f64::from(point.paint[channel]) - means[point.cell][channel];
                 let picture = model + excess[channel];
                 loss += robust::loss(excess[channel].powi(2), LOSS_SCALE * LOSS_SCALE);
                 n += 1.0;
@@ -368,7 +400,7 @@ impl<'a> Compared<'a> {
     }
 }
 
-/// How much the logarithm of the model changes at a fixed place of the picture for each unknown, if the toy's point moves over a gradient.
+/// How much the logarithm of the paint changes at a fixed place of the picture for each unknown, if the toy's point moves over a gradient.
 fn change(placement: &Placement, given: DVec3, gradient: DVec2, k: &Intrinsics) -> Unknowns {
     let now = placement.apply(given);
     let depth_m = -now.z;

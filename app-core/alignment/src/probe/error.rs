@@ -21,7 +21,7 @@ pub enum ProbeError {
         height_px: u32,
     },
     /// The picture does not show the probe's front.
-    #[error("the probe is out of the picture, or seen from behind")]
+    #[error("the probe is outside the picture, or only its back is visible")]
     OutOfView,
     /// Too few pixels show the probe.
     #[error("the probe covers {n_pixels} pixels, too few for a direction: take the picture from nearer")]

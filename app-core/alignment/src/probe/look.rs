@@ -10,8 +10,9 @@ use app_scene::scene::Facet;
 
 /// Estimates the lights from a picture.
 ///
-/// # Errors When a value is invalid, the number of bytes does not fit the picture's size, or the
-/// probe is out of the picture, behind the camera, seen from behind or too small.
+/// # Errors
+/// When a value is invalid, the number of bytes does not fit the picture's size, or the probe is
+/// out of the picture, behind the camera, seen from behind or too small.
 pub fn look(view: &ProbeView<'_>, form: Form) -> Result<Sighting, ProbeError> {
     error::check(view)?;
     let surface = Surface::new(view);
@@ -43,7 +44,8 @@ pub fn look(view: &ProbeView<'_>, form: Form) -> Result<Sighting, ProbeError> {
 /// `None` if the pixel shows no lens, or the lens's centre, or if no facet of a lens could reflect
 /// that light.
 ///
-/// # Errors When a value is invalid.
+/// # Errors
+/// When a value is invalid.
 pub fn facet_at(
     view: &ProbeView<'_>,
     at_px: DVec2,

@@ -56,7 +56,8 @@ impl Track {
 
     /// Adds one more picture. If the probe is out of view, its lights stay.
     ///
-    /// # Errors When a value of the view is invalid; nothing changes then.
+    /// # Errors
+    /// When a value of the view is invalid; nothing changes then.
     pub fn look(&mut self, view: &ProbeView<'_>) -> Result<(), ProbeError> {
         let Sighting { lights, rejected } = match look(view, self.form) {
             Err(error) if error.is_out_of_view() => {
@@ -149,7 +150,8 @@ pub struct ProbeReport {
 impl ProbeReport {
     /// Evaluates the pictures of a probe, one after the other.
     ///
-    /// # Errors When a value of one is invalid.
+    /// # Errors
+    /// When a value of one is invalid.
     pub fn of(probe: &Probe) -> Result<Self, ProbeError> {
         let mut tracks = [Form::Exact, Form::Published].map(Track::new);
         for picture in &probe.pictures {

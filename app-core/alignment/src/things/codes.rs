@@ -1,14 +1,14 @@
-//! Pictures in sRGB codes, in which differences are about as large as they look.
+//! Pictures in sRGB codes, in which differences are roughly proportional to their visibility.
 
 use glam::IVec2;
 
 use crate::picture::{Color, Picture, index_in, places};
 use app_scene::geometry::color::srgb_from_linear;
 
-/// Two colours are unlike from so many codes on.
+/// Difference in codes from which two colours count as different.
 pub(super) const UNLIKE_CODES: f32 = 12.0;
 
-/// A picture in sRGB codes, 0 to 255; not a number where nothing is known.
+/// A picture in sRGB codes, 0 to 255; NaN where nothing is known.
 pub(super) struct Codes {
     pub(super) size_px: IVec2,
     pub(super) pixels: Vec<Color>,
@@ -40,7 +40,7 @@ pub(super) fn apart(a: Color, b: Color) -> f32 {
         .fold(0.0, f32::max)
 }
 
-/// How far a color is from another in less light, in codes.
+/// Distance of a colour from another in less light, in codes.
 pub(super) fn from_shaded(color: Color, lit: Color) -> f32 {
     let square: f32 = lit.iter().map(|code| code * code).sum();
     let product: f32 = lit.iter().zip(color).map(|(lit, code)| lit * code).sum();

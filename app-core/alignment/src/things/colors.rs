@@ -1,4 +1,4 @@
-//! How likely colours of the plate are a thing's, and how likely the receiver's.
+//! Likelihoods of the plate's colours as colours of an object, and of the receiver.
 
 use super::codes::Codes;
 use crate::median::median;
@@ -6,25 +6,25 @@ use crate::picture::Color;
 
 /// Bins along each channel.
 const SIDE: usize = 24;
-/// What a colour that was never seen counts as, of all that were.
+/// Share that is assumed for a colour that never occurred.
 const UNSEEN: f32 = 2e-5;
 
-/// How much rarer than what a place usually shows its rare colours are, as a log.
+/// Difference in frequency between a place's usual colours and its rare ones, as a logarithm.
 const RARE: f32 = 3.0;
 
 /// Histograms of both, blurred by a bin.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Colors {
-    /// Log of how much likelier a colour is a thing's; empty where nothing is known.
+    /// Log of a colour's likelihood ratio for an object; empty bins where nothing is known.
     likelier: Vec<f32>,
-    /// Parts of the place.
+    /// Shares of the place's colours.
     of_place: Vec<f32>,
-    /// The part that its median colour has.
+    /// The share of its median colour.
     usual: f32,
 }
 
 impl Colors {
-    /// Of colours of things, and of the place.
+    /// The model for colours of objects and of the place.
     pub(super) fn of(things: impl Iterator<Item = Color>, place: impl Iterator<Item = Color>) -> Self {
         let [things, receivers] = [histogram(things), histogram(place)];
         let (Some(things), Some(receivers)) = (things, receivers) else {
@@ -42,19 +42,20 @@ impl Colors {
         }
     }
 
-    /// The part of the place that is of a colour.
+    /// The share of a colour in the place.
     pub(super) fn part_of_place(&self, color: Color) -> f32 {
         bin(color)
             .and_then(|bin| self.of_place.get(bin).copied())
             .unwrap_or(0.0)
     }
 
-    /// How much rarer a colour is than the rare ones of the place, as a log; 0 for those and for all that are more common.
+    /// Logarithm by which a colour is rarer than the place's rare ones; 0 for those and for all
+    /// more frequent ones.
     pub(super) fn unusual(&self, color: Color) -> f32 {
         ((self.usual / (self.part_of_place(color) + UNSEEN)).ln() - RARE).max(0.0)
     }
 
-    /// Median over pixels of a picture; 0 where nothing is known of any.
+    /// Median over pixels of a picture; 0 if none of them is known.
     pub(super) fn median(&self, picture: &Codes, pixels: &[usize]) -> f32 {
         let likelier = pixels
             .iter()
@@ -62,13 +63,13 @@ impl Colors {
         median(likelier, f32::total_cmp).unwrap_or(0.0)
     }
 
-    /// None where a colour or its like is not known.
+    /// `None` if neither the colour nor a similar one is known.
     pub(super) fn likelier(&self, color: Color) -> Option<f32> {
         self.likelier.get(bin(color)?).copied()
     }
 }
 
-/// Of sorted parts of 1: that below which half of the whole lies.
+/// For sorted shares of 1: the share below which half of the total lies.
 fn weighted_median(sorted: &[f32]) -> f32 {
     let half = 0.5 * sorted.iter().sum::<f32>();
     let mut sum = 0.0;
@@ -95,7 +96,7 @@ fn bin(color: Color) -> Option<usize> {
     Some((along[0] * SIDE + along[1]) * SIDE + along[2])
 }
 
-/// Parts of 1; none of no colours.
+/// Shares of 1; `None` without any colour.
 fn histogram(colors: impl Iterator<Item = Color>) -> Option<Vec<f32>> {
     let mut bins = vec![0.0_f32; SIDE * SIDE * SIDE];
     let mut n_pixels = 0.0;
@@ -112,7 +113,7 @@ fn histogram(colors: impl Iterator<Item = Color>) -> Option<Vec<f32>> {
     Some(bins.into_iter().map(|bin| bin / n_pixels).collect())
 }
 
-/// By a binomial of three along one channel.
+/// Blur by a binomial of three along one channel.
 fn blurred(bins: &[f32], stride: usize) -> Vec<f32> {
     let along = |bin: usize| bin / stride % SIDE;
     let before = |bin: usize| {

@@ -1,4 +1,4 @@
-//! Pixels that hang together.
+//! Connected pixels.
 
 use glam::IVec2;
 
@@ -7,7 +7,7 @@ use crate::picture::index_in;
 /// Neighbours of a pixel.
 pub(super) const STEPS: [IVec2; 4] = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
 
-/// Indices of pixels that hang together.
+/// Indices of connected pixels.
 pub(super) fn groups(size_px: IVec2, is_in: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
     let n_pixels = (size_px.x * size_px.y) as usize;
     let mut is_known = vec![false; n_pixels];
@@ -37,13 +37,13 @@ pub(super) fn groups(size_px: IVec2, is_in: impl Fn(usize) -> bool) -> Vec<Vec<u
     groups
 }
 
-/// Whether most of the nine pixels around one, itself among them, are so.
+/// Whether most of the nine pixels around one, including itself, have a property.
 pub(super) fn most_around(at: IVec2, is_so: impl Fn(IVec2) -> bool) -> bool {
     let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| at + IVec2::new(x, y)));
     around.filter(|at| is_so(*at)).count() >= 5
 }
 
-/// The place of a pixel by its index.
+/// The position of a pixel with an index.
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_possible_wrap,

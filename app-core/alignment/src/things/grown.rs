@@ -17,6 +17,9 @@ use crate::picture::{bilinear, index_in, places};
 const OF_STEP: f32 = 0.3;
 const OF_CODE: f32 = 1.0 / 6.0;
 const OF_COLOR: f32 = 0.4;
+/// Colours that are so much likelier a thing's, as a log, are its own; a change between two of them costs that part.
+const OWN: f32 = 1.5;
+const WITHIN: f32 = 0.15;
 /// A colour is the place's if it is so much likelier that than a thing's, as a log; of most pixels within some of it.
 const LIKE_PLACE: f32 = 0.5;
 const AROUND_PX: i32 = 2;
@@ -70,6 +73,11 @@ impl Grown {
     /// Whether a place in pixels is in the colours of the place that things stand on, such as the shadow of one.
     pub(super) fn is_like_place(&self, place: DVec2) -> bool {
         index_in(self.size_px, place.floor().as_ivec2()).is_some_and(|index| self.is_like_place[index])
+    }
+
+    /// Index of the pixel at a place in pixels.
+    pub(super) fn index(&self, place: DVec2) -> Option<usize> {
+        index_in(self.size_px, place.floor().as_ivec2())
     }
 
     pub(super) fn n_things(&self) -> usize {
@@ -174,7 +182,12 @@ fn cost((plate, colors): (&Codes, &Colors), [from, to]: [usize; 2], of: Seed) ->
         Seed::Receiver => colors.unusual(b),
         _ => -colors.likelier(b).unwrap_or(0.0),
     };
-    OF_STEP + OF_CODE * apart(a, b) + OF_COLOR * against.max(0.0)
+    // A thing may have a pattern: edges between colours that are its own are none of its outline.
+    let of_code = match (of, colors.likelier(a), colors.likelier(b)) {
+        (Seed::Thing, Some(from), Some(to)) if from.min(to) > OWN => WITHIN * OF_CODE,
+        _ => OF_CODE,
+    };
+    OF_STEP + of_code * apart(a, b) + OF_COLOR * against.max(0.0)
 }
 
 /// Distances as whole numbers, which can be ordered.

@@ -8,9 +8,12 @@
 
 mod codes;
 mod colors;
+mod extent;
 mod groups;
 mod grown;
+pub(crate) mod planes;
 mod seeds;
+mod simplex;
 
 use glam::{DMat4, DVec2, IVec2};
 
@@ -18,14 +21,15 @@ use crate::lights::Compared;
 use crate::picture::{Color, Level, Mask, Pyramid, index_in, places};
 use crate::pose::Paint;
 use crate::raster::{Coverage, Rasterizer, project};
-use crate::receivers::SeenReceiver;
+use crate::receivers::{SeenReceiver, receiver_at};
 use crate::shape::Shape;
 use app_scene::geometry::color::srgb_from_linear;
-use app_scene::scene::Light;
+use app_scene::scene::{Light, MAX_RECEIVERS};
 use app_scene::things::Mark;
 use codes::{Codes, UNLIKE_CODES, apart, from_shaded};
 use groups::{groups, most_around, place_of};
 use grown::Grown;
+use planes::FoundPlane;
 use seeds::{Seed, Seeds};
 
 /// Pixels of the level on which things are looked for, at most: more tell no more and take longer.
@@ -43,6 +47,8 @@ const LEAST_ALONE: usize = 60;
 const LEAST_IN_FRAME: usize = 12;
 /// And that part of where it would be before the toy.
 const PART_BEFORE: f32 = 0.04;
+/// Of the pixels that are of a thing and show a receiver, fewer are seeds where it is the receiver's own surface.
+const OF_PLANE: f32 = 0.1;
 /// What a plate shows differs from the model by as much around what is wrong in it, in plates; it is wrong for some pixels more.
 const DIFFERS: f32 = 0.05;
 const WRONG_PX: i32 = 2;
@@ -55,10 +61,21 @@ pub(crate) struct Sight<'a> {
     pub(crate) pyramid: &'a Pyramid,
     pub(crate) lights: &'a [Light],
     pub(crate) world_from_camera: &'a DMat4,
+    /// Whether planes of things are looked for.
+    pub(crate) wants_planes: bool,
 }
 
-/// Marks of the pixels of the largest level; none where nothing stands beside the toy, or nothing tells.
-pub(crate) fn find(sight: &Sight<'_>) -> Option<(IVec2, Vec<Mark>)> {
+/// What stands beside the toy.
+pub(crate) struct Sighting {
+    /// Of the pixels of the largest level.
+    pub(crate) size_px: IVec2,
+    pub(crate) marks: Vec<Mark>,
+    /// Planes that things have, where these are wanted.
+    pub(crate) planes: Vec<FoundPlane>,
+}
+
+/// None where nothing stands beside the toy, or nothing tells.
+pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
     let level = sight.level();
     let plate = Codes::of(level.plate.as_ref()?);
     let frame = Codes::of(&level.frame);
@@ -69,24 +86,39 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<(IVec2, Vec<Mark>)> {
         sight.world_from_camera,
     )?;
     let toy = Toy::of(sight, level);
-    let seeds = Seeds::found(&compared, toy.hidden(&frame, &plate), (&frame, &plate));
+    let seeds = Seeds::found(&compared.pixels, toy.hidden(&frame, &plate), (&frame, &plate));
     let grown = Grown::from(&seeds, Seed::Thing, &plate);
     let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
-    let in_frame = toy.before_in_frame(&seeds, &frame);
+    let in_frame = toy.in_frame(&seeds, &frame);
     if grown.is_none() && wrong.is_none() && in_frame.is_none() {
         return None;
     }
     let before = grown
         .as_ref()
         .map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
-    let wrong = wrong.map(|wrong| wrong_plate(&wrong, &toy, level.frame.size_px, &compared));
+    let planes = match &grown {
+        Some(grown) if sight.wants_planes => {
+            planes::find((sight.shape, sight.receivers), level, &compared, grown)
+        }
+        _ => Vec::new(),
+    };
+    let wrong = wrong.map(|wrong| wrong_plate(&wrong, &toy, level.frame.size_px, &compared.pixels));
+    let on_planes = grown.as_ref().map_or(Vec::new(), |grown| {
+        sight.on_planes((grown, &seeds), level, &before)
+    });
     let found = Found {
+        on_planes,
         grown,
         before,
         wrong,
         in_frame,
     };
-    Some(sight.marks(level, &found))
+    let (size_px, marks) = sight.marks(level, &found);
+    Some(Sighting {
+        size_px,
+        marks,
+        planes,
+    })
 }
 
 /// What is found in a level.
@@ -94,10 +126,12 @@ struct Found {
     /// Things that plate and frame show, and of each whether it is before the toy.
     grown: Option<Grown>,
     before: Vec<bool>,
+    /// Of each pixel whether it is of a thing, but shows a receiver that is no part of it.
+    on_planes: Vec<bool>,
     /// Where the plate is wrong.
     wrong: Option<Mask>,
-    /// Things before the toy that the frame alone shows, such as a hand.
-    in_frame: Option<(Grown, Vec<bool>)>,
+    /// Things that the frame alone shows, such as a hand.
+    in_frame: Option<InFrame>,
 }
 
 impl Found {
@@ -107,7 +141,13 @@ impl Found {
             .grown
             .as_ref()
             .and_then(|grown| Some((grown, grown.at(place)?)));
+        let is_on_plane = thing.is_some_and(|(grown, _)| {
+            grown
+                .index(place)
+                .is_some_and(|index| self.on_planes.get(index).is_some_and(|is_on| *is_on))
+        });
         match thing {
+            Some(_) if is_on_plane => Mark::None,
             Some((grown, thing)) if self.before[thing] && !grown.is_like_place(place) => Mark::BeforeToy,
             Some((grown, thing)) if self.before[thing] || grown.n_seeds(thing) >= LEAST_ALONE => Mark::Thing,
             _ if self
@@ -121,10 +161,19 @@ impl Found {
         }
     }
 
-    fn is_before_in_frame(&self, place: DVec2) -> bool {
-        let grown = self.in_frame.as_ref();
-        grown.is_some_and(|(grown, before)| grown.at(place).is_some_and(|thing| before[thing]))
+    /// The same of what the frame alone shows.
+    fn in_frame_at(&self, place: DVec2) -> Mark {
+        let in_frame = self.in_frame.as_ref();
+        let thing = in_frame.and_then(|in_frame| Some(in_frame.marks[in_frame.grown.at(place)?]));
+        thing.unwrap_or_default()
     }
+}
+
+/// Things that the frame alone shows.
+struct InFrame {
+    grown: Grown,
+    /// Of each thing: before the toy, beside it, or none.
+    marks: Vec<Mark>,
 }
 
 /// Where a level's plate is wrong: all that hangs together with seeds and differs from the model, and where the toy hides it what it grew to.
@@ -172,6 +221,32 @@ impl Sight<'_> {
             .unwrap_or(self.pyramid.level(Pyramid::SMALLEST))
     }
 
+    /// Of each pixel of a level whether it is of a thing and shows another receiver than the thing stands on, where the thing has hardly
+    /// a seed: such as the top of a book that is a receiver, while its sides are none.
+    fn on_planes(&self, (grown, seeds): (&Grown, &Seeds), level: &Level, before: &[bool]) -> Vec<bool> {
+        let mut counts = vec![[[0; 2]; MAX_RECEIVERS]; before.len()];
+        let pixels: Vec<Option<(usize, usize)>> = places(level.frame.size_px)
+            .map(|at| {
+                let thing = grown.of_pixel(at)?;
+                let (on, _) = receiver_at(self.receivers, &level.intrinsics, at)?;
+                let [n_seeds, n] = &mut counts[thing][on];
+                *n += 1;
+                *n_seeds += usize::from(seeds.get(at) == Seed::Thing);
+                Some((thing, on))
+            })
+            .collect();
+        let stands_on = |thing: usize| (0..MAX_RECEIVERS).max_by_key(|on| counts[thing][*on][0]);
+        let stands_on: Vec<Option<usize>> = (0..before.len()).map(stands_on).collect();
+        let is_of_receiver = |(thing, on): (usize, usize)| {
+            let [n_seeds, n] = counts[thing][on];
+            stands_on[thing] != Some(on) && (n_seeds as f32) < OF_PLANE * n as f32
+        };
+        pixels
+            .into_iter()
+            .map(|pixel| pixel.is_some_and(is_of_receiver))
+            .collect()
+    }
+
     /// In the largest level.
     fn marks(&self, level: &Level, found: &Found) -> (IVec2, Vec<Mark>) {
         let largest = self.pyramid.level(0);
@@ -190,13 +265,13 @@ impl Sight<'_> {
             };
             match found.at(there) {
                 Mark::BeforeToy if toy.shows(at, frame, plate) => Mark::None,
-                Mark::None if found.is_before_in_frame(there) && !toy.is_shown(at, frame) => {
-                    if is_shade(at, frame, plate) {
-                        Mark::Thing
-                    } else {
-                        Mark::BeforeToy
-                    }
-                }
+                Mark::None => match found.in_frame_at(there) {
+                    Mark::BeforeToy if toy.is_shown(at, frame) => Mark::None,
+                    Mark::BeforeToy if !is_shade(at, frame, plate) => Mark::BeforeToy,
+                    Mark::Thing if toy.coverage.at(at) > 0.0 || is_shade(at, frame, plate) => Mark::None,
+                    Mark::BeforeToy | Mark::Thing => Mark::Thing,
+                    mark => mark,
+                },
                 mark => mark,
             }
         };
@@ -261,9 +336,9 @@ impl Toy {
         self.coverage.at(at) > 0.0 && most_around(at, |at| self.is_as_expected(at, frame))
     }
 
-    /// Things before the toy that a level's frame alone shows, of each whether it is one: none where no such thing is seen beside the toy,
-    /// or where the toy does not look otherwise than it should. `seeds` are of the plate.
-    fn before_in_frame(&self, seeds: &Seeds, frame: &Codes) -> Option<(Grown, Vec<bool>)> {
+    /// Things that a level's frame alone shows: before the toy if they are seen beside it and the toy does not look as it should, and
+    /// beside it if they are large. `None` without either. `seeds` are those of the plate.
+    fn in_frame(&self, seeds: &Seeds, frame: &Codes) -> Option<InFrame> {
         let within: Vec<IVec2> = self.coverage.pixels().filter(|at| self.is_within(*at)).collect();
         let as_expected = within
             .iter()
@@ -278,10 +353,23 @@ impl Toy {
                 hidden[thing] += 1;
             }
         }
-        let is_before =
-            |thing: usize| hidden[thing] >= LEAST_IN_FRAME && grown.n_seeds(thing) >= LEAST_BESIDE;
-        let before: Vec<bool> = (0..grown.n_things()).map(is_before).collect();
-        before.contains(&true).then_some((grown, before))
+        if std::env::var("THINGS").is_ok() {
+            for thing in 0..grown.n_things() {
+                eprintln!(
+                    "THINGS in frame {thing}: hidden {} seeds {}",
+                    hidden[thing],
+                    grown.n_seeds(thing)
+                );
+            }
+        }
+        let mark = |thing: usize| match (hidden[thing], grown.n_seeds(thing)) {
+            (LEAST_IN_FRAME.., LEAST_BESIDE..) => Mark::BeforeToy,
+            (_, LEAST_ALONE..) => Mark::Thing,
+            _ => Mark::None,
+        };
+        let marks: Vec<Mark> = (0..grown.n_things()).map(mark).collect();
+        let has_any = marks.iter().any(|mark| *mark != Mark::None);
+        has_any.then_some(InFrame { grown, marks })
     }
 
     /// For each thing of a level, whether it is before the toy.

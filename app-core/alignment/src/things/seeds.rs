@@ -24,6 +24,9 @@ const LEAST_LIGHT: f32 = 0.05;
 /// An open pixel shows a receiver if its colour is so much likelier the place's than a thing's, as a log, and that part of the place is of it.
 const LIKE_PLACE: f32 = 1.5;
 const COMMON: f32 = 0.02;
+/// What looks like a receiver is none if its colour is so much likelier a thing's, as a log; told in so many rounds.
+const LIKE_THING: f32 = 1.0;
+const N_DROPS: usize = 3;
 /// A group is of what the plate alone shows, if the frame's colours there are no likelier a thing's, as a log.
 const OF_PLACE: f32 = 1.0;
 /// And of what the frame alone shows, if the plate's are no likelier and the frame's are likelier by so much; skin is like wood.
@@ -151,6 +154,27 @@ impl Seeds {
             }
         }
         self.colors = self.colors_against(&self.of(Seed::Receiver), plate);
+        self.drop_like_things(plate);
+    }
+
+    /// Leaves receivers whose colours in the plate are not a thing's: where a shadow on a thing falls together with the one that the
+    /// receiver would catch, the thing looks like the receiver.
+    fn drop_like_things(&mut self, plate: &Codes) {
+        for _ in 0..N_DROPS {
+            let is_like_thing = |index: usize| {
+                let likelier = self.colors[0].likelier(plate.pixels[index]);
+                likelier.is_some_and(|likelier| likelier > LIKE_THING)
+            };
+            let dropped: Vec<usize> = self
+                .of(Seed::Receiver)
+                .into_iter()
+                .filter(|index| is_like_thing(*index))
+                .collect();
+            for index in dropped {
+                self.seeds[index] = Seed::None;
+            }
+            self.colors = self.colors_against(&self.of(Seed::Receiver), plate);
+        }
     }
 
     /// Of things, and of what the plate alone shows, against some pixels of the place.

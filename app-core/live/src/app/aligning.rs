@@ -10,6 +10,7 @@ use app_alignment::pose_filter::{PoseFilter, PoseNoise};
 use app_alignment::{AlignError, Aligner, Alignment};
 use app_scene::camera_frame::Anchor;
 use app_scene::frame::FrameInput;
+use app_scene::reflection::Reflection;
 use app_scene::scene::{Camera, Light, Scene};
 use app_scene::things::Things;
 
@@ -113,6 +114,7 @@ pub(super) struct Place {
     world_from_object: DMat4,
     lights: Option<Arc<[Light]>>,
     things: Option<Things>,
+    reflection: Option<Reflection>,
     pub(super) verdict: Option<Verdict>,
 }
 
@@ -130,6 +132,7 @@ impl Place {
             world_from_object: scene.world_from_object,
             lights: None,
             things: None,
+            reflection: None,
             verdict: None,
             scene,
         }
@@ -176,6 +179,7 @@ impl Place {
             .with_world_from_object(self.world_from_object)
             .with_lights(self.lights.clone())
             .with_things(self.things.clone())
+            .with_reflection(self.reflection)
     }
 
     /// An alignment of `input`, where it is time for one.
@@ -241,6 +245,7 @@ impl Place {
         self.world_from_object = alignment.world_from_object;
         self.lights = alignment.lights;
         self.things = alignment.things;
+        self.reflection = alignment.reflection;
         // What an alignment told that missed the toy counts from here on, too.
         self.scene = Arc::clone(aligner.scene());
         self.verdict = Some(verdict);

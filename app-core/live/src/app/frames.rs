@@ -8,8 +8,8 @@ use super::event::{PlatformCommand, ShellCommand, Thermal, WorkCommand};
 use super::ghost::Ghost;
 use super::notice::Notice;
 use super::step::{Cause, Step};
-use super::table::as_told_now;
-use app_scene::camera_frame::{Arrival, CameraFrame, Tracking};
+use super::table::{as_told_now, beside};
+use app_scene::camera_frame::{Arrival, CameraFrame, FoundPlane, Tracking};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Receiver, Scene, Surface};
 
@@ -116,16 +116,26 @@ impl App {
             Some(ghost) => *ghost,
             None => Ghost::standing(&self.toy, table, &table.world_from_plane)?,
         };
+        let others = beside(table, &latest.planes, &ghost.world_from_object(), &self.toy);
+        let receiver = |(index, plane): (usize, &FoundPlane)| Receiver {
+            name: if index == 0 {
+                "table".to_owned()
+            } else {
+                format!("plane {index}")
+            },
+            world_from_plane: plane.world_from_plane,
+            half_extent_m: plane.half_extent_m,
+            surface: Surface::Textured,
+        };
         let scene = Scene::new(
             latest.image.size_px(),
             Arc::clone(&self.toy),
             ghost.world_from_object(),
-            vec![Receiver {
-                name: "table".to_owned(),
-                world_from_plane: table.world_from_plane,
-                half_extent_m: table.half_extent_m,
-                surface: Surface::Textured,
-            }],
+            std::iter::once(table)
+                .chain(others)
+                .enumerate()
+                .map(receiver)
+                .collect(),
         );
         Some(scene.with_plates(self.plates.clone()))
     }

@@ -1,37 +1,40 @@
-//! What is kept from start to start: starts that came to no end, and the device that draws what it should.
+//! The stored history of starts: unfinished ones, and the device that passed the self-test.
 
-/// Unfinished starts in a row after which the app starts with the simplest preset.
+/// Number of successive unfinished starts after which the app starts with the simplest preset.
 pub const MAX_FAILED_LAUNCHES: u32 = 2;
-/// Pictures of the moving toy after which a start is a good one.
+/// Number of pictures of the moving toy after which a start counts as good.
 pub const N_GOOD_FRAMES: u32 = 60;
 
-/// What the shell keeps from start to start, as a text of some lines.
+/// The values that the shell stores between starts, as a text of a few lines.
 ///
-/// It is read, [begun](LaunchHistory::begin) and stored again before the graphics device is opened, then handed to the app
-/// ([`ShellEvent::Started`](super::ShellEvent::Started)), which asks for it to be stored whenever it changes.
+/// It is read, [begun](LaunchHistory::begin) and stored again before the graphics device is opened,
+/// then passed to the app ([`ShellEvent::Started`](super::ShellEvent::Started)), which requests its
+/// storage after every change.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LaunchHistory {
-    /// Starts in a row that did not come to an end, with the one under way.
+    /// Number of successive unfinished starts, including the present one.
     pub(super) n_unfinished: u32,
-    /// So many had not that the simplest preset is used, until the person wants another.
+    /// Whether the simplest preset is used because of unfinished starts, until the person wants
+    /// another.
     pub(super) is_simple: bool,
-    /// The device that drew its test picture as it should, with its driver.
+    /// The device that passed the self-test, with its driver.
     pub(super) passed: Option<String>,
-    /// Of a package for engineers, who stop the app at will: nothing counts, and nothing falls back. Not kept.
+    /// Whether the package is one for engineers, who stop the app at will: no start counts, and
+    /// nothing falls back. Not stored.
     pub(super) is_first_phone: bool,
 }
 
-/// Why the app uses the simplest preset.
+/// The reason why the app uses the simplest preset.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Simplified {
-    /// The app came to no end several times.
+    /// Several starts were unfinished.
     FailedLaunches,
-    /// The device does not draw what it should, and what is wrong.
+    /// The device draws incorrectly; with a description.
     SelfTest(String),
 }
 
 impl LaunchHistory {
-    /// What was kept. Lines that mean nothing are skipped, so that no file can keep an app from starting.
+    /// Reads a stored text. Invalid lines are skipped, so that no file can prevent a start.
     #[must_use]
     pub fn read(text: &str) -> Self {
         let mut history = Self::default();
@@ -46,7 +49,7 @@ impl LaunchHistory {
         history
     }
 
-    /// What is to be kept.
+    /// The text to be stored.
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = format!("unfinished {}\n", self.n_unfinished);
@@ -59,8 +62,8 @@ impl LaunchHistory {
         text
     }
 
-    /// As a package for engineers takes it: starts that end early do not count, the test picture is drawn by each, and nothing falls back
-    /// to the simplest preset by itself.
+    /// The history in a package for engineers: unfinished starts do not count, every start draws
+    /// the test picture, and nothing falls back to the simplest preset by itself.
     #[must_use]
     pub fn for_engineers(self) -> Self {
         Self {
@@ -71,13 +74,14 @@ impl LaunchHistory {
         }
     }
 
-    /// Whether this start is the first since one that came to an end: what an earlier one has left behind can be trusted.
+    /// Whether this start is the first since a finished one, so that an earlier one's data can be
+    /// trusted.
     #[must_use]
     pub fn is_first_try(&self) -> bool {
         self.n_unfinished <= 1
     }
 
-    /// Another start begins, which is to be stored before anything is done that may end it.
+    /// Records the beginning of another start, to be stored before anything that may end it.
     pub fn begin(&mut self) {
         if self.is_first_phone {
             return;

@@ -1,6 +1,8 @@
-//! Pictures of the lens that lies on the card: the camera is darkened for a moment, so that little but lights is bright on it.
+//! Pictures of the lens on the card: the camera is darkened for a moment, so that little more than
+//! lights is bright on it.
 //!
-//! Each picture is from where the phone is: several tell how far away a light is. What they tell is where alignment looks first.
+//! Each picture is taken from the phone's present position: several constrain the distance of a
+//! light. Alignment starts its search at the resulting lights.
 
 use glam::DMat4;
 
@@ -12,24 +14,24 @@ use app_scene::camera_frame::CameraFrame;
 use app_scene::card::{card_from_lens, lens_shape};
 use app_scene::scene::{Probe, ProbePicture};
 
-/// A picture is dark with no more than this part of the exposure that was held.
+/// Largest share of the held exposure at which a picture counts as dark.
 const DARK: f64 = 0.125;
-/// A camera has so long to become dark, in seconds.
+/// Time within which a camera must become dark, in seconds.
 const PATIENCE_S: f64 = 2.0;
-/// Pictures that are kept: the latest.
+/// Number of kept pictures, the latest ones.
 const N_PICTURES: usize = 8;
 
-/// A dark picture that is waited for.
+/// A dark picture that is awaited.
 #[derive(Clone, Copy, Debug)]
 struct Awaited {
     since_s: f64,
-    /// Where the card was when it was last seen: a dark picture does not show it.
+    /// Pose of the card when it was last visible: a dark picture does not show it.
     world_from_card: DMat4,
-    /// Seconds at ISO 100.
+    /// Held exposure, in seconds at ISO 100.
     held_exposure: f64,
 }
 
-/// What was taken of the lens.
+/// The pictures of the lens.
 #[derive(Debug, Default)]
 pub(super) struct Lens {
     awaited: Option<Awaited>,
@@ -37,17 +39,17 @@ pub(super) struct Lens {
 }
 
 impl Lens {
-    /// Whether a dark picture is waited for.
+    /// Whether a dark picture is awaited.
     pub(super) fn is_awaited(&self) -> bool {
         self.awaited.is_some()
     }
 
-    /// Waits no longer.
+    /// Ends the wait.
     pub(super) fn give_up(&mut self) {
         self.awaited = None;
     }
 
-    /// What a scene has of it.
+    /// The lens as a scene's probe.
     pub(super) fn probe(&self) -> Option<Probe> {
         (!self.pictures.is_empty()).then(|| Probe {
             shape: lens_shape(),
@@ -55,7 +57,7 @@ impl Lens {
         })
     }
 
-    /// Keeps a picture, and tells how many lights all show together.
+    /// Keeps a picture, and returns the number of lights that all pictures show together.
     fn keep(&mut self, picture: ProbePicture) -> Result<usize, LensFailure> {
         let mut pictures = self.pictures.clone();
         pictures.push(picture);
@@ -79,7 +81,7 @@ impl Lens {
 }
 
 impl App {
-    /// A person wants the lens to be photographed.
+    /// Starts a photograph of the lens, for a person.
     pub(super) fn take_lens(&mut self) {
         let Some(frame) = self.latest.as_ref().filter(|_| self.step == Step::PlaceToy) else {
             return;
@@ -97,7 +99,7 @@ impl App {
         });
     }
 
-    /// Takes a frame for a picture of the lens, where one is waited for and it is dark.
+    /// Uses a frame as a picture of the lens, if one is awaited and the frame is dark.
     pub(super) fn offer_lens(&mut self, frame: &CameraFrame) {
         let Some(awaited) = self.lens.awaited else { return };
         let amount = frame.exposure.and_then(|exposure| exposure.amount());

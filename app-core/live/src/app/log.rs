@@ -1,9 +1,9 @@
-//! What happened, for an export: the latest lines alone.
+//! The log for an export: only the latest lines.
 
 use std::collections::VecDeque;
 use std::fmt::Write;
 
-/// Lines that are kept.
+/// Number of kept lines.
 const N_LINES: usize = 512;
 
 /// A ring of lines.
@@ -14,7 +14,7 @@ pub struct Log {
 }
 
 impl Log {
-    /// Keeps a line with its time, in seconds since the first frame.
+    /// Stores a line with its time, in seconds since the first frame.
     pub(super) fn line(&mut self, time_s: f64, what: &dyn std::fmt::Debug) {
         if self.lines.len() == N_LINES {
             self.lines.pop_front();
@@ -23,13 +23,13 @@ impl Log {
         self.lines.push_back(format!("{time_s:10.3} {what:?}"));
     }
 
-    /// Lines that were written so far.
+    /// Number of lines written so far.
     #[must_use]
     pub fn n_lines(&self) -> u64 {
         self.n_dropped + self.lines.len() as u64
     }
 
-    /// All of it, the oldest line first.
+    /// The whole log, the oldest line first.
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = String::new();

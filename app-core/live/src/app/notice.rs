@@ -1,39 +1,39 @@
-//! What a person should hear of, for some seconds.
+//! Notices for the person, which are shown for some seconds.
 
 use super::event::{Recorded, Saved};
 use super::launch_history::Simplified;
 
-/// How long it stands, in seconds.
+/// Duration of a notice, in seconds.
 const SHOWN_S: f64 = 6.0;
 
-/// Why the lens was not photographed.
+/// The reason why the lens was not photographed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LensFailure {
-    /// The camera cannot be darkened, or does not tell.
+    /// The camera cannot be darkened, or does not report its exposure.
     NotDark,
-    /// No light is seen on it.
+    /// No light is visible on it.
     NoLight,
-    /// It is not in the picture, or the picture makes no sense.
+    /// It is not in the picture, or the picture is unusable.
     NotSeen,
 }
 
-/// What a person should hear of.
+/// A notice for the person.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Notice {
     /// There is no table where the person tapped.
     NoTableThere,
-    /// The toy is not where its ghost is: so many pixels, where that is known.
+    /// The toy is not at its ghost's place; with the distance, if it is known.
     ToyMissed {
-        /// Outline to picture.
+        /// Distance from the outline to the picture, in pixels.
         outline_px: Option<f64>,
     },
-    /// The lens was photographed, and shows so many lights.
+    /// The lens was photographed and shows this number of lights.
     LensTaken(usize),
-    /// It was not, and why.
+    /// It was not photographed; with the reason.
     LensFailed(LensFailure),
-    /// This phone does not look for the printed card.
+    /// This phone does not detect the printed card.
     CardRefused,
-    /// A file is no toy, and why.
+    /// A file is not a toy; with the reason.
     ToyRefused(String),
     /// The tracker has lost the place.
     WorldLost,
@@ -41,21 +41,22 @@ pub enum Notice {
     DeviceRestarted,
     /// A panic ended the app, and it began anew.
     Restarted,
-    /// A photo, a video or what is to be shared.
+    /// A photo, a video or a shared file was saved.
     Saved(Saved),
     /// A recording has ended.
     Recorded(Recorded),
     /// A recording has ended without a frame.
     NothingRecorded,
-    /// Frames come faster than they are written: the recording lacks some.
+    /// Frames arrive faster than they are written: the recording lacks some.
     RecordingDrops,
     /// A recording cannot begin.
     NoRoomToRecord,
-    /// Memory is short: what was being kept was ended.
+    /// Memory is short: the video or recording was ended.
     MemoryLow,
-    /// The questions of a new phone were answered, so many by yes.
+    /// The questions for a new phone were answered.
     PhoneChecked {
-        /// Of [`PhoneQuestion::ALL`](super::PhoneQuestion::ALL).
+        /// Number of those of [`PhoneQuestion::ALL`](super::PhoneQuestion::ALL) that were answered
+        /// with yes.
         n_yes: usize,
     },
     /// The simplest preset is used.

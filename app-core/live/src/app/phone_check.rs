@@ -1,4 +1,5 @@
-//! The first phone: what only looking at a screen can tell, as questions over the camera's picture that are answered by yes or no.
+//! The first phone: tests that need a person's eyes, as questions over the camera's picture that
+//! are answered with yes or no.
 
 use glam::{DMat4, DVec2, DVec3};
 
@@ -10,24 +11,24 @@ use app_scene::camera_frame::CameraFrame;
 use app_scene::card::PATTERN_M;
 use app_scene::scene::Camera;
 
-/// What is asked, in its order.
+/// The questions, in their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PhoneQuestion {
-    /// Arrows along the world's axes stand on the table and stay.
+    /// Arrows along the world's axes stand on the table and do not move.
     Axes,
-    /// They do while the phone is turned about its line of sight.
+    /// They do not move while the phone is turned about its line of sight.
     Turned,
     /// The outline of the printed pattern lies on its edge.
     Square,
-    /// White is white, black is black, neither is tinted.
+    /// White is white, black is black, and neither is tinted.
     Greys,
     /// Colours are those of the phone's own camera app.
     Colours,
     /// The picture is upright, not stretched, not mirrored.
     Upright,
-    /// A line of ten centimetres is as long.
+    /// A drawn line of ten centimetres has that length.
     Ruler,
-    /// Less than a tenth of a second from the camera to the screen.
+    /// The delay from the camera to the screen is less than a tenth of a second.
     Delay,
     /// Exposure is held.
     Held,
@@ -36,7 +37,7 @@ pub enum PhoneQuestion {
 }
 
 impl PhoneQuestion {
-    /// All of them.
+    /// All questions.
     pub const ALL: [Self; 10] = [
         Self::Axes,
         Self::Turned,
@@ -51,7 +52,7 @@ impl PhoneQuestion {
     ];
 }
 
-/// What a line over the picture shows.
+/// The meaning of a line over the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CheckInk {
     /// +X of the world.
@@ -64,22 +65,24 @@ pub enum CheckInk {
     Measure,
 }
 
-/// Questions under way.
+/// Questions in progress.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PhoneCheck {
     n_answered: usize,
     n_yes: usize,
-    /// On the table, found where the picture shows it at [`PLACE`].
+    /// A place on the table, found at the position [`PLACE`] of the picture.
     world_from_place: Option<DMat4>,
 }
 
-/// Where arrows and ruler stand in the picture at first, as parts of its width and height: beside what a sheet covers.
+/// First position of arrows and ruler in the picture, as shares of its width and height: beside the
+/// area that a sheet covers.
 const PLACE: DVec2 = DVec2::new(0.35, 0.55);
 /// Length of arrows and of the ruler, in metres.
 const LENGTH_M: f64 = 0.1;
-/// An arrow's head, as a part of its length along it and to either side.
+/// An arrow's head, as shares of the arrow's length along it and to either side.
 const HEAD: [f64; 2] = [0.15, 0.06];
-/// Marks of the ruler: how many, and how far they reach to either side, in metres, the first and the last farther.
+/// Number of marks of the ruler, and their length to either side, in metres; the first and the last
+/// are longer.
 const N_MARKS: u32 = 11;
 const MARK_M: [f64; 2] = [0.002, 0.006];
 
@@ -96,27 +99,28 @@ impl PhoneCheck {
         self.question() == Some(PhoneQuestion::Square)
     }
 
-    /// The place is of another world.
+    /// The place belongs to another world.
     pub(super) fn forget_place(&mut self) {
         self.world_from_place = None;
     }
 }
 
 impl App {
-    /// What is asked, and the number of it from 1 on; none where nothing is.
+    /// The present question, and its number, from 1 on; `None` if there is none.
     #[must_use]
     pub fn phone_question(&self) -> Option<(PhoneQuestion, usize)> {
         let check = self.phone_check.as_ref()?;
         Some((check.question()?, check.n_answered + 1))
     }
 
-    /// Lines that belong to the question, as pixels of the camera's picture; empty where there is no place for them yet.
+    /// Lines of the question, in pixels of the camera's picture; empty if there is no place for
+    /// them yet.
     #[must_use]
     pub fn check_lines_px(&self) -> Vec<(CheckInk, [DVec2; 2])> {
         let (Some(check), Some(latest)) = (&self.phone_check, &self.latest) else {
             return Vec::new();
         };
-        // A frame without a pose would show them where they are not.
+        // Without the frame's pose the lines would be at wrong positions.
         let Some(camera) = latest.camera() else {
             return Vec::new();
         };
@@ -139,7 +143,7 @@ impl App {
         self.phone_check = is_on.then(PhoneCheck::default);
     }
 
-    /// Goes on to the next question.
+    /// Stores an answer and goes on to the next question.
     pub(super) fn answer(&mut self, is_yes: bool) {
         let Some(check) = &mut self.phone_check else {
             return;
@@ -213,7 +217,7 @@ fn square(world_from_card: &DMat4) -> Vec<Line> {
     edges.map(|ends| (CheckInk::Measure, ends)).collect()
 }
 
-/// A line of the world in pixels; none where an end is behind the camera.
+/// A line of the world in pixels; `None` if an end is behind the camera.
 fn seen(camera: &Camera, ends: [DVec3; 2]) -> Option<[DVec2; 2]> {
     let camera_from_world = camera.world_from_camera.inverse();
     let [from, to] = ends.map(|end| {

@@ -1,4 +1,4 @@
-//! What the platform grants, and what it is asked for.
+//! State that the platform reports, and the requests to it.
 
 use super::event::{
     ArSession, GraphicsState, Permission, PlatformCommand, ShellCommand, Thermal, WorkCommand,
@@ -7,7 +7,7 @@ use super::step::Step;
 use app_scene::camera_frame::Tracking;
 use app_session::recording::RecordingJob;
 
-/// What the platform grants.
+/// State that the platform reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Platform {
     pub(super) permission: Permission,
@@ -16,37 +16,37 @@ pub(super) struct Platform {
     pub(super) graphics: GraphicsState,
     pub(super) ar_session: ArSession,
     pub(super) thermal: Thermal,
-    /// Of the latest frame.
+    /// Tracking state of the latest frame.
     pub(super) tracking: Tracking,
-    /// Where recordings go, as far as it was told.
+    /// Free space for recordings, if it was reported.
     pub(super) free_bytes: Option<u64>,
 }
 
-/// Why the app cannot go on for now. Each has its words, and its way back.
+/// The reason why the app cannot continue for now. Each has its text, and its remedy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Obstacle {
-    /// No AR on this device, as far as it says: it can be asked again.
+    /// The device reports no AR; the check can be repeated.
     NoAr,
-    /// What AR needs is looked for or being installed: it goes on by itself.
+    /// The AR service is being checked for or installed: the app continues by itself.
     Installing,
-    /// The camera is not allowed; it can be asked for again.
+    /// The camera is not permitted; the permission can be requested again.
     CameraDenied,
-    /// The camera is not allowed; only the system's settings help.
+    /// The camera is not permitted; only the system's settings help.
     CameraBarred,
-    /// The device is too hot: it goes on by itself when it has cooled.
+    /// The device is too hot: the app continues by itself when it has cooled.
     TooHot,
-    /// Something else has the camera: it goes on by itself.
+    /// Another app uses the camera: the app continues by itself.
     Interrupted,
     /// The AR session ended: the person starts over.
     ArFailed,
-    /// Graphics are set up, for the first time or again: it goes on by itself.
+    /// Graphics are being set up, for the first time or again: the app continues by itself.
     Preparing,
-    /// The camera's pose is not known: the person is told what helps.
+    /// The camera's pose is unknown: the person gets advice.
     Tracking(Tracking),
 }
 
 impl Platform {
-    /// The first of what is in the way of a step.
+    /// The first obstacle to a step.
     pub(super) fn obstacle(&self, step: Step) -> Option<Obstacle> {
         if self.ar_session == ArSession::Unsupported {
             return Some(Obstacle::NoAr);
@@ -83,14 +83,14 @@ impl Platform {
     }
 }
 
-/// What a person wants to be kept.
+/// Captures that a person wants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Captures {
     pub(super) video: bool,
     pub(super) recording: bool,
 }
 
-/// What is wanted of the camera for a while.
+/// Temporary requests for the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Asked {
     /// A dark picture of the lens.
@@ -99,7 +99,7 @@ pub(super) struct Asked {
     pub(super) card: bool,
 }
 
-/// What the shell was asked for and holds until it is asked for something else.
+/// State that the shell was told to keep until the next request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Commanded {
     tracking: bool,
@@ -113,7 +113,7 @@ pub(super) struct Commanded {
 }
 
 impl Commanded {
-    /// What is wanted in a step.
+    /// The state that a step requires.
     pub(super) fn wanted(step: Step, platform: &Platform, (captures, asked): (Captures, Asked)) -> Self {
         let tracking = step != Step::Welcome && platform.can_track();
         Self {
@@ -131,18 +131,19 @@ impl Commanded {
             },
             captures: Captures {
                 video: captures.video && tracking && step == Step::Play,
-                // Of one place, with one toy that stands there.
+                // A recording is of one place, with one toy that stands there.
                 recording: captures.recording && tracking && step == Step::Play,
             },
         }
     }
 
-    /// Whether the camera was asked to run.
+    /// Whether the camera was told to run.
     pub(super) fn is_tracking(&self) -> bool {
         self.tracking
     }
 
-    /// The commands that lead from what was asked for to what is `wanted`; `job` is the recording that begins.
+    /// The commands that lead from the present state to `wanted`; `job` is the recording that
+    /// begins.
     pub(super) fn follow(
         &mut self,
         wanted: Self,
@@ -150,7 +151,7 @@ impl Commanded {
         job: Option<Box<RecordingJob>>,
     ) -> Vec<ShellCommand> {
         let mut commands = Vec::new();
-        // What was kept is saved before the camera goes.
+        // Captures are saved before the camera stops.
         if wanted.captures.video != self.captures.video {
             commands.push(WorkCommand::Video(wanted.captures.video).into());
         }
@@ -174,7 +175,7 @@ impl Commanded {
         } else if !wanted.tracking && self.tracking {
             commands.push(PlatformCommand::PauseTracking.into());
         }
-        // A camera that is started again has its exposure free.
+        // A restarted camera has no exposure lock.
         let is_locked = self.locks_exposure && self.tracking && wanted.tracking;
         let was_dark = self.underexposes && self.tracking;
         if was_dark && !wanted.underexposes && wanted.tracking {

@@ -1,4 +1,4 @@
-//! Which moment of which clip is shown.
+//! The clip and moment that are shown.
 
 use app_scene::toy::{ClipId, Pose, Toy};
 
@@ -12,7 +12,7 @@ pub struct Playback {
 }
 
 impl Playback {
-    /// The toy's first clip from its start, playing; the pose as authored where it has none.
+    /// Plays the toy's first clip from its start; the pose as authored if the toy has no clip.
     #[must_use]
     pub fn of(toy: &Toy) -> Self {
         let first = toy.clip_ids().next();
@@ -26,26 +26,26 @@ impl Playback {
         playback
     }
 
-    /// Takes another clip from its start, or the pose as authored.
+    /// Selects another clip, from its start, or the pose as authored.
     pub fn choose(&mut self, toy: &Toy, clip: Option<ClipId>) {
         self.clip = clip.filter(|clip| clip.index() < toy.clips().len());
         let length_s = self.clip.map(|clip| toy.clips()[clip.index()].duration_secs);
         (self.length_s, self.time_s) = (length_s.unwrap_or(0.0), 0.0);
     }
 
-    /// Plays on, or pauses.
+    /// Starts playing, or pauses.
     pub fn play(&mut self, is_playing: bool) {
         self.is_playing = is_playing;
     }
 
-    /// Goes to a time; what is no time, or beyond the clip, is the nearest that is in it.
+    /// Goes to a time; an invalid time, or one beyond the clip, becomes the nearest valid one.
     pub fn scrub(&mut self, time_s: f64) {
         if time_s.is_finite() {
             self.time_s = time_s.clamp(0.0, self.length_s);
         }
     }
 
-    /// Lets `elapsed_s` pass, and begins again after the end.
+    /// Lets `elapsed_s` pass, and restarts after the end.
     pub fn advance(&mut self, elapsed_s: f64) {
         if self.is_playing && self.length_s > 0.0 && elapsed_s.is_finite() {
             self.time_s = (self.time_s + elapsed_s.max(0.0)) % self.length_s;
@@ -79,7 +79,7 @@ impl Playback {
         self.time_s
     }
 
-    /// Whether it goes on by itself.
+    /// Whether the clip plays.
     #[must_use]
     pub fn is_playing(&self) -> bool {
         self.is_playing

@@ -1,4 +1,4 @@
-//! Hands what comes from the camera to the recording, and never waits for it.
+//! Passes the camera's data to the recording, without ever waiting for it.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -10,19 +10,19 @@ use app_scene::scene::{Light, Scene};
 use app_session::record::{LightEstimateRecord, LightRecord};
 use app_session::recording::{Item, LiveFrame, RecordingJob, RecordingSender, Topic};
 
-/// Time between what is told of free space, in nanoseconds: where no frame comes either, it is the only clock.
+/// Time between reports of free space, in nanoseconds: without frames they are the only clock.
 const TICK_NS: u64 = 1_000_000_000;
 
-/// One recording, from the side of the camera.
+/// One recording, on the camera's side.
 #[derive(Debug)]
 pub(super) struct Recorder {
     number: u64,
     sender: RecordingSender,
     /// The first frame's time, by the platform's clock.
     origin_ns: i64,
-    /// Of the latest frame, or of a tick since, from the first frame on.
+    /// Time of the latest frame, or of a later tick, from the first frame on.
     now_ns: u64,
-    /// Whether a tick was told since the latest frame.
+    /// Whether a tick was reported since the latest frame.
     has_ticked: bool,
     tracking: Option<Tracking>,
     planes: Option<Arc<[FoundPlane]>>,
@@ -50,7 +50,8 @@ impl Recorder {
         self.number
     }
 
-    /// A frame with all that the platform says of it; none to record where its pose cannot be trusted.
+    /// Adds a frame with the platform's data; `live` is `None` if the frame's pose cannot be
+    /// trusted.
     pub(super) fn frame(&mut self, frame: &CameraFrame, live: Option<LiveFrame>) {
         let since_ns = frame.stamp.time_ns.saturating_sub(self.origin_ns);
         self.now_ns = u64::try_from(since_ns).unwrap_or(0);
@@ -83,7 +84,7 @@ impl Recorder {
         }
     }
 
-    /// What the app's log has, too.
+    /// Adds a line that is also in the app's log.
     pub(super) fn logged(&self, what: &dyn Debug) {
         self.note(
             Topic::Events,
@@ -91,7 +92,7 @@ impl Recorder {
         );
     }
 
-    /// What an alignment found.
+    /// Adds the result of an alignment.
     pub(super) fn aligned(&self, world_from_object: &glam::DMat4, lights: &[Light]) {
         let lights: Vec<_> = lights.iter().map(LightRecord::from).collect();
         self.note(
@@ -100,12 +101,12 @@ impl Recorder {
         );
     }
 
-    /// Times of a frame.
+    /// Adds the times of a frame.
     pub(super) fn profile(&self, times: &Value) {
         self.note(Topic::Profile, times);
     }
 
-    /// What is free on the device, once a second.
+    /// Adds the device's free space, once a second.
     pub(super) fn tick(&mut self, free_bytes: u64) {
         if std::mem::replace(&mut self.has_ticked, true) {
             self.now_ns += TICK_NS;
@@ -128,7 +129,7 @@ impl Recorder {
         });
     }
 
-    /// What has no room is counted there.
+    /// Items without space are counted in the queue.
     fn offer(&self, item: Item) {
         let _ = self.sender.offer(self.now_ns, item);
     }

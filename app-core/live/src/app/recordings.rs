@@ -1,4 +1,4 @@
-//! When a session is recorded, what of it, and what is said about it.
+//! Recording of a session: its beginning and end, its content, and the messages about it.
 
 use serde_json::Value;
 
@@ -12,7 +12,7 @@ use app_scene::scene::Scene;
 use app_session::recording::{Ending, Limits, LiveFrame, RecordingJob};
 
 impl App {
-    /// A person wants it, or no longer.
+    /// Starts or ends a recording for a person.
     pub(super) fn want_recording(&mut self, is_on: bool) {
         let is_short = self
             .platform
@@ -24,7 +24,8 @@ impl App {
         self.captures.recording = is_on;
     }
 
-    /// Begins a recording that is wanted, or ends one that is not: its queue is closed with that. The one that began.
+    /// Begins a wanted recording, or ends an unwanted one, whose queue is closed by that. Returns
+    /// the one that began.
     pub(super) fn follow_recording(&mut self, is_wanted: bool) -> Option<Box<RecordingJob>> {
         if !is_wanted {
             self.recorder = None;
@@ -39,7 +40,8 @@ impl App {
         Some(Box::new(job))
     }
 
-    /// A frame as the platform gave it, in the world in which the toy was placed: what an alignment takes.
+    /// Adds a frame with the platform's values, in the world in which the toy was placed: the input
+    /// of an alignment.
     pub(super) fn record(&mut self, frame: &CameraFrame) {
         if self.recorder.is_none() {
             return;
@@ -47,7 +49,7 @@ impl App {
         let is_seen = self.step == Step::Play && frame.camera().is_some();
         let live = self.place.as_ref().filter(|_| is_seen).and_then(|place| {
             let input = place.anchored(self.input(1.0)?);
-            // A platform may estimate whatever it likes; what no reader takes is left out.
+            // A platform's estimate may be invalid; values that readers refuse are left out.
             let estimate = input.light_estimate;
             let estimate = estimate.filter(|estimate| estimate.check("light_estimate").is_ok());
             let input = input.with_light_estimate(estimate);
@@ -71,7 +73,7 @@ impl App {
         }
     }
 
-    /// A line of the log, which a recording has as well.
+    /// Adds a line to the log and to the recording.
     pub(super) fn note(&mut self, what: &dyn std::fmt::Debug) {
         self.log.line(self.time_s, what);
         if let Some(recorder) = &self.recorder {
@@ -79,7 +81,7 @@ impl App {
         }
     }
 
-    /// Times of a frame for the recording, if there is one.
+    /// Adds the times of a frame to the recording, if there is one.
     pub(crate) fn record_profile(&self, times: &Value) {
         if let Some(recorder) = &self.recorder {
             recorder.profile(times);
@@ -93,7 +95,7 @@ impl App {
         }
     }
 
-    /// A recording has ended; another may have begun since.
+    /// Handles the end of a recording; another may have begun since.
     pub(super) fn recorded(&mut self, recorded: Recorded) {
         let number = recorded.outcome.number;
         if self

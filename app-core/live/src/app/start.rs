@@ -1,4 +1,4 @@
-//! The start under way: whether it is a good one, whether its device is, and which preset that leaves.
+//! The present start: whether it is good, whether its device is, and the resulting preset.
 
 use super::App;
 use super::event::{ShellCommand, WorkCommand};
@@ -7,16 +7,16 @@ use super::notice::Notice;
 use app_pipeline::governor::Exhausted;
 use app_pipeline::preset::Preset;
 
-/// The start under way.
+/// The present start.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
     history: LaunchHistory,
-    /// Whether it counts as unfinished, as it stands.
+    /// Whether it is counted as unfinished at present.
     is_counted: bool,
     n_good_frames: u32,
-    /// What is wrong with the device.
+    /// The fault of the device.
     refused: Option<String>,
-    /// As the self-test has named it.
+    /// Name of the device in the self-test.
     device: Option<String>,
 }
 
@@ -35,19 +35,19 @@ impl Start {
 }
 
 impl App {
-    /// Why the simplest preset is used, where it is.
+    /// The reason why the simplest preset is used, if it is.
     #[must_use]
     pub fn simplified(&self) -> Option<Simplified> {
         self.start.as_ref()?.simplified()
     }
 
-    /// The preset to draw with, where the shell has chosen another.
+    /// The preset for drawing; `chosen` is the shell's choice.
     #[must_use]
     pub fn preset(&self, chosen: Preset) -> Preset {
         self.simplified().map_or(chosen, |_| Preset::Flat)
     }
 
-    /// Whether a device has still to show that it draws what it should. Never where the shell keeps nothing.
+    /// Whether a device must still pass the self-test. Never if the shell stores nothing.
     #[must_use]
     pub fn wants_self_test(&self, device: &str) -> bool {
         let is_wanted = |start: &Start| {
@@ -68,7 +68,7 @@ impl App {
         self.tell_simplified();
     }
 
-    /// Whether a device, named with its driver, has drawn its test picture as it should, or what is wrong; what is to be done.
+    /// Handles the self-test's result for a device, named with its driver; returns the commands.
     pub fn self_tested(&mut self, device: &str, outcome: Result<(), String>) -> Option<WorkCommand> {
         self.note(&("self-test", device, &outcome));
         let start = self.start.as_mut()?;
@@ -93,7 +93,7 @@ impl App {
         start.is_some_and(|start| start.history.is_first_phone)
     }
 
-    /// All that could be turned down was, for the log.
+    /// Adds a line to the log: the quality ladder is exhausted.
     pub fn note_lowered(&mut self, exhausted: Exhausted) {
         let what = if self.is_for_engineers() {
             "preset fast would be next"
@@ -103,12 +103,13 @@ impl App {
         self.note(&(what, exhausted));
     }
 
-    /// How far a test picture is off, for the log: also where it passes, since no bound was set by a phone.
+    /// Adds the error of the test picture to the log, also after a pass, since no bound was
+    /// determined on a phone.
     pub fn note_self_test(&mut self, words: &str) {
         self.note(&("test picture", words));
     }
 
-    /// A picture of the moving toy was drawn; what is to be done.
+    /// Counts a drawn picture of the moving toy; returns the commands.
     pub fn drawn(&mut self) -> Option<WorkCommand> {
         let start = self.start.as_mut()?;
         start.n_good_frames = start.n_good_frames.saturating_add(1);
@@ -119,7 +120,7 @@ impl App {
         })
     }
 
-    /// An app that has left the front may be ended there without having failed.
+    /// An app in the background may be ended there without having failed.
     pub(super) fn follow_start(&mut self, is_foreground: bool, commands: &mut Vec<ShellCommand>) {
         let Some(start) = self.start.as_mut().filter(|start| !start.history.is_first_phone) else {
             return;
@@ -136,7 +137,7 @@ impl App {
         commands.push(start.remember().into());
     }
 
-    /// A person wants the preset back: what is wrong with the device is taken for nothing.
+    /// Restores the preset for a person and ignores the device's fault.
     pub(super) fn restore_preset(&mut self, commands: &mut Vec<ShellCommand>) {
         let Some(start) = &mut self.start else { return };
         if start.simplified().is_none() {
@@ -146,7 +147,7 @@ impl App {
         if start.refused.take().is_some() {
             start.history.passed.clone_from(&start.device);
         }
-        // It is the other preset that has to prove itself now.
+        // Now the other preset has to prove itself.
         start.n_good_frames = 0;
         start.is_counted = true;
         start.history.n_unfinished = start.history.n_unfinished.max(1);

@@ -1,8 +1,8 @@
-//! What a person is about to do, and what leads from one step to another.
+//! The steps of a person, and the causes of a change between them.
 //!
 #![doc = include_str!("../../../doc/app.md")]
 
-/// What a person is about to do.
+/// The steps of a person.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Step {
     /// Read what this is, and allow the camera.
@@ -20,30 +20,30 @@ pub enum Step {
     Play,
 }
 
-/// What leads from one step to another.
+/// Causes of a change from one step to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Cause {
     /// A person began, and the camera is allowed.
     Begun,
     /// The camera is not allowed any longer.
     CameraDenied,
-    /// A level plane was tapped.
+    /// A horizontal plane was tapped.
     TableChosen,
     /// The empty place was photographed.
     PlateTaken,
-    /// It will not be.
+    /// It will not be photographed.
     PlateSkipped,
     /// The ghost stands where the toy does.
     ToyPlaced,
-    /// The picture shows the toy where the ghost is, or told where it is.
+    /// The picture shows the toy at the ghost's place, or its pose was found.
     ToyFound,
-    /// It does not.
+    /// The picture does not show it there.
     ToyMissed,
-    /// The ghost is wanted again, or there is another toy.
+    /// The ghost is requested again, or there is another toy.
     Replace,
     /// The toy was lifted away.
     RetakePlate,
-    /// All from the table on is wanted again.
+    /// A restart from the table on is requested.
     StartOver,
     /// The tracker has begun another world.
     WorldLost,
@@ -52,7 +52,7 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// All there are.
+    /// All causes.
     pub const ALL: [Self; 13] = [
         Self::Begun,
         Self::CameraDenied,
@@ -71,7 +71,7 @@ impl Cause {
 }
 
 impl Step {
-    /// All there are, in their order.
+    /// All steps, in their order.
     pub const ALL: [Self; 6] = [
         Self::Welcome,
         Self::FindTable,
@@ -81,7 +81,7 @@ impl Step {
         Self::Play,
     ];
 
-    /// The step after a cause; the same where the cause means nothing in it.
+    /// The step after a cause; the same step if the cause does not apply to it.
     #[must_use]
     pub fn after(self, cause: Cause) -> Self {
         match (self, cause) {

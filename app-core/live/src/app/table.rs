@@ -4,12 +4,21 @@ use glam::{DMat4, DVec2};
 
 use super::ghost::seen_at;
 use app_scene::camera_frame::{CameraFrame, FoundPlane};
-use app_scene::scene::Camera;
+use app_scene::scene::{Camera, MAX_RECEIVERS, Pose};
+use app_scene::toy::Toy;
 
 /// Number of the card's plane, which no platform gives.
 const CARD: u64 = u64::MAX;
 /// The table reaches so far around the card, in metres.
 const AROUND_CARD_M: f64 = 0.6;
+
+/// A level plane no higher than that above the table is a piece of it, as trackers find them: in metres.
+const LEAST_STEP_M: f64 = 0.008;
+/// So is one that is tilted by less, in radians; one that is tilted by more than the other is no plane that things stand on.
+const SAME_TILT: f64 = 0.06;
+const STEEPEST: f64 = 0.8;
+/// Shadows reach no farther than so many times the toy's size: of light from 18 degrees above the table.
+const REACH: f64 = 3.0;
 
 /// The table that a tap on a pixel means.
 pub(super) fn table_at(frame: &CameraFrame, camera: &Camera, pixel: DVec2) -> Option<FoundPlane> {
@@ -37,6 +46,46 @@ pub(super) fn as_told_now(table: &FoundPlane, frame: &CameraFrame) -> Option<Fou
         return frame.world_from_card.as_ref().map(around_card);
     }
     frame.planes.iter().find(|plane| plane.id == table.id).cloned()
+}
+
+/// Planes above the table that the shadow of a toy may reach, from the nearest: no more than shadows are moved on.
+pub(super) fn beside<'a>(
+    table: &FoundPlane,
+    planes: &'a [FoundPlane],
+    world_from_object: &DMat4,
+    toy: &Toy,
+) -> Vec<&'a FoundPlane> {
+    let Ok(bounds) = toy.bounds_of_pose(&Pose::Authored) else {
+        return Vec::new();
+    };
+    let size_m = world_from_object
+        .transform_vector3((bounds.max - bounds.min).as_dvec3())
+        .length();
+    let table_from_world = table.world_from_plane.inverse();
+    let up = table.world_from_plane.y_axis.truncate();
+    let others = planes.iter().filter(|plane| {
+        let tilt_cosine = plane.world_from_plane.y_axis.truncate().dot(up);
+        let height_m = table_from_world
+            .transform_point3(plane.world_from_plane.w_axis.truncate())
+            .y;
+        // A tracker finds a table in pieces, and what lies beneath it.
+        let is_above = height_m > LEAST_STEP_M || tilt_cosine < SAME_TILT.cos() && height_m > 0.0;
+        plane.id != table.id && is_above && height_m < size_m && tilt_cosine > STEEPEST.cos()
+    });
+    let distance_m = |plane: &FoundPlane| {
+        let toy = plane
+            .world_from_plane
+            .inverse()
+            .transform_point3(world_from_object.w_axis.truncate());
+        (DVec2::new(toy.x, toy.z).abs() - plane.half_extent_m)
+            .max(DVec2::ZERO)
+            .length()
+    };
+    let mut others: Vec<(f64, &FoundPlane)> = others.map(|plane| (distance_m(plane), plane)).collect();
+    others.retain(|(distance_m, _)| *distance_m < REACH * size_m);
+    others.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let nearest = others.into_iter().map(|(_, plane)| plane);
+    nearest.take(MAX_RECEIVERS - 1).collect()
 }
 
 fn around_card(world_from_card: &DMat4) -> FoundPlane {

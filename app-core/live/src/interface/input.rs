@@ -1,9 +1,9 @@
-//! Fingers, as the platforms tell them, as egui takes them.
+//! Touches from the platforms, converted for egui.
 
 use egui::epaint::MarginF32;
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, TouchDeviceId, TouchId, Vec2, pos2, vec2};
 
-/// Space at the screen's borders that notches and system bars take, in physical pixels.
+/// Space at the screen's borders that is covered by notches and system bars, in physical pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Insets {
     /// From the left.
@@ -21,16 +21,16 @@ pub struct Insets {
 pub struct Screen {
     /// Width and height in physical pixels.
     pub size_px: [u32; 2],
-    /// Physical pixels a point of the platform.
+    /// Physical pixels per point of the platform.
     pub pixels_per_point: f64,
-    /// What is not to be covered.
+    /// Borders that must stay free.
     pub insets: Insets,
-    /// How much larger than usual the person wants letters to be; 1 is usual.
+    /// Size of letters that the person wants, relative to the usual size.
     pub text_scale: f64,
 }
 
 impl Screen {
-    /// Physical pixels of what the interface takes for a point: larger letters come with larger buttons.
+    /// Physical pixels per point of the interface: larger letters come with larger buttons.
     pub(super) fn pixels_per_unit(&self) -> f32 {
         let scale = self.pixels_per_point * self.text_scale.clamp(0.8, 2.0);
         narrowed(scale).clamp(0.5, 8.0)
@@ -44,7 +44,7 @@ impl Screen {
     }
 }
 
-/// What a finger does.
+/// Phase of a touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TouchPhase {
     /// It comes down.
@@ -53,26 +53,26 @@ pub enum TouchPhase {
     Moved,
     /// It goes up.
     Ended,
-    /// The platform takes it for something else.
+    /// The platform cancels it.
     Cancelled,
 }
 
-/// A finger.
+/// A touch of a finger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// The same as long as it is down.
+    /// Identifier of the finger while it is down.
     pub id: u64,
-    /// What it does.
+    /// Phase of the touch.
     pub phase: TouchPhase,
     /// Physical pixels of the screen, from its top left corner.
     pub at_px: [f64; 2],
 }
 
-/// Fingers that are down, and what they did since the last picture.
+/// Touches since the last picture, and fingers that are down.
 #[derive(Debug, Default)]
 pub(super) struct Touches {
     waiting: Vec<Touch>,
-    /// The first finger down is a pointer as well.
+    /// Identifier of the first finger that came down, which is also a pointer.
     pointer: Option<u64>,
     wheel_steps: f64,
 }

@@ -1,11 +1,11 @@
-//! What egui tessellated, on a target of the screen's.
+//! Drawing of egui's tessellated shapes on a target of the screen's.
 
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 
 use super::{Painting, Textures};
 use app_pipeline::core::Canvas;
 
-/// egui's own renderer, for targets of one format that take sRGB codes as they are.
+/// egui's own renderer, for targets of one format that stores sRGB codes unchanged.
 pub(crate) struct Painter {
     renderer: Renderer,
 }
@@ -18,7 +18,7 @@ impl Painter {
         }
     }
 
-    /// Paints over what is there, or what it is cleared to.
+    /// Paints over the target's content, or over the clear colour.
     pub(crate) fn paint(
         &mut self,
         canvas: &Canvas<'_>,

@@ -9,10 +9,10 @@ use app_pipeline::profile::{About, Args, Frame, Profile};
 use app_scene::camera_frame::CameraFrame;
 use app_scene::frame::FrameInput;
 
-/// Frames that are kept, twice as many at most: some seconds.
+/// Number of kept frames, at most twice as many: some seconds.
 const N_FRAMES: usize = 300;
 
-/// Times frames, once the shell has lent a clock.
+/// Times frames, once the shell has supplied a clock.
 #[derive(Debug, Default)]
 pub(super) struct Profiler {
     clock: Option<Clock>,
@@ -25,9 +25,10 @@ pub(super) struct Profiler {
     shown_id: Option<u64>,
     n_dropped: u64,
     latest: Option<Latest>,
-    /// When the shell began with what leads to the next picture.
+    /// Time at which the shell began work for the next picture.
     early_ms: Option<f64>,
-    /// When the picture under way was begun, and how long the one before took until it was handed to the display.
+    /// Start of the present picture, and the previous one's duration until it was submitted to the
+    /// display.
     begun_ms: Option<f64>,
     busy_ms: Option<f64>,
 }
@@ -36,9 +37,9 @@ pub(super) struct Profiler {
 #[derive(Clone, Copy, Debug)]
 struct Delivered {
     id: u64,
-    /// On the shell's clock.
+    /// Time of arrival by the shell's clock.
     at_ms: f64,
-    /// How old it was then.
+    /// Its age at that time.
     age_ms: Option<f64>,
 }
 
@@ -46,10 +47,10 @@ struct Delivered {
 #[derive(Clone, Copy, Debug)]
 struct Latest {
     cpu_ms: f64,
-    /// Where the device was asked.
+    /// Time on the device, if it was measured.
     gpu_ms: Option<f64>,
     camera_to_present_ms: Option<f64>,
-    /// Pictures of the camera before it that nobody has seen.
+    /// Number of camera pictures before it that were never shown.
     n_dropped: u64,
 }
 
@@ -59,24 +60,25 @@ impl Profiler {
         self.clock = Some(clock);
     }
 
-    /// Another device knows nothing of clocks.
+    /// Another device has no timer yet.
     pub(super) fn reopen(&mut self, core: &mut Core) {
         core.time_stages(self.clock.clone());
         self.times_passes = false;
     }
 
-    /// The shell begins with what may lead to a picture.
+    /// The shell begins work that may result in a picture.
     pub(super) fn begin_early(&mut self) {
         self.early_ms = self.clock.as_ref().map(Clock::now_ms);
     }
 
-    /// A picture is begun, if the shell has not said so before.
+    /// A picture begins, unless the shell has reported that before.
     pub(super) fn begin_picture(&mut self) {
         let now_ms = self.clock.as_ref().map(Clock::now_ms);
         self.begun_ms = self.early_ms.take().or(now_ms);
     }
 
-    /// It was handed to the display: if the device is behind, that took as long as the device needs for one.
+    /// It was submitted to the display: if the device is behind, that took as long as the device
+    /// needs for one.
     pub(super) fn presented(&mut self) {
         let now_ms = self.clock.as_ref().map(Clock::now_ms);
         self.busy_ms = now_ms
@@ -84,22 +86,23 @@ impl Profiler {
             .map(|(now_ms, begun_ms)| now_ms - begun_ms);
     }
 
-    /// How long the latest picture that was handed to the display took; none without a clock, or if nothing is.
+    /// Duration of the latest picture that was submitted to the display; `None` without a clock, or
+    /// if there is no such picture.
     pub(super) fn busy_ms(&self) -> Option<f64> {
         self.busy_ms
     }
 
-    /// Whether pictures of the camera came before the latest frame that nobody has seen.
+    /// Whether camera pictures before the latest frame were never shown.
     pub(super) fn has_dropped(&self) -> bool {
         self.latest.is_some_and(|latest| latest.n_dropped > 0)
     }
 
-    /// How long the device took for the latest frame, while passes are timed.
+    /// The device's time for the latest frame, while passes are timed.
     pub(super) fn gpu_ms(&self) -> Option<f64> {
         self.latest?.gpu_ms
     }
 
-    /// A picture of the camera has come.
+    /// A picture of the camera has arrived.
     pub(super) fn deliver(&mut self, frame: &CameraFrame) {
         self.delivered = self.clock.as_ref().map(|clock| Delivered {
             id: frame.stamp.id,
@@ -108,14 +111,14 @@ impl Profiler {
         });
     }
 
-    /// Something else is shown: the next frame has none before it.
+    /// Something else is shown: the next frame has no predecessor.
     pub(super) fn interrupt(&mut self) {
         self.before_ms = None;
         self.shown_id = None;
     }
 
-    /// Pictures of the camera since the one that was shown last, which nobody will see; none where there is no last one, or the
-    /// camera has begun to count anew.
+    /// Number of camera pictures since the one that was shown last, which will never be shown; 0 if
+    /// there is no last one, or if the camera has restarted its count.
     fn drop_before(&mut self, shown_id: u64) -> u64 {
         let before = self.shown_id.replace(shown_id);
         let step = before.and_then(|before| shown_id.checked_sub(before));
@@ -124,7 +127,8 @@ impl Profiler {
         n_dropped
     }
 
-    /// Makes a frame, and keeps what it took. Passes are timed where they are shown: the processor waits for the device then.
+    /// Makes a frame, and stores its times. Passes are timed if their times are shown: the
+    /// processor then waits for the device.
     pub(super) fn frame(
         &mut self,
         (core, input): (&mut Core, &FrameInput),
@@ -185,7 +189,7 @@ impl Profiler {
         self.profile.as_ref()
     }
 
-    /// Of the latest frame, for a recording.
+    /// Times of the latest frame, for a recording.
     pub(super) fn latest(&self) -> Option<Value> {
         let latest = self.latest?;
         Some(json!({
@@ -196,7 +200,7 @@ impl Profiler {
         }))
     }
 
-    /// Of the latest frame, in words.
+    /// Times of the latest frame as text.
     pub(super) fn words(&self) -> Option<String> {
         let latest = self.latest?;
         let after = |name: &str, ms: Option<f64>| ms.map_or(String::new(), |ms| format!("{name} {ms:.1} ms"));
@@ -218,7 +222,7 @@ impl Profiler {
     }
 }
 
-/// What a frame's scope has of heat and settings.
+/// The part of a frame's scope about heat and settings.
 pub(super) fn args(thermal: Thermal, governor: Option<&Governor>) -> Args {
     let turned_down = governor.iter().flat_map(|governor| governor.turned_down());
     Args {

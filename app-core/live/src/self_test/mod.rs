@@ -1,8 +1,9 @@
-//! Whether a device draws what it should: a small picture, made by a preset, against what is expected of it.
+//! Test of a device: a small picture, made with a preset, compared with the expected one.
 //!
-//! The scene is made in code (`place`): a toy of two boxes on a chequered table, photographed by exact rays, shown turned. What is
-//! expected is a colour for each block of 8 x 8 pixels, since edges may be sampled elsewhere on another device. At this size `paper`
-//! finds too little of the real shadow to sample and shows none, which its picture has as well.
+//! The scene is made in code (`place`): a toy of two boxes on a chequered table, photographed by
+//! exact rays, shown turned. The expectation is a colour for each block of 8 x 8 pixels, since
+//! another device may sample edges differently. At this size `paper` finds too little of the real
+//! shadow for sampling and shows none, in the expected picture as well.
 
 mod place;
 
@@ -22,23 +23,24 @@ const N_COLUMNS: usize = 8;
 
 /// Largest difference of a block's mean, in codes of 8 bits.
 ///
-/// Between what other sampling may do and the least fault that a test plants: `balanced` shifted by a quarter of a pixel changes a
-/// block by 3.8 codes and all by .6 in the mean, shifted by a whole pixel by 15 and 2.4; any other fault changes more of either.
-/// Measured on one software renderer; no phone has drawn it yet.
+/// A value between the effect of other sampling and the smallest planted fault: `balanced` shifted
+/// by a quarter of a pixel changes one block by 3.8 codes and all by .6 on average, shifted by a
+/// whole pixel by 15 and 2.4; any other fault changes more of either. Measured on one software
+/// renderer; no phone has drawn it yet.
 const WORST_CODES: f64 = 8.0;
 /// Largest mean difference over all blocks, in codes of 8 bits.
 const MEAN_CODES: f64 = 1.0;
 
-/// How far a picture is from what is expected, in codes of 8 bits.
+/// Difference between a picture and the expected one, in codes of 8 bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Difference {
-    /// Of the block and the channel that differ most.
+    /// Difference of the block and channel that differ most.
     pub worst_codes: f64,
-    /// Over all blocks and channels.
+    /// Mean over all blocks and channels.
     pub mean_codes: f64,
 }
 
-/// Why a device is not to be trusted with a preset.
+/// The reason why a device is not trusted with a preset.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum SelfTestError {
@@ -48,14 +50,14 @@ pub enum SelfTestError {
     /// The scene's toy cannot be read.
     #[error(transparent)]
     Toy(#[from] ToyError),
-    /// It drew something else.
+    /// Its picture is different.
     #[error(
-        "a test picture is {:.1} codes off where it is worst, {:.1} in the mean",
+        "a test picture is {:.1} codes off in its worst block, {:.1} on average",
         .0.worst_codes,
         .0.mean_codes
     )]
     Differs(Difference),
-    /// The picture has another size than the one that is expected.
+    /// The picture does not have the expected size.
     #[error("a test picture has {size_px:?} pixels")]
     Size {
         /// Its size.
@@ -66,7 +68,7 @@ pub enum SelfTestError {
 /// Draws the picture with a preset and compares it. The core has no scene afterwards.
 ///
 /// # Errors
-/// When the device does not draw, or draws something else.
+/// If the device does not draw, or draws another picture.
 pub fn run(core: &mut Core, preset: Preset) -> Result<Difference, SelfTestError> {
     check(&render(core, preset)?, preset)
 }
@@ -74,7 +76,7 @@ pub fn run(core: &mut Core, preset: Preset) -> Result<Difference, SelfTestError>
 /// Draws the picture with a preset. The core has no scene afterwards.
 ///
 /// # Errors
-/// When the device does not draw.
+/// If the device does not draw.
 pub fn render(core: &mut Core, preset: Preset) -> Result<Image, SelfTestError> {
     let drawn = draw(core, preset);
     core.forget_scene();
@@ -88,19 +90,19 @@ fn draw(core: &mut Core, preset: Preset) -> Result<Image, SelfTestError> {
     Ok(core.read_picture()?)
 }
 
-/// The photograph of which the picture is made: the toy as it stands.
+/// The photograph from which the picture is made, with the toy in its real pose.
 ///
 /// # Errors
-/// When the scene's toy cannot be read.
+/// If the scene's toy cannot be read.
 pub fn photograph() -> Result<Image, SelfTestError> {
     let (_, input) = place::place()?;
     Ok(input.image.rgba().as_ref().clone())
 }
 
-/// Compares a picture with what is expected of a preset.
+/// Compares a picture with the expected one of a preset.
 ///
 /// # Errors
-/// When it is of another size, or farther off than what other sampling of edges explains.
+/// If it has another size, or differs by more than other sampling of edges explains.
 pub fn check(picture: &Image, preset: Preset) -> Result<Difference, SelfTestError> {
     if !picture.is_of_size(SIZE_PX) {
         return Err(SelfTestError::Size {
@@ -128,7 +130,8 @@ pub fn check(picture: &Image, preset: Preset) -> Result<Difference, SelfTestErro
     }
 }
 
-/// The means of a picture's blocks, as they are kept: a row of blocks a line, a block as its red, green and blue in hexadecimal.
+/// The means of a picture's blocks in their stored form: a row of blocks per line, and a block as
+/// its red, green and blue in hexadecimal.
 #[must_use]
 pub fn kept(picture: &Image) -> String {
     let mut text = String::new();
@@ -151,12 +154,12 @@ fn golden(preset: Preset) -> &'static str {
         Preset::Fast => include_str!("golden/fast.txt"),
         Preset::Balanced => include_str!("golden/balanced.txt"),
         Preset::Best => include_str!("golden/best.txt"),
-        // A preset without a picture of its own fails: none of its blocks is expected.
+        // A preset without an expected picture fails, since none of its blocks is expected.
         _ => "",
     }
 }
 
-/// What [`kept`] wrote; what is no colour is left out, and a block is then missing.
+/// Reads the output of [`kept`]; an invalid colour is left out, and its block is then missing.
 fn parsed(text: &str) -> Vec<[f64; 3]> {
     let colors = text
         .split_whitespace()
@@ -173,7 +176,8 @@ fn expected_blocks() -> usize {
     N_COLUMNS * SIZE_PX[1] as usize / BLOCK_PX
 }
 
-/// Mean codes of the blocks, row after row. Codes, not light: dark parts are to count as much as they are seen.
+/// Mean codes of the blocks, row after row. Codes rather than light give dark parts the weight of
+/// their visibility.
 fn means(picture: &Image) -> Vec<[f64; 3]> {
     let mut sums = vec![[0.0; 3]; expected_blocks()];
     let n = (BLOCK_PX * BLOCK_PX) as f64;

@@ -13,11 +13,11 @@ use app_scene::toy::{NodePose, Toy, ToyError, Trs, binary_gltf};
 
 /// Width and height of the picture.
 pub const SIZE_PX: [u32; 2] = [64, 48];
-/// How far the shown toy is turned about its own axis, in radians.
+/// Rotation of the shown toy about its own axis, in radians.
 const TURNED_RAD: f64 = 0.9;
-/// Light that comes from everywhere, of a white surface.
+/// Ambient light reflected by a white surface.
 const AMBIENT: f64 = 0.35;
-/// Light of the lamp, of a white surface that faces it.
+/// Light of the lamp, reflected by a white surface that faces it.
 const DIRECT: f64 = 0.65;
 /// Side of the table's checks.
 const CHECK_M: f64 = 0.06;
@@ -28,11 +28,11 @@ const N_RAYS: u32 = 3;
 struct Solid {
     from_m: DVec3,
     to_m: DVec3,
-    /// Linear.
+    /// Linear reflectance.
     albedo: DVec3,
 }
 
-/// A body and a head at one end of it: no turn and no mirror makes it the same.
+/// A body and a head at one end of it: no turn and no mirror image makes it the same.
 const SOLIDS: [Solid; 2] = [
     Solid {
         from_m: DVec3::new(-0.08, 0.0, -0.03),
@@ -86,7 +86,7 @@ fn to_light() -> DVec3 {
     DVec3::new(-0.55, 1.0, 0.3).normalize()
 }
 
-/// From above and in front, the toy in the middle.
+/// From above and in front, with the toy in the centre.
 fn camera() -> Camera {
     let (eye, target) = (DVec3::new(0.06, 0.30, 0.32), DVec3::new(0.01, 0.03, -0.01));
     let back = (eye - target).normalize();
@@ -104,7 +104,7 @@ fn camera() -> Camera {
     }
 }
 
-/// What the camera sees of the table and of what stands on it.
+/// The camera's picture of the table and the boxes on it.
 fn photograph(camera: &Camera, solids: &[Solid]) -> Image {
     let [width_px, height_px] = SIZE_PX;
     let mut rgba8 = Vec::new();
@@ -127,7 +127,7 @@ fn photograph(camera: &Camera, solids: &[Solid]) -> Image {
     }
 }
 
-/// A picture as a phone's camera delivers it: what reads planes is what a phone is to be trusted with.
+/// A picture as a phone's camera delivers it, so that the reading of planes is tested, too.
 fn in_planes(image: Image) -> CameraImage {
     let encoding = YcbcrEncoding {
         coefficients: LumaCoefficients::Bt601,
@@ -152,7 +152,7 @@ fn in_planes(image: Image) -> CameraImage {
         })
         .collect();
     let planes = Planes::nv12(SIZE_PX, (&luma, columns), (&chroma, columns), encoding);
-    // They hold their picture.
+    // The planes contain their picture.
     PlanarImage::new(&planes).map_or_else(|_| image.into(), CameraImage::from)
 }
 
@@ -161,13 +161,13 @@ fn code(linear: f64) -> u8 {
     code_of(srgb_from_linear(linear.clamp(0.0, 1.0) as f32))
 }
 
-/// The nearest code of 8 bits of a value from 0 to 1.
+/// The nearest 8-bit code for a value from 0 to 1.
 #[allow(clippy::cast_possible_truncation, reason = "a code of 8 bits")]
 fn code_of(value: f32) -> u8 {
     (255.0 * value).round().clamp(0.0, 255.0) as u8
 }
 
-/// Light that comes along the ray of a pixel, linear.
+/// Light along the ray of a pixel, linear.
 fn seen(camera: &Camera, at_px: DVec2, solids: &[Solid]) -> DVec3 {
     let Intrinsics {
         fx_px,
@@ -203,7 +203,8 @@ fn table(at: DVec3) -> DVec3 {
     DVec3::new(0.62, 0.55, 0.44) * if is_dark { 0.8 } else { 1.0 }
 }
 
-/// Where a ray enters a box: its distance in lengths of `along`, and the outward normal there.
+/// Entry point of a ray into a box: its distance in lengths of `along`, and the outward normal
+/// there.
 fn hit(solid: &Solid, from: DVec3, along: DVec3) -> Option<(f64, DVec3)> {
     let (a, b) = ((solid.from_m - from) / along, (solid.to_m - from) / along);
     let (enters, leaves) = (a.min(b), a.max(b));
@@ -270,7 +271,7 @@ fn faces(solid: &Solid) -> (Vec<[f32; 3]>, Vec<u32>) {
                 around.reverse();
             }
             for n in [0, 1, 2, 0, 2, 3] {
-                // Four corners a face, some 24 a box.
+                // Four corners per face, 24 per box.
                 indices.push(u32::try_from(corners.len()).unwrap_or(0) + n);
             }
             for [at_b, at_c] in around {

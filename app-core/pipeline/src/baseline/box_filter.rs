@@ -1,4 +1,4 @@
-//! `box_filter`: box filter of the shadow term, samples outside the shadow discarded.
+//! `box_filter`: box filter of the shadow term that discards samples outside the shadow.
 
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::search::TERM_FORMAT;
@@ -20,7 +20,7 @@ shared_struct! {
     }
 }
 
-/// Only where the real shadow is sampled.
+/// Needed only if the real shadow is sampled.
 pub(crate) fn is_needed(plan: &BaselinePlan) -> bool {
     !plan.is_constant
 }
@@ -35,11 +35,11 @@ pub(crate) struct Inputs<'a> {
     pub(crate) n_receivers: u32,
 }
 
-/// Of the region's size.
+/// Targets of the region's size.
 pub(crate) struct Targets {
-    /// Sums of rows.
+    /// Sums of the rows.
     between: Texture,
-    /// Sums over the box, one layer per set of lights, from the set 1 on.
+    /// Sums over the box, one layer per set of lights, from set 1 on.
     pub(crate) sums: TextureLayers,
 }
 
@@ -61,7 +61,7 @@ impl Pass {
         }
     }
 
-    /// Filters each set of lights on each receiver: rows, then columns.
+    /// Filters each set of lights on each receiver, first the rows, then the columns.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         for receiver in 0..inputs.n_receivers {
             for (set, of_set) in (1..).zip(&targets.sums.layers) {
@@ -72,7 +72,7 @@ impl Pass {
                 let columns = Summed { label: 0, receiver };
                 let between = cleared(&targets.between.view);
                 self.sum(recorder, (inputs.scene, rows), inputs.terms, between);
-                // Each receiver's columns keep the texels of the others.
+                // The columns of a receiver keep the texels of the other receivers.
                 let sums = if receiver == 0 {
                     cleared(of_set)
                 } else {

@@ -1,4 +1,4 @@
-//! `census`: sets of lights whose shadows occur in mask 3c.
+//! `census`: the sets of lights whose shadows occur in mask 3c.
 
 use wgpu::BufferUsages;
 
@@ -10,10 +10,10 @@ pub(crate) const SHADER: Shader = shader!("baseline/census");
 const SLOTS: &[Slot] = &[Slot::WholeNumbers, Slot::ReadWrite];
 /// Invocations of a workgroup along each side.
 const WORKGROUP_PX: u32 = 16;
-/// One word per receiver, with bit s where the set s of lights occurs.
+/// One word per receiver, in which bit s is set if the set s of lights occurs.
 pub(crate) type SeenSets = [u32; MAX_RECEIVERS];
 
-/// Only where the real shadow is sampled.
+/// Needed only if the real shadow is sampled.
 pub(crate) fn is_needed(plan: &BaselinePlan) -> bool {
     !plan.is_constant
 }
@@ -23,7 +23,7 @@ pub(crate) struct Pass {
 }
 
 pub(crate) struct Targets {
-    /// [`SeenSets`].
+    /// The words, as [`SeenSets`].
     pub(crate) seen_sets: Buffer,
 }
 

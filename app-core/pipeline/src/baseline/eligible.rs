@@ -1,4 +1,4 @@
-//! `eligible`: the paper's masks 3b and 3c, the real shadow and the part of it to sample from.
+//! `eligible`: the paper's masks 3b and 3c: the real shadow, and the part of it that is sampled.
 
 use wgpu::TextureFormat;
 
@@ -23,7 +23,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) visibility: &'a TextureView,
 }
 
-/// Of the region's size.
+/// Targets of the region's size.
 pub(crate) struct Targets {
     pub(crate) labels: Texture,
 }

@@ -1,4 +1,4 @@
-//! `masks`: the paper's mask 3a, where the camera sees the physical toy.
+//! `masks`: the paper's mask 3a: the pixels in which the camera sees the physical toy.
 
 use wgpu::{StoreOp, TextureFormat, VertexFormat};
 
@@ -17,7 +17,7 @@ pub(crate) struct Pass {
     draw: Draw,
 }
 
-/// Of the region's size.
+/// Targets of the region's size.
 pub(crate) struct Targets {
     pub(crate) mask: Texture,
 }

@@ -47,7 +47,8 @@ impl Baseline {
         }
     }
 
-    /// Follows the camera to another view, or other lights; textures are kept where region and lights stay as many.
+    /// Adapts to another view or to other lights. Textures are kept if the region's size and the
+    /// number of lights stay the same.
     pub(crate) fn follow(&mut self, gpu: &Gpu, plan: BaselinePlan, globals: &Globals, uniform: &Uniform) {
         self.injected = Injected::default();
         let sizes = |plan: &BaselinePlan| (plan.region.size_px, plan.n_lights);
@@ -66,7 +67,7 @@ impl Baseline {
         self.targets.retarget.picture()
     }
 
-    /// Encodes the frame path, and before it the capture passes that `change` needs.
+    /// Encodes the passes of a frame, and before them the capture passes that `change` requires.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
@@ -93,7 +94,7 @@ impl Baseline {
         }
         recorder.group = PassGroup::Frame;
         if delta.change == Change::Picture {
-            // The plate is brought to the exposure of the new picture.
+            // The plate is converted to the exposure of the new picture.
             self.encode_plate(recorder, pictures);
         }
         if !delta.keeps_pose() {
@@ -114,7 +115,7 @@ impl Baseline {
         };
     }
 
-    /// Warps and visibility of a pose.
+    /// Encodes warps and visibility of a pose.
     fn encode_shadow(
         &self,
         recorder: &mut Recorder<'_>,
@@ -200,7 +201,7 @@ impl Baseline {
     }
 }
 
-/// The frame, all of which is decoded for the baseline.
+/// The frame with all values decoded, as the baseline reads it.
 fn decoded<'a>(pictures: &Pictures<'a>) -> &'a TextureView {
     let [light, _] = pictures.frame.views();
     light

@@ -1,4 +1,4 @@
-//! `pcss`: percentage-closer soft shadows of a posed toy, of each light, in the edge region.
+//! `pcss`: percentage-closer soft shadows of a posed toy for each light, in the edge region.
 
 use wgpu::TextureFormat;
 
@@ -14,11 +14,11 @@ pub(crate) const SHADER: Shader = shader!("baseline/pcss");
 const SLOTS: &[Slot] = &[Slot::Layers];
 
 pub(crate) struct Pass {
-    /// One per format of the map.
+    /// One draw per format of the map.
     draws: [(TextureFormat, Draw); 3],
 }
 
-/// Of the region's size.
+/// Targets of the region's size.
 pub(crate) struct Targets {
     /// One channel per light.
     pub(crate) visibility: Texture,

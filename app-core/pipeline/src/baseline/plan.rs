@@ -10,13 +10,14 @@ use app_scene::scene::MAX_LIGHTS;
 pub(crate) struct BaselinePlan {
     /// The work region.
     pub(crate) region: PixelRect,
-    /// Lights whose shadows are moved, at most four.
+    /// Number of lights whose shadows are retargeted, at most four.
     pub(crate) n_lights: u32,
-    /// Receivers that they are moved on, each by itself.
+    /// Number of receivers, each of which is retargeted separately.
     pub(crate) n_receivers: u32,
-    /// Non-empty sets of these lights: where its shadows overlap, each has an appearance of its own.
+    /// Number of non-empty sets of these lights. Where the shadows of a set overlap, they have an
+    /// appearance of their own.
     pub(crate) n_sets: u32,
-    /// Whether the shadow is of constant strength, rather than sampled.
+    /// Whether the shadow has a constant strength and is not sampled.
     pub(crate) is_constant: bool,
     /// Work that the scene does not need.
     pub(crate) skipped: Vec<SkippedWork>,

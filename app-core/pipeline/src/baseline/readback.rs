@@ -1,4 +1,4 @@
-//! The baseline's maps, read back for reports and tests.
+//! Readback of the baseline's maps, for reports and tests.
 
 use crate::baseline::Baseline;
 use crate::gpu::{Gpu, GpuError};

@@ -1,4 +1,5 @@
-//! `retarget`: the baseline's picture: plate in the masks, the new shadow over it, the toy by projective texturing.
+//! `retarget`: the baseline's picture: the plate in the masks, the new shadow over it, and the toy
+//! by projective texturing.
 
 use wgpu::{CompareFunction, DepthStencilState, StoreOp, TextureFormat, VertexFormat};
 
@@ -22,9 +23,9 @@ const SLOTS: &[Slot] = &[
     Slot::Sampler,
     Slot::WholeNumbers,
 ];
-/// The shown pose, which is drawn, and the physical one.
+/// Vertices of the shown pose, which is drawn, and of the physical one.
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3), (1, VertexFormat::Float32x3)];
-/// Multisampling of the toy's silhouette.
+/// Samples per pixel at the toy's silhouette.
 const N_SAMPLES: u32 = 4;
 
 pub(crate) struct Pass {
@@ -43,12 +44,12 @@ pub(crate) struct Inputs<'a> {
     pub(crate) terms: &'a TextureView,
 }
 
-/// Of the region's size: two multisampled ones that are never stored, and the picture.
+/// Targets of the region's size: two multisampled ones that are never stored, and the picture.
 pub(crate) struct Targets {
     samples: Texture,
     depth: Texture,
     pub(crate) picture: Texture,
-    /// View of its sRGB codes, not decoded.
+    /// View of the picture's sRGB codes, which does not decode them.
     codes: TextureView,
 }
 
@@ -118,7 +119,7 @@ impl Pass {
     }
 }
 
-/// Depth state of the background: no test, no write.
+/// Depth state of the background: it neither tests nor writes depth.
 fn behind_all() -> DepthStencilState {
     DepthStencilState {
         depth_write_enabled: Some(false),

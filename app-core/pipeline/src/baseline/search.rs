@@ -1,4 +1,5 @@
-//! `search`: the shadow term of each texel of the new shadows, by the warp or by the concentric ring search.
+//! `search`: the shadow term of each texel of the new shadows, from the warp or from the concentric
+//! ring search.
 
 use wgpu::TextureFormat;
 
@@ -17,12 +18,12 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Read,
 ];
-/// Format of terms and of their sums.
+/// Format of the terms and of their sums.
 pub(crate) const TERM_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-/// Format of the count of taps.
+/// Format of the number of taps.
 const TAPS_FORMAT: TextureFormat = TextureFormat::R16Float;
 
-/// Only where the real shadow is sampled.
+/// Needed only if the real shadow is sampled.
 pub(crate) fn is_needed(plan: &BaselinePlan) -> bool {
     !plan.is_constant
 }
@@ -40,7 +41,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) plate: &'a TextureView,
 }
 
-/// Of the region's size.
+/// Targets of the region's size.
 pub(crate) struct Targets {
     pub(crate) terms: Texture,
     pub(crate) taps: Texture,

@@ -45,8 +45,8 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The settings, and properties of lights and receivers that the globals lack. `toy` bounds the toy in any pose, in
-/// anchor space.
+/// The settings, and the properties of lights and receivers that the globals do not hold. `toy`
+/// bounds the toy in every pose, in anchor space.
 pub(crate) fn uniform(layout: &SceneLayout<'_>, toy: &Bounds, settings: &BaselineSettings) -> Baseline {
     let mut light_radii = [0.0; MAX_LIGHTS];
     for (slot, light) in light_radii.iter_mut().zip(layout.lights) {
@@ -79,7 +79,8 @@ pub(crate) fn uniform(layout: &SceneLayout<'_>, toy: &Bounds, settings: &Baselin
     }
 }
 
-/// Each light's ratio, such that the product over all lights is `of_all`: shadows of AR products multiply.
+/// The ratio of each light. The product over all lights is `of_all`, because shadows of AR products
+/// multiply.
 fn ratio_per_light(of_all: f32, n_lights: usize) -> f32 {
     let n_lights = n_lights.max(1) as f32;
     of_all.powf(n_lights.recip())

@@ -1,4 +1,4 @@
-//! What the baseline lacks: real shadows that were not seen.
+//! Warnings of the baseline about real shadows that are not visible.
 
 use crate::baseline::Baseline;
 use crate::baseline::census::SeenSets;
@@ -7,12 +7,13 @@ use crate::gpu::{Gpu, GpuError};
 use crate::readback::{FloatMap, Map};
 use app_scene::scene::MAX_LIGHTS;
 
-/// Sets of lights that there can be, the empty one included.
+/// Number of possible sets of lights, including the empty one.
 const N_SETS: usize = 1 << MAX_LIGHTS;
 
 impl Baseline {
-    /// Waits for the device and returns what real shadow was not seen, for the pose shown last. `listed` has the indices of the
-    /// receivers and of the lights in use, in the lists that they were given in.
+    /// Waits for the device and returns warnings about the real shadows that are not visible, for
+    /// the pose shown last. `listed` has the indices of the used receivers and lights in the
+    /// caller's lists.
     pub(crate) fn read_warnings(
         &self,
         gpu: &Gpu,
@@ -35,7 +36,7 @@ impl Baseline {
     }
 }
 
-/// What the labels of terms need, as a census has it.
+/// The sets that the labels of the terms contain, in the form of a census.
 fn sets_in(terms: &FloatMap) -> SeenSets {
     let mut needed = SeenSets::default();
     for term in &terms.texels {

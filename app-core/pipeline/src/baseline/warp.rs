@@ -12,11 +12,11 @@ use crate::passes::toy_mesh::{PoseBuffers, ToyMesh};
 use app_scene::scene::MAX_RECEIVERS;
 
 pub(crate) const SHADER: Shader = shader!("baseline/warp");
-/// The shown pose, which is drawn, and the physical one.
+/// Vertices of the shown pose, which is drawn, and of the physical one.
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3), (1, VertexFormat::Float32x3)];
-/// Format of the warp: source position and height need more precision than f16.
+/// Format of the warp: source position and height need more precision than f16 has.
 const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
-/// Instances of a light, one per receiver.
+/// Instances per light, one per receiver.
 #[allow(clippy::cast_possible_truncation, reason = "a handful")]
 const N_SLOTS: u32 = MAX_RECEIVERS as u32;
 
@@ -24,7 +24,7 @@ pub(crate) struct Pass {
     draw: Draw,
 }
 
-/// The shadow of one light that a toy casts in a pose.
+/// The shadow that a posed toy casts from one light.
 pub(crate) struct Inputs<'a> {
     pub(crate) globals: &'a Buffer,
     pub(crate) toy: &'a ToyMesh,
@@ -33,7 +33,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) n_receivers: u32,
 }
 
-/// Of the region's size.
+/// Targets of the region's size.
 pub(crate) struct Targets {
     /// One layer per light.
     pub(crate) maps: TextureLayers,

@@ -1,4 +1,4 @@
-//! Why the core cannot go on.
+//! Errors of the core.
 
 use thiserror::Error;
 
@@ -7,11 +7,11 @@ use crate::preset::SettingsError;
 use app_scene::scene::InputError;
 use app_scene::toy::ToyError;
 
-/// Why the core cannot go on.
+/// The reason why the core cannot continue.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CoreError {
-    /// There is no device, or it was lost.
+    /// No device exists, or it was lost.
     #[error(transparent)]
     Gpu(#[from] GpuError),
     /// The toy cannot be posed.
@@ -20,32 +20,32 @@ pub enum CoreError {
     /// A setting is out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// A frame came before there was a scene.
-    #[error("a frame came before its scene")]
+    /// A frame arrived before a scene was set.
+    #[error("a frame arrived before a scene was set: set the scene first")]
     NoScene,
-    /// A picture is not of the scene's size.
+    /// A picture does not have the scene's size.
     #[error(
         "the {what} has {actual_px:?} pixels in {n_bytes} bytes, the scene {expected_px:?} of four bytes each"
     )]
     SizeDiffers {
-        /// Which picture.
+        /// Name of the picture.
         what: &'static str,
         /// The scene's size.
         expected_px: [u32; 2],
         /// The picture's size.
         actual_px: [u32; 2],
-        /// What it comes in.
+        /// Size of the picture's data.
         n_bytes: usize,
     },
-    /// A picture is larger than the device takes, or empty.
+    /// A picture is empty or larger than the device supports.
     #[error("pictures of {size_px:?} pixels cannot be handled: each side is 1 to {largest_px} pixels")]
     SizeOutOfRange {
         /// The scene's size.
         size_px: [u32; 2],
-        /// Longest side that the device takes.
+        /// Longest side that the device supports.
         largest_px: u32,
     },
-    /// A scene or a frame with a value that cannot be.
+    /// A scene or a frame contains an impossible value.
     #[error(transparent)]
     Input(#[from] InputError),
 }

@@ -1,4 +1,4 @@
-//! Warnings about what was learned, read back from the device: for reports, never for a frame.
+//! Warnings about the fits, read back from the device: for reports, never during a frame.
 
 use super::inspect::Inspect;
 use super::{Core, CoreError};
@@ -11,39 +11,46 @@ use crate::model::state::solution::Fit;
 use crate::readback::Map;
 use crate::stage::Stage;
 
-/// Conditioning below which a light's intensity is under-constrained, and its sum over the lights below which too little of
-/// the real shadow is seen. Two lights in one position have 0.5 each, ones whose shadows differ more than 0.99.
+/// Conditioning below which a light's intensity is under-constrained, and sum of the lights'
+/// conditioning below which too little of the real shadow is visible. Two lights at one position
+/// have 0.5 each; lights with different shadows have more than 0.99.
 const LEAST_CONDITIONING: f64 = 0.75;
-/// What the lights give of the plate's radiance, below which no real shadow is there: its edge would hardly show.
+/// Share of the lights in the plate's radiance below which no real shadow is assumed: its edge
+/// would hardly be visible.
 const LEAST_DIRECT_FRACTION: f32 = 0.03;
-/// Blackest and whitest: no paint throws back less than a hundredth of the light, or more than all but that.
+/// Darkest and brightest bounce: no paint reflects less than a hundredth of the light or more than
+/// 99 hundredths.
 const POSSIBLE_BOUNCE: [f32; 2] = [0.01, 0.99];
-/// Light over the plate's below which a toy is dark: a dark table's may be brighter, and is then not accused.
+/// Light relative to the plate's below which a toy is dark. A dark table may reflect more light
+/// than expected; then no warning is given.
 const DARK_TOY: f64 = 0.15;
-/// Pixels of real shadow below which its strength is uncertain: with up to 18 of them a direct fraction was off by 0.06 to
-/// 0.16, with 35 and more by at most 0.06.
+/// Pixels of real shadow below which its strength is uncertain: with up to 18 pixels a direct
+/// fraction was wrong by 0.06 to 0.16, with 35 and more by at most 0.06.
 const FEWEST_PIXELS: f64 = 25.0;
-/// Share of plate or shadow from which it is unreadable: what is left is no fair sample of it.
+/// Share of unreadable plate or shadow pixels from which a warning is given: the remaining pixels
+/// are not representative.
 const UNREADABLE: f64 = 0.5;
-/// Share of the toy's pixels that show the plate, from which the toy is not there: one of the table's colour is shaded.
+/// Share of the toy's pixels that show the plate, from which the toy is considered absent. A toy of
+/// the table's colour differs by its shading.
 const NOT_SEEN: f64 = 0.8;
-/// Spread of colours between picture and plate, as a logarithm, from which red and blue may be swapped: more than grain.
+/// Standard deviation of the colours between picture and plate, as a logarithm, from which red and
+/// blue may be swapped: more than grain.
 const COLORS_DIFFER: f64 = 0.1;
-/// How much less of it is left when they are.
+/// Factor by which the deviation must shrink when red and blue are swapped.
 const TIMES_LESS: f64 = 2.0;
 
 impl Core {
-    /// Waits for the device and returns warnings about what was learned, up to the latest frame.
+    /// Waits for the device and returns warnings about the fits, up to the latest frame.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// If the device is lost.
     pub fn read_fit_warnings(&self) -> Result<Vec<Warning>, CoreError> {
         let Some(fit) = self.read_fit()? else {
             return self.read_baseline_warnings();
         };
         let evidence = self.read_evidence(&fit)?;
         let about_pictures = evidence.as_ref().and_then(unseen);
-        // It explains why the fit knows little.
+        // The evidence explains why the fit is weak.
         let about_fit = match (&about_pictures, &evidence) {
             (None, Some(evidence)) => self.about_fit(&fit, evidence)?,
             _ => None,
@@ -70,7 +77,7 @@ impl Core {
         Ok(method.read_warnings(&self.gpu, listed)?)
     }
 
-    /// What the pictures of the latest view show.
+    /// Evidence in the pictures of the latest view.
     fn read_evidence(&self, fit: &Fit) -> Result<Option<Evidence>, CoreError> {
         let (Some(model), Some(image)) = (self.model(), self.stage.as_ref().and_then(Stage::learned_image))
         else {
@@ -97,7 +104,7 @@ impl Core {
         Ok(Some(Evidence::of((0..frame.len()).map(pixel), &fit.gain)))
     }
 
-    /// What the fit does not know of the shadow's strength.
+    /// Warnings about the unknown part of the shadow's strength.
     fn about_fit(&self, fit: &Fit, evidence: &Evidence) -> Result<Option<Warning>, CoreError> {
         let conditioning = self.read_conditioning()?;
         let (Some(stage), Some(model)) = (&self.stage, self.model()) else {
@@ -112,7 +119,7 @@ impl Core {
         }
         let known: f64 = conditioning.iter().map(|(_, known)| known).sum();
         if known < LEAST_CONDITIONING {
-            // Where the toy is out of the picture, a warning of the frame says so.
+            // If the toy is outside the picture, a warning of the frame reports it.
             let faint = Warning::FaintShadow { assumed: 1.0 - known };
             return Ok(stage.is_toy_in_picture().then_some(faint));
         }
@@ -135,8 +142,8 @@ impl Core {
         })
     }
 
-    /// How far each light's intensity is seen rather than assumed, with its index in the list that it was given in; without
-    /// those inside the toy, which cast no shadow.
+    /// Share of each light's intensity that is measured rather than assumed, with its index in the
+    /// caller's list; lights inside the toy, which cast no shadow, are left out.
     fn read_conditioning(&self) -> Result<Vec<(usize, f64)>, CoreError> {
         let (Some(stage), Some(model)) = (&self.stage, self.model()) else {
             return Ok(Vec::new());
@@ -164,15 +171,16 @@ impl Core {
     }
 }
 
-/// How much of the light counts as one from all around where no other is known, on the receiver that the toy stands on.
+/// Share of the light that counts as ambient where no other information exists, on the receiver on
+/// which the toy stands.
 fn ambient_strength(fit: &Fit) -> f32 {
     let [r, g, b, _] = fit.receivers[0].bounce;
-    // The bounce is at most 1, but for rounding.
+    // The bounce is at most 1, except for rounding.
     (1.0 - (r + g + b) / 3.0).max(0.0)
 }
 
-/// That the bounce on the receiver which the toy stands on is none that a toy can have, in most channels; a channel in which the toy
-/// itself is dark may well have none.
+/// A warning if, in most channels, the bounce on the receiver on which the toy stands is impossible
+/// for a toy. A channel in which the toy itself is dark may have no bounce.
 fn bounce_at_limit(fit: &Fit, evidence: &Evidence) -> Option<Warning> {
     let toy = evidence.toy_over_plate()?;
     let [red, green, blue, _] = fit.receivers[0].bounce;
@@ -186,7 +194,8 @@ fn bounce_at_limit(fit: &Fit, evidence: &Evidence) -> Option<Warning> {
     (is_black || is_white).then_some(Warning::BounceAtLimit { is_black })
 }
 
-/// What all lights give of the plate's radiance, on the receiver and in the channel where it is most.
+/// Share of all lights in the plate's radiance, on the receiver and in the channel with the largest
+/// one.
 fn total_direct_fraction(fit: &Fit, n_receivers: u32) -> f32 {
     let total = |lights: &[[f32; 4]], channel: usize| lights.iter().map(|light| light[channel]).sum();
     let receivers = fit.receivers.iter().take(n_receivers as usize);
@@ -195,7 +204,7 @@ fn total_direct_fraction(fit: &Fit, n_receivers: u32) -> f32 {
         .fold(0.0, f32::max)
 }
 
-/// What the pictures do not show, the first that explains the others.
+/// The first thing missing in the pictures that explains the others.
 fn unseen(evidence: &Evidence) -> Option<Mismatch> {
     let at_least = |share: Option<f64>, least: f64| share.filter(|share| *share >= least);
     let plate = at_least(evidence.unreadable_plate(), UNREADABLE);

@@ -1,4 +1,4 @@
-//! [`Inspect`]: what the core made and learned, for the project's own tests and programs.
+//! [`Inspect`]: resources and results of the core, for the project's own tests and programs.
 
 use bytemuck::Zeroable;
 
@@ -11,63 +11,73 @@ use crate::model::state::tints::TintMap;
 use crate::readback::inject::InjectedVisibility;
 use crate::readback::{FloatMap, Map};
 
-/// Measuring and measuring aids, behind the public face of [`Core`]. What reads waits for the device.
+/// Measurements and measuring aids behind the public interface of [`Core`]. Methods that read wait
+/// for the device.
 pub trait Inspect {
-    /// How many objects of each kind the device was asked to make so far, whether they still live or not.
+    /// Number of objects of each kind that were created on the device so far, including those that
+    /// were dropped.
     fn n_created(&self) -> [(Kind, u64); Kind::ALL.len()];
 
-    /// Bytes of textures and buffers that the device was asked for so far, by their descriptors.
+    /// Bytes of textures and buffers that were allocated on the device so far, by their
+    /// descriptors.
     fn memory(&self) -> Memory;
 
-    /// The model's plan of the latest retargeted frame, once there was one.
+    /// The model's plan of the latest retargeted frame; `None` before the first.
     fn plan(&self) -> Option<&Plan>;
 
-    /// What the model's fits found, once there was a retargeted frame.
+    /// The results of the model's fits; `None` before the first retargeted frame.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// If the device is lost.
     fn read_fit(&self) -> Result<Option<Fit>, CoreError>;
 
-    /// A map of the latest retargeted frame, once there was one, where its method makes it.
+    /// A map of the latest retargeted frame; `None` before the first, or if the frame's method does
+    /// not make the map.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// If the device is lost.
     fn read_map(&self, map: Map) -> Result<Option<FloatMap>, CoreError>;
 
-    /// Each receiver's coarse grid with the filled residuals on it, once there was a retargeted frame of the model.
+    /// Each receiver's coarse grid with the filled residuals on it; empty before the first
+    /// retargeted frame of the model.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// If the device is lost.
     fn read_residuals(&self) -> Result<Vec<(Grid, FloatMap)>, CoreError>;
 
-    /// The tints of the toy's paint, once there was a retargeted frame of the model.
+    /// The tints of the toy's paint; `None` before the first retargeted frame of the model.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// If the device is lost.
     fn read_tints(&self) -> Result<Option<TintMap>, CoreError>;
 
-    /// Replaces visibilities of the lights from the next frame on, which learns anew, so that errors of visibility can be
-    /// separated from all others. The maps stay until the view or the scene changes, or others are injected.
+    /// Replaces visibilities of the lights from the next frame on, which runs the fits anew, so
+    /// that errors of visibility can be separated from all others. The maps stay until the view or
+    /// the scene changes, or until others are injected.
     ///
     /// # Errors
-    /// When no frame was retargeted yet, or a map is not of the size of the latest one's region.
+    /// If no frame was retargeted yet, or if a map does not have the size of the latest frame's
+    /// region.
     fn inject_visibility(&mut self, maps: &InjectedVisibility) -> Result<(), CoreError>;
 
-    /// Keeps the real shadow from what is learned from here on, so that how well it is rebuilt can be measured on photographs
-    /// that have no truth. Of the first frame only the fits see it, and, where no plate shows the place, a smooth estimate of
-    /// that, in which shadow counts little. The physical pose is then made like any other: its photograph is its truth.
+    /// Excludes the real shadow from everything that is estimated from here on. Thus its
+    /// reconstruction can be measured on photographs without ground truth. In the first frame only
+    /// the fits see the shadow, and, where no plate shows the place, a smooth estimate of the
+    /// plate, in which the shadow has little weight. The physical pose is then drawn like any
+    /// other; its photograph is the ground truth.
     ///
-    /// Until another scene is set; for the presets of the model alone.
+    /// The exclusion lasts until another scene is set and exists for the presets of the model
+    /// alone.
     ///
     /// # Errors
-    /// When there is no scene.
+    /// If there is no scene.
     fn withhold_shadow(&mut self) -> Result<(), CoreError>;
 
-    /// Draws a pose that is shown again as if it were new, so that a frame can be measured by repeating it. Until another scene
-    /// is set.
+    /// Draws a repeated pose as if it were new, so that a frame can be measured by repetition,
+    /// until another scene is set.
     ///
     /// # Errors
-    /// When there is no scene.
+    /// If there is no scene.
     fn draw_every_pose(&mut self) -> Result<(), CoreError>;
 }
 

@@ -1,4 +1,4 @@
-//! [`Core`]: the one type that a shell or a program holds.
+//! [`Core`]: the central type that a shell or a program holds.
 
 mod error;
 mod fit_warnings;
@@ -39,34 +39,35 @@ pub struct Core {
     gpu: Arc<Gpu>,
     window: Option<Window>,
     stage: Option<Stage>,
-    /// Where a camera's picture was shown last, not a frame's.
+    /// The camera's picture, if it was shown last instead of a frame.
     preview: Option<Preview>,
-    /// Only for those who ask.
+    /// Timer of the passes; `None` until it is requested.
     timer: Option<Timer>,
     clock: Option<Clock>,
 }
 
 impl Core {
-    /// A core that draws into textures alone, for replay and tests.
+    /// Returns a core that draws into textures alone, for replay and tests.
     ///
     /// # Errors
-    /// When there is no adapter of that choice, or it falls short of a phone's limits.
+    /// If there is no such adapter, or it falls short of a phone's limits.
     pub async fn headless(instance: &wgpu::Instance, adapter: &AdapterChoice) -> Result<Self, CoreError> {
         Ok(Self::new(Gpu::open(instance, adapter, None).await?, None))
     }
 
-    /// A core on the caller's own device, which draws into textures alone; the caller goes on using device and queue.
+    /// Returns a core on the caller's own device, which draws into textures alone; the caller may
+    /// continue to use device and queue.
     ///
     /// # Errors
-    /// When the device was opened with less than a phone's limits.
+    /// If the device was opened with less than a phone's limits.
     pub fn on_device(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, CoreError> {
         Ok(Self::new(Gpu::adopt(device, queue)?, None))
     }
 
-    /// A core that presents on `surface`, of `size_px` physical pixels.
+    /// Returns a core that presents on `surface`, of `size_px` physical pixels.
     ///
     /// # Errors
-    /// When no adapter can draw on the surface, or it falls short of a phone's limits.
+    /// If no adapter can draw on the surface, or it falls short of a phone's limits.
     pub async fn on_surface(
         instance: &wgpu::Instance,
         surface: wgpu::Surface<'static>,
@@ -77,15 +78,15 @@ impl Core {
         Ok(Self::new(gpu, Some(window)))
     }
 
-    /// A core without a device: nothing is drawn, but each frame's report has the work of the passes that would run, from
-    /// the same descriptors. What is to be read of the device is an error.
+    /// Returns a core without a device: it draws nothing, but each frame's report has the work of
+    /// the passes that would run, from the same descriptors. Reading from the device is an error.
     #[must_use]
     pub fn counting() -> Self {
         Self::new(Gpu::default(), None)
     }
 
-    /// A core without a scene that draws into textures alone, on the same device: it shares all that is compiled, and nothing that is
-    /// learned.
+    /// Returns a core without a scene that draws into textures alone, on the same device: it shares
+    /// all compiled pipelines, but no estimates.
     #[must_use]
     pub fn beside(&self) -> Self {
         Self::new(Arc::clone(&self.gpu), None)
@@ -102,31 +103,33 @@ impl Core {
         }
     }
 
-    /// The device, for a platform that lends its textures; none of a core that only counts.
+    /// The device, for a platform that shares its textures; `None` for a core that only counts.
     #[must_use]
     pub fn device(&self) -> Option<DeviceHandle> {
         self.gpu.opened.as_ref().map(|opened| opened.device.handle())
     }
 
-    /// What compiled pipelines are kept under, from start to start: this crate's version, the device and its driver. None where the
-    /// driver hands none out, or its fault is known.
+    /// Key under which compiled pipelines are kept between starts: this crate's version, the device
+    /// and its driver. `None` if the driver does not export pipelines, or has a known fault in
+    /// doing so.
     #[must_use]
     pub fn pipelines_key(&self) -> Option<String> {
         self.gpu.pipelines_key()
     }
 
-    /// Compiles with a cache of the driver's from now on, which a caller made on [`Core::device`], of what an earlier start has kept.
+    /// Compiles with a cache of the driver from now on. The caller created the cache on
+    /// [`Core::device`] from the data of an earlier start.
     pub fn set_pipeline_cache(&self, cache: wgpu::PipelineCache) {
         self.gpu.set_pipeline_cache(cache);
     }
 
-    /// What the driver's cache holds by now, for the next start; none without a cache.
+    /// The present content of the driver's cache, for the next start; `None` without a cache.
     #[must_use]
     pub fn pipeline_data(&self) -> Option<Vec<u8>> {
         self.gpu.pipeline_data()
     }
 
-    /// Drops the surface; device, pipelines and what was learned stay.
+    /// Drops the surface; device, pipelines and estimates stay.
     pub fn suspend(&mut self) {
         self.window = None;
     }
@@ -134,23 +137,24 @@ impl Core {
     /// Continues on a new surface.
     ///
     /// # Errors
-    /// When the device cannot draw on it.
+    /// If the device cannot draw on it.
     pub fn resume(&mut self, surface: wgpu::Surface<'static>, size_px: [u32; 2]) -> Result<(), CoreError> {
         self.window = Some(Window::new(&self.gpu, surface, size_px)?);
         Ok(())
     }
 
-    /// Follows a new size of the surface, in physical pixels.
+    /// Adapts to a new size of the surface, in physical pixels.
     pub fn resize(&mut self, size_px: [u32; 2]) {
         if let Some(window) = &mut self.window {
             window.resize(&self.gpu, size_px);
         }
     }
 
-    /// Takes a camera's picture as it is for the latest, until the next frame: no scene is needed, and nothing is learned.
+    /// Uses a camera's unchanged picture as the latest one until the next frame: it needs no scene,
+    /// and nothing is estimated from it.
     ///
     /// # Errors
-    /// When its size is out of range, or the device refuses.
+    /// If its size is out of range, or the device refuses the work.
     pub fn show_camera(&mut self, image: &CameraImage) -> Result<(), CoreError> {
         self.check_sides(image.size_px())?;
         let size_px = image.size_px();
@@ -171,15 +175,15 @@ impl Core {
         Ok(())
     }
 
-    /// Shows the latest picture, or black before the first.
+    /// Presents the latest picture, or black before the first.
     ///
     /// # Errors
-    /// When the surface is lost for good; one that is only out of date is set up anew.
+    /// If the surface is lost for good; an outdated surface is configured anew.
     pub fn present(&mut self, display: Display) -> Result<(), CoreError> {
         self.present_with(display, |_| {})
     }
 
-    /// As [`Core::present`]; `paint` may paint over the picture before it is shown.
+    /// Like [`Core::present`]; `paint` may paint over the picture before it is presented.
     ///
     /// # Errors
     /// As [`Core::present`].
@@ -195,15 +199,15 @@ impl Core {
         Ok(window.present(&self.gpu, self.timer.as_mut(), picture, display, paint)?)
     }
 
-    /// A target of the caller's with the core's device, to be painted on as by [`Core::present_with`]; none where the core only
-    /// counts.
+    /// A target of the caller with the core's device, to be painted on as by
+    /// [`Core::present_with`]; `None` if the core only counts.
     #[must_use]
     pub fn canvas<'a>(&'a self, target: &'a wgpu::Texture) -> Option<Canvas<'a>> {
         Canvas::on(&self.gpu, target)
     }
 
-    /// A screen that nobody sees, for [`Core::draw_on`] and [`Core::canvas`], of four bytes a pixel. None if the core only counts, or
-    /// the device has no texture of that size.
+    /// An off-screen target for [`Core::draw_on`] and [`Core::canvas`], of four bytes a pixel.
+    /// `None` if the core only counts, or if the device has no texture of that size.
     #[must_use]
     pub fn hidden_screen(&self, size_px: [u32; 2]) -> Option<wgpu::Texture> {
         let size_px = size_px.map(|side| side.max(1));
@@ -215,7 +219,7 @@ impl Core {
     /// Waits for the device and returns the picture of a [`Core::hidden_screen`].
     ///
     /// # Errors
-    /// When the device is lost, or refuses to copy the texture.
+    /// If the device is lost, or refuses to copy the texture.
     pub fn read_screen(&self, screen: &wgpu::Texture) -> Result<Image, CoreError> {
         Ok(Image {
             width_px: screen.width(),
@@ -224,11 +228,12 @@ impl Core {
         })
     }
 
-    /// Draws the latest picture on a target of the caller's own, as [`Core::present`] does on the surface. The target's
-    /// format takes sRGB codes as they are, such as [`Bgra8Unorm`](wgpu::TextureFormat::Bgra8Unorm).
+    /// Draws the latest picture on a target of the caller's own, as [`Core::present`] does on the
+    /// surface. The target's format stores sRGB codes unchanged, such as
+    /// [`Bgra8Unorm`](wgpu::TextureFormat::Bgra8Unorm).
     ///
     /// # Errors
-    /// When there is no scene, or the device refuses.
+    /// If there is no scene, or the device refuses the work.
     pub fn draw_on(&mut self, target: &wgpu::Texture, display: Display) -> Result<(), CoreError> {
         let picture =
             latest(&self.gpu, self.preview.as_ref(), self.stage.as_ref()).ok_or(CoreError::NoScene)?;
@@ -240,11 +245,12 @@ impl Core {
         Ok(())
     }
 
-    /// Takes a scene, and a [`Preset`](crate::preset::Preset) or [`Settings`] of the caller's; what was learned of the one before is
-    /// forgotten.
+    /// Sets a scene, with a [`Preset`](crate::preset::Preset) or [`Settings`] of the caller's;
+    /// estimates of the previous scene are dropped.
     ///
     /// # Errors
-    /// When a value of either cannot be, a plate is not of its size, or that size is out of range or of the device's memory.
+    /// If a value of either is impossible, if a plate does not have the scene's size, or if that
+    /// size is out of range or exceeds the device's memory.
     pub fn set_scene(
         &mut self,
         scene: impl Into<Arc<Scene>>,
@@ -270,18 +276,20 @@ impl Core {
         Ok(())
     }
 
-    /// Goes back to where no scene was set.
+    /// Returns to the state before a scene was set.
     pub fn forget_scene(&mut self) {
         self.stage = None;
         self.gpu.release_groups();
     }
 
-    /// Turns settings of the model down from the next frame on, or up again: those that a
-    /// [`Governor`](crate::governor::Governor) has [turned down](crate::governor::Governor::turned_down). What was learned of the
-    /// place stays; the next frame learns as from a new view. Until another scene is set; the baseline has no such settings.
+    /// Reduces settings of the model from the next frame on, or restores them: those that a
+    /// [`Governor`](crate::governor::Governor) has [turned
+    /// down](crate::governor::Governor::turned_down). Estimates of the place stay; the next frame
+    /// runs the fits as from a new view. The steps apply until another scene is set; the baseline
+    /// has no such settings.
     ///
     /// # Errors
-    /// When there is no scene.
+    /// If there is no scene.
     pub fn set_quality_reductions(&mut self, steps: &[QualityStep]) -> Result<(), CoreError> {
         self.stage
             .as_mut()
@@ -293,8 +301,8 @@ impl Core {
     /// Makes the picture of one frame.
     ///
     /// # Errors
-    /// When there is no scene, a value of the input cannot be, the camera's picture is not of the scene's size, or the device
-    /// refuses the work.
+    /// If there is no scene, if a value of the input is impossible, if the camera's picture does
+    /// not have the scene's size, or if the device refuses the work.
     pub fn frame(&mut self, input: &FrameInput) -> Result<FrameReport, CoreError> {
         let stage = self.stage.as_mut().ok_or(CoreError::NoScene)?;
         drop_preview(&self.gpu, &mut self.preview);
@@ -323,7 +331,8 @@ impl Core {
         }
     }
 
-    /// What [`Core::present`] of a picture costs on a screen of `screen_px` pixels; none before the first scene.
+    /// The cost of [`Core::present`] for a picture on a screen of `screen_px` pixels; `None` before
+    /// the first scene.
     #[must_use]
     pub fn count_present(&self, screen_px: [u32; 2], display: Display) -> Option<Work> {
         let picture = self.stage.as_ref()?.composed(&self.gpu);
@@ -331,10 +340,11 @@ impl Core {
     }
 
     /// Draws the latest frame's picture into a texture of the scene's size: sRGB codes as
-    /// [`Rgba8Unorm`](wgpu::TextureFormat::Rgba8Unorm), which can be bound and copied from. It is the same until the next scene.
+    /// [`Rgba8Unorm`](wgpu::TextureFormat::Rgba8Unorm), which can be bound and copied from. The
+    /// texture stays the same until the next scene.
     ///
     /// # Errors
-    /// When there is no scene, or the device refuses.
+    /// If there is no scene, or the device refuses the work.
     pub fn picture(&self) -> Result<&wgpu::Texture, CoreError> {
         let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
         let picture = self.gpu.guarded(|| stage.draw_picture(&self.gpu))?;
@@ -344,7 +354,7 @@ impl Core {
     /// Waits for the device and returns the latest picture, alpha 255.
     ///
     /// # Errors
-    /// When there is no scene, or the device is lost.
+    /// If there is no scene, or the device is lost.
     pub fn read_picture(&self) -> Result<Image, CoreError> {
         let stage = self.stage.as_ref().ok_or(CoreError::NoScene)?;
         let picture = self.gpu.guarded(|| stage.draw_picture(&self.gpu))?;
@@ -357,10 +367,11 @@ impl Core {
         })
     }
 
-    /// Takes time stamps of each pass from the next frame on, where the device can; or no longer.
+    /// Starts time stamps of each pass from the next frame on, if the device supports them, or
+    /// stops them.
     ///
     /// # Errors
-    /// When the device refuses.
+    /// If the device refuses the work.
     pub fn time_passes(&mut self, is_wanted: bool) -> Result<(), CoreError> {
         self.timer = if is_wanted {
             self.gpu.guarded(|| Timer::new(&self.gpu))?
@@ -370,16 +381,17 @@ impl Core {
         Ok(())
     }
 
-    /// Times the stages of frames on the processor from the next one on, by a clock of the caller's; or no longer.
+    /// Starts timing the processor's stages of frames from the next one on, by a clock of the
+    /// caller's, or stops it.
     pub fn time_stages(&mut self, clock: Option<Clock>) {
         self.clock = clock;
     }
 
-    /// Waits for the device and returns the latest frame's time per pass; empty where nobody asked for it, or the device
-    /// cannot tell.
+    /// Waits for the device and returns the latest frame's time per pass; empty if it was not
+    /// requested, or if the device cannot measure it.
     ///
     /// # Errors
-    /// When the device is lost.
+    /// If the device is lost.
     pub fn read_pass_times(&self) -> Result<Vec<PassTime>, CoreError> {
         let times = self
             .timer
@@ -405,27 +417,28 @@ impl Core {
             .and_then(Method::model)
     }
 
-    /// Name of the device's adapter with its driver, as it calls itself; empty where the core only counts.
+    /// Name of the device's adapter with its driver, as reported by the system; empty if the core
+    /// only counts.
     #[must_use]
     pub fn adapter_name(&self) -> String {
         self.gpu.adapter_name()
     }
 
-    /// Whether the device computes on the processor.
+    /// Whether the device is a software renderer.
     #[must_use]
     pub fn is_software(&self) -> bool {
         self.gpu.is_software()
     }
 }
 
-/// Drops a preview with its textures, of which bind groups are kept, too.
+/// Drops a preview together with its textures and the bind groups kept for them.
 fn drop_preview(gpu: &Gpu, preview: &mut Option<Preview>) {
     if preview.take().is_some() {
         gpu.release_groups();
     }
 }
 
-/// The picture that was made or taken last.
+/// The picture that was made or shown last.
 fn latest<'a>(
     gpu: &Gpu,
     preview: Option<&'a Preview>,

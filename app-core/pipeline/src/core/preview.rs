@@ -1,4 +1,4 @@
-//! A camera's picture as it is, before there is a scene or while nothing is known of one.
+//! A camera's unchanged picture, before a scene exists or while none is estimated.
 
 use glam::UVec2;
 
@@ -25,7 +25,7 @@ impl Preview {
         self.size_px
     }
 
-    /// Uploads the picture, unless it is the one that is there.
+    /// Uploads the picture, unless it is already on the device.
     pub(super) fn take(&mut self, gpu: &Gpu, image: &CameraImage) {
         self.texture.take(gpu, image);
     }

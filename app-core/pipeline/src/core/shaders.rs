@@ -1,4 +1,4 @@
-//! Other texts of shaders, for those who change them.
+//! Replacement of shader texts, for shader authors.
 
 use super::window::Window;
 use super::{Core, CoreError};
@@ -8,12 +8,14 @@ use crate::passes::screen;
 use crate::preset::Preset;
 
 impl Core {
-    /// Draws with other WGSL files from now on: those of `texts`, and all others as they are built in. The scene is to be set again, as
-    /// after [`Core::forget_scene`]. Cores [beside](Core::beside) this one follow when their scenes are set; no
-    /// [`Core::warm_up`] may run on another thread meanwhile.
+    /// Draws with other WGSL files from now on: those of `texts`, and the built-in files otherwise.
+    /// The scene must be set again, as after [`Core::forget_scene`]. Cores [beside](Core::beside)
+    /// this one follow when their scenes are set; no [`Core::warm_up`] may run on another thread
+    /// meanwhile.
     ///
     /// # Errors
-    /// When the device refuses a pass, in the words of its compiler and with the pass's name: shaders and scene stay as they were.
+    /// If the device refuses a pass, in the words of its compiler and with the pass's name: shaders
+    /// and scene then stay unchanged.
     pub fn replace_shaders(&mut self, texts: ShaderTexts) -> Result<(), CoreError> {
         let before = self.gpu.replace_shaders(texts);
         let screen = match self.compile_all() {
@@ -31,13 +33,13 @@ impl Core {
         Ok(())
     }
 
-    /// Whether nothing was put in place of the shaders that are built in.
+    /// Whether all shaders are the built-in ones.
     #[must_use]
     pub fn has_built_in_shaders(&self) -> bool {
         self.gpu.has_built_in_shaders()
     }
 
-    /// Compiles the passes of all presets, and the screen's, which it returns.
+    /// Compiles the passes of all presets and returns the screen's pass.
     fn compile_all(&self) -> Result<screen::Pass, GpuError> {
         for preset in Preset::ALL {
             for compiled in self.warm_up(*preset) {

@@ -1,4 +1,4 @@
-//! Compiling what frames need before there is a scene.
+//! Compilation of the passes of a frame before a scene exists.
 
 use std::sync::Arc;
 
@@ -9,9 +9,10 @@ use crate::preset::Settings;
 use crate::stage::method;
 
 impl Core {
-    /// Compiles what frames with these settings need, one pass a step: on another thread, or a few steps between two frames of
-    /// the shell's own. What has not been compiled until then, [`Core::set_scene`] compiles; what reads pictures that come as pixels
-    /// rather than as a phone's planes, the first frames with such.
+    /// Compiles the passes of frames with these settings, one pass a step: on another thread, or a
+    /// few steps between two frames of the shell. [`Core::set_scene`] compiles passes that are then
+    /// still missing. The passes that read pictures in pixels rather than in a phone's planes are
+    /// compiled by the first such frames.
     #[must_use]
     pub fn warm_up(&self, settings: impl Into<Settings>) -> WarmUp {
         WarmUp {
@@ -21,8 +22,8 @@ impl Core {
     }
 }
 
-/// The steps of [`Core::warm_up`]: each is the name of the pass that it compiled, and [`len`](ExactSizeIterator::len) says how
-/// many are left.
+/// The steps of [`Core::warm_up`]: each is the name of the pass that it compiled, and
+/// [`len`](ExactSizeIterator::len) is the number of remaining steps.
 #[derive(Debug)]
 pub struct WarmUp {
     gpu: Arc<Gpu>,

@@ -1,4 +1,4 @@
-//! The surface that a core presents on, and other targets that a screen may show.
+//! The surface on which a core presents, and other targets of a screen.
 
 use wgpu::CurrentSurfaceTexture;
 
@@ -8,19 +8,20 @@ use crate::passes::present::OUTPUT_FORMAT;
 use crate::passes::screen;
 use app_scene::camera_frame::Display;
 
-/// A target of the screen's with the picture on it, to be painted over: what it takes are sRGB codes as they are.
+/// A target with the picture on it, to be painted over; it stores sRGB codes unchanged.
 #[derive(Clone, Copy, Debug)]
 pub struct Canvas<'a> {
     /// The core's device.
     pub device: &'a wgpu::Device,
-    /// Its queue. What is submitted here comes after the picture and before it is shown.
+    /// The device's queue. Work submitted here runs after the picture is drawn and before it is
+    /// presented.
     pub queue: &'a wgpu::Queue,
     /// The target.
     pub target: &'a wgpu::Texture,
 }
 
 impl<'a> Canvas<'a> {
-    /// None without a device.
+    /// Returns `None` without a device.
     pub(super) fn on(gpu: &'a Gpu, target: &'a wgpu::Texture) -> Option<Self> {
         let opened = gpu.opened.as_ref()?;
         Some(Self {
@@ -63,7 +64,7 @@ impl Window {
         })
     }
 
-    /// Format that `screen` is compiled for.
+    /// Format for which `screen` is compiled.
     pub(super) fn format(&self) -> wgpu::TextureFormat {
         self.config.format
     }
@@ -74,7 +75,7 @@ impl Window {
         configure(gpu, &self.surface, &self.config);
     }
 
-    /// Shows `picture`, or black.
+    /// Presents `picture`, or black.
     pub(super) fn present(
         &mut self,
         gpu: &Gpu,
@@ -114,7 +115,7 @@ impl Window {
     }
 }
 
-/// Draws a picture on a target that takes sRGB codes as they are.
+/// Draws a picture on a target that stores sRGB codes unchanged.
 pub(super) fn show(
     recorder: Recorder<'_>,
     screen: &screen::Pass,
@@ -126,7 +127,7 @@ pub(super) fn show(
     show_on(recorder, screen, picture, display, &target)
 }
 
-/// What that costs.
+/// The cost of presenting.
 pub(super) fn count(picture: &ComposedFrame<'_>, screen_px: [u32; 2], display: Display) -> Work {
     let gpu = Gpu::default();
     let target = Texture::target(&gpu, "", screen_px.into(), OUTPUT_FORMAT);
@@ -155,10 +156,11 @@ fn blacken(gpu: &Gpu, target: &wgpu::Texture) {
     recorder.submit();
 }
 
-/// A surface's configuration as it is used, whatever the platform offers first.
+/// A surface's configuration as it is used, independent of the platform's default.
 ///
-/// A picture waits for the display: Android offers `Mailbox` first, which draws as often as the processor can, most of it for nobody.
-/// And `screen` writes sRGB codes, which a surface that encodes once more would show too bright.
+/// A picture waits for the display: Android offers `Mailbox` first, which draws as often as the
+/// processor can, mostly pictures that are never displayed. And `screen` writes sRGB codes, which a
+/// surface that encodes again would show too bright.
 #[must_use]
 pub fn as_shown(config: wgpu::SurfaceConfiguration) -> wgpu::SurfaceConfiguration {
     wgpu::SurfaceConfiguration {
@@ -168,7 +170,7 @@ pub fn as_shown(config: wgpu::SurfaceConfiguration) -> wgpu::SurfaceConfiguratio
     }
 }
 
-/// The one place that configures a surface.
+/// Configures a surface; the only function that does.
 fn configure(gpu: &Gpu, surface: &wgpu::Surface<'static>, config: &wgpu::SurfaceConfiguration) {
     if let Some(opened) = &gpu.opened {
         surface.configure(&opened.device.raw, config);

@@ -17,15 +17,15 @@ pub use warning::{Mismatch, Outlier, Thing, UnseenShadow, Warning};
 pub struct FrameReport {
     /// The passes that ran, in the order of their first runs.
     pub ran: Vec<PassRun>,
-    /// Times of its stages on the processor, where a clock was given.
+    /// Times of the stages on the processor, if a clock was given.
     pub stages: Vec<StageTime>,
-    /// Bytes that the processor handed to the device for it.
+    /// Bytes that the processor transferred to the device for the frame.
     pub uploaded_bytes: u64,
-    /// What changed since the frame before; none when the camera frame passed through.
+    /// Changes since the previous frame; `None` if the camera frame passed through.
     pub change: Option<Change>,
-    /// What did not run, and why.
+    /// The skipped work, with the reasons.
     pub skipped: Vec<SkippedWork>,
-    /// The work region; none when the camera frame passed through.
+    /// The work region; `None` if the camera frame passed through.
     pub region: Option<PixelRect>,
     /// Warnings for the user.
     pub warnings: Vec<Warning>,

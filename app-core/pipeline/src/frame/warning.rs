@@ -97,6 +97,18 @@ pub enum Warning {
         /// Pixels that they would cover, one over the other.
         covered_px: f64,
     },
+    /// The toy is so glossy that it shows more than the listed lights and an even sky: what stands around it is mirrored, which no model here has.
+    TooGlossy {
+        /// Of the surface, as it was measured.
+        roughness: f32,
+        /// Of the glossiest material, over that of plastic.
+        strength: f32,
+    },
+    /// The receiver that the toy stands on is too smooth for what is known of what it reflects.
+    MirrorLike {
+        /// Width of the lobe, as Beckmann's alpha.
+        roughness: f64,
+    },
     /// The camera sees what the model cannot explain.
     Outlier(Outlier),
     /// Something beside the toy is in the pictures.
@@ -171,6 +183,7 @@ impl fmt::Display for Warning {
                 "{} would stand inside the real toy, which lets no light out: check where lights and toy stand",
                 lights_in_words(lights)
             ),
+            Self::TooGlossy { roughness, strength } => too_glossy(f, (*roughness, *strength)),
             Self::AmbientAlone { strength } => ambient_alone(f, *strength),
             Self::FaintShadow { assumed } => write!(
                 f,
@@ -191,6 +204,10 @@ impl fmt::Display for Warning {
                 f,
                 "no real shadow is seen of {}: the new one there has the shade of others",
                 listed(unseen, ", ")
+            ),
+            Self::MirrorLike { roughness } => write!(
+                f,
+                "the table is nearly a mirror (roughness {roughness:.2}): the toy's reflection is shown in one colour, and sharper things of the room in it stay as photographed; lay something duller under the toy"
             ),
             Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Outlier(unknown) => unknown.fmt(f),
@@ -236,6 +253,13 @@ fn bounce_at_limit(is_black: bool) -> &'static str {
     } else {
         "the table beside the toy is brighter than beside a white one: a bright thing nearby, or gloss; the new shadow may be too light"
     }
+}
+
+fn too_glossy(f: &mut fmt::Formatter<'_>, (roughness, strength): (f32, f32)) -> fmt::Result {
+    write!(
+        f,
+        "the toy is as glossy as a mirror or metal (roughness {roughness:.3}, {strength:.1} times as reflective as plastic): its reflection of the room moves like paint; a matt spray or softer light would help"
+    )
 }
 
 fn ambient_alone(f: &mut fmt::Formatter<'_>, strength: f32) -> fmt::Result {

@@ -1,20 +1,21 @@
-//! Receivers whose plane space has its origin near the toy, wherever their own origin is.
+//! Receivers whose plane space has its origin near the toy, wherever the receiver's own origin is.
 //!
-//! Shaders use 32-bit floats: coordinates are kept small, so that a receiver's origin may be a kilometre away from
-//! the toy.
+//! Shaders use 32-bit floats: coordinates stay small although a receiver's origin may be a
+//! kilometre from the toy.
 
 use glam::{DMat4, DVec2, DVec3};
 
 use crate::geometry::rect::PlaneRect;
 use app_scene::scene::{Receiver, Surface};
 
-/// Step of plane-space origins along the receiver's own axes, so that they stay when the toy is moved a little.
+/// Step of plane-space origins along the receiver's own axes, so that an origin stays when the toy
+/// moves a little.
 const STEP_M: f64 = 0.0625;
 
 /// A receiver in a plane space of its own: y = 0, its normal along +Y, its origin below the toy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AnchoredReceiver {
-    /// Rigid.
+    /// Rigid transform.
     pub world_from_plane: DMat4,
     /// Extent of the receiver.
     pub rect: PlaneRect,

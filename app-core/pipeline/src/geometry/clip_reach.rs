@@ -8,6 +8,7 @@ use crate::geometry::reach::Reach;
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
 use app_scene::geometry::bounds::Bounds;
+use app_scene::reflection::Reflection;
 use app_scene::toy::{ClipId, Pose, PosedMesh, Toy, ToyError};
 
 /// Moments of a clip that its outline is taken from.
@@ -78,9 +79,15 @@ impl ClipReach {
         has_grown
     }
 
-    /// Extent of toy and shadows in a view.
-    pub(crate) fn on_view<'a>(&self, view: &'a View, layout: &SceneLayout<'_>) -> Reach<'a> {
-        let mut reach = Reach::new(view, &self.bounds, layout);
+    /// Extent of toy, shadows and the toy's reflection in a view.
+    pub(crate) fn on_view<'a>(
+        &self,
+        view: &'a View,
+        layout: &SceneLayout<'_>,
+        reflection: Option<&Reflection>,
+    ) -> Reach<'a> {
+        let reach = Reach::new(view, &self.bounds, layout);
+        let mut reach = reach.with_reflection(reflection, layout.toy_in_anchor);
         self.outline.points().for_each(|p| reach.include(p));
         reach
     }

@@ -1,4 +1,4 @@
-//! Distances between the image positions of points seen by two cameras, or in two poses.
+//! Distances between the image positions of points in two cameras or in two poses.
 
 use glam::{DMat4, DVec3, DVec4};
 
@@ -7,7 +7,8 @@ use crate::geometry::reach::shadow_of;
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
 
-/// Below this distance two cameras count as the same: at the sharpest edge, of 200 codes a pixel, two codes.
+/// Distance below which two cameras count as equal: at the sharpest edge, of 200 codes a pixel, it
+/// is two codes.
 const SAME_VIEW_PX: f64 = 0.01;
 
 /// Whether two cameras project `points_in_world`, and points between them, to the same pixels.
@@ -15,9 +16,9 @@ pub(crate) fn is_same_view(views: [&View; 2], points_in_world: &[DVec3]) -> bool
     views[0] == views[1] || between_views(views, points_in_world) < SAME_VIEW_PX
 }
 
-/// Largest distance, in pixels, between where two cameras show `points_in_world`.
+/// Largest distance, in pixels, between the image positions of `points_in_world` in two cameras.
 ///
-/// Points behind both cameras do not count; one behind only one of them is infinitely far.
+/// Points behind both cameras do not count; a point behind one of them is infinitely far.
 #[must_use]
 pub(crate) fn between_views(views: [&View; 2], points_in_world: &[DVec3]) -> f64 {
     let [a, b] = views.map(|view| move |p: DVec3| view.image_px_from(&DMat4::IDENTITY, p.extend(1.0)));
@@ -25,10 +26,11 @@ pub(crate) fn between_views(views: [&View; 2], points_in_world: &[DVec3]) -> f64
     distances.fold(0.0, f64::max)
 }
 
-/// Largest distance, in pixels, between where a camera shows points of an object, or their shadows, in two poses of the whole
-/// object. A shadow shows motion along the line of sight, which the points themselves hardly do.
+/// Largest distance, in pixels, between the image positions of an object's points, or of their
+/// shadows, in two poses of the whole object. A shadow shows motion along the line of sight, which
+/// the points themselves hardly show.
 ///
-/// As above for points behind the camera, and alike for points without a shadow.
+/// Points behind the camera are handled as above, and so are points without a shadow.
 #[must_use]
 pub(crate) fn between_poses(
     view: &View,
@@ -46,7 +48,8 @@ pub(crate) fn between_poses(
     points_in_object.map(of_point).fold(0.0, f64::max)
 }
 
-/// Homogeneous image positions of a point, and of its shadows from each light on each receiver; zero where there is none.
+/// Homogeneous image positions of a point and of its shadows from each light on each receiver; zero
+/// if there is no shadow.
 fn images(view: &View, layout: &SceneLayout<'_>, in_world: DVec3) -> Vec<DVec3> {
     let own = view.image_px_from(&DMat4::IDENTITY, in_world.extend(1.0));
     let shadows = layout.receivers.iter().flat_map(|receiver| {
@@ -65,7 +68,7 @@ fn images(view: &View, layout: &SceneLayout<'_>, in_world: DVec3) -> Vec<DVec3> 
     [own].into_iter().chain(shadows).collect()
 }
 
-/// Between two homogeneous image positions, as [`View::image_px_from`] returns them.
+/// Distance between two homogeneous image positions, as [`View::image_px_from`] returns them.
 fn distance_px(a: DVec3, b: DVec3) -> f64 {
     match (a.z > NEAR_M, b.z > NEAR_M) {
         (false, false) => 0.0,

@@ -1,30 +1,31 @@
-//! The part of a picture that points extend over.
+//! The part of a picture that a set of points covers.
 
 use glam::{DVec2, DVec3, UVec2};
 
 use crate::geometry::rect::PixelRect;
 
-/// Nearest depth that a camera shows, in metres: of any scene a small part, since reversed depth loses no precision by it.
+/// Depth of the near plane in metres: a small part of any scene, since reversed depth loses no
+/// precision by it.
 pub(crate) const NEAR_M: f64 = 1e-6;
 
-/// Grows point by point.
+/// An extent that grows point by point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Extent {
     min_px: DVec2,
     max_px: DVec2,
-    /// A point behind the camera: the extent has no bound.
+    /// Whether a point lies behind the camera: the extent then has no bound.
     is_endless: bool,
 }
 
 impl Extent {
-    /// Of no point at all.
+    /// The extent of no point.
     pub(crate) const EMPTY: Self = Self {
         min_px: DVec2::INFINITY,
         max_px: DVec2::NEG_INFINITY,
         is_endless: false,
     };
 
-    /// Takes in a homogeneous image position, (u w, v w, w) with w its depth in metres.
+    /// Includes a homogeneous image position, (u w, v w, w) with w its depth in metres.
     pub(crate) fn include(&mut self, at: DVec3) {
         if at.z <= NEAR_M {
             self.is_endless = true;
@@ -34,7 +35,8 @@ impl Extent {
         self.max_px = self.max_px.max(at.truncate() / at.z);
     }
 
-    /// The rectangle around all points, within the image; none when they are out of the picture, or all behind the camera.
+    /// The rectangle around all points, within the image; `None` if they are outside the picture or
+    /// all behind the camera.
     pub(crate) fn rect(&self, image_px: UVec2) -> Option<PixelRect> {
         let is_any_before = self.min_px.cmple(self.max_px).all();
         if !is_any_before {

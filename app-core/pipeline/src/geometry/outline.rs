@@ -1,4 +1,4 @@
-//! Bounds of a toy over a whole clip, from whatever camera or light: its farthest points by direction.
+//! Bounds of a toy over a whole clip for any camera or light: its farthest points by direction.
 
 use glam::DVec3;
 
@@ -8,23 +8,24 @@ use app_scene::toy::PosedMesh;
 /// Bins along each side of each of the six faces of the cube of directions.
 const N_SIDE_BINS: usize = 8;
 const N_BINS: usize = 6 * N_SIDE_BINS * N_SIDE_BINS;
-/// Directions in which a bin keeps its farthest point: outwards, and 45 degrees from that to each of four sides.
+/// Directions in which a bin keeps its farthest point: outwards, and at 45 degrees to that towards
+/// each of four sides.
 const N_KEPT: usize = 5;
-/// Largest distance of dropped points beyond the kept ones, relative to their distance from the middle: 1 - cos of
-/// half a bin's diagonal, rounded up.
+/// Largest distance of dropped points beyond the kept ones, relative to their distance from the
+/// centre: 1 - cos of half a bin's diagonal, rounded up.
 const SLACK: f64 = 0.02;
 
-/// Some hundred points whose convex hull contains all that were included, but for 1/200 of the size of thin parts far
-/// off.
+/// Some hundred points whose convex hull contains all included points, except for 1/200 of the size
+/// of thin, distant parts.
 #[derive(Clone, Debug)]
 pub struct Outline {
     middle: DVec3,
-    /// Offsets from the middle of the farthest points of each bin; zero where there is none.
+    /// Offsets from the centre to the farthest points of each bin; zero in an empty bin.
     farthest: Vec<[DVec3; N_KEPT]>,
 }
 
 impl Outline {
-    /// Starts empty; `middle` is somewhere in the toy.
+    /// Returns an empty outline; `middle` is a point in the toy.
     #[must_use]
     pub fn new(middle: DVec3) -> Self {
         Self {
@@ -33,7 +34,7 @@ impl Outline {
         }
     }
 
-    /// Of all points of a pose.
+    /// The outline of all points of a pose.
     #[must_use]
     pub fn around(posed: &PosedMesh) -> Self {
         let mut outline = Self::new(Bounds::around(posed.points()).centre());
@@ -52,7 +53,7 @@ impl Outline {
         }
     }
 
-    /// Whether a point lies no farther out than those that were included, but for the slack.
+    /// Whether a point lies no farther out than the included ones, except for the slack.
     #[must_use]
     pub fn holds(&self, point: DVec3) -> bool {
         let offset = point - self.middle;
@@ -61,7 +62,7 @@ impl Outline {
         known.all(|(known, direction)| offset.dot(direction) <= (1.0 + SLACK) * known.dot(direction))
     }
 
-    /// The points that bound it.
+    /// The points of the outline.
     pub fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
         let is_first =
             |kept: &[DVec3; N_KEPT], k: usize| kept[k] != DVec3::ZERO && !kept[..k].contains(&kept[k]);
@@ -72,7 +73,8 @@ impl Outline {
     }
 }
 
-/// The bin of a direction, which is a square of a face of the cube, and the directions in which it keeps points.
+/// The bin of a direction, which is a square of a face of the cube, and the directions in which the
+/// bin keeps points.
 fn bin(offset: DVec3) -> (usize, [DVec3; N_KEPT]) {
     let axis = offset.abs().max_position();
     let along = offset[axis];

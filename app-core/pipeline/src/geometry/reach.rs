@@ -12,6 +12,7 @@ use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
 use app_scene::geometry::bounds::Bounds;
+use app_scene::reflection::{N_MIRRORED_EYES, Reflection};
 
 /// Occlusion of ambient light by the toy counts out to this many toy heights from its footprint.
 const AMBIENT_REACH_HEIGHTS: f64 = 0.5;
@@ -24,6 +25,8 @@ pub struct Reach<'a> {
     view: &'a View,
     world_from_anchor: DMat4,
     planes: Vec<PlaneReach>,
+    /// Eyes behind the first receiver, homogeneous in anchor space, which see the toy reflected; none where that is matt.
+    mirrored_eyes: Vec<DVec4>,
     /// Radius around the toy's footprint within which it occludes ambient light.
     ambient_reach_m: f64,
     /// In the picture.
@@ -82,6 +85,7 @@ impl<'a> Reach<'a> {
             view,
             world_from_anchor,
             planes: planes.collect(),
+            mirrored_eyes: Vec::new(),
             ambient_reach_m: AMBIENT_REACH_HEIGHTS * toy.max.y.max(0.0),
             extent: Extent::EMPTY,
             toy: Extent::EMPTY,
@@ -89,8 +93,23 @@ impl<'a> Reach<'a> {
         }
     }
 
+    /// With the toy's image in the first receiver, for a toy whose middle is there: by the inner part of the lobe, beyond which it fades.
+    #[must_use]
+    pub fn with_reflection(mut self, reflection: Option<&Reflection>, toy_in_anchor: DVec3) -> Self {
+        let eye = self.view.camera_in(&self.world_from_anchor);
+        let eyes = reflection.map(|reflection| reflection.mirrored_eyes(eye, toy_in_anchor.with_y(0.0)));
+        self.mirrored_eyes = eyes.map_or(Vec::new(), |eyes| {
+            eyes.into_iter()
+                .take(3 * N_MIRRORED_EYES / 4)
+                .step_by(2)
+                .collect()
+        });
+        self
+    }
+
     /// Includes a point of the toy, in anchor space, its shadows and the receivers near it.
     pub fn include(&mut self, in_anchor: DVec3) {
+        self.include_image(in_anchor.with_y(in_anchor.y.max(0.0)));
         let at = self
             .view
             .image_px_from(&self.world_from_anchor, in_anchor.extend(1.0));
@@ -134,6 +153,16 @@ impl<'a> Reach<'a> {
     #[must_use]
     pub fn plane_rects(&self) -> Vec<PlaneRect> {
         self.planes.iter().map(|plane| plane.rect).collect()
+    }
+
+    /// Includes the image of a point that is not under the first receiver.
+    fn include_image(&mut self, in_anchor: DVec3) {
+        for index in 0..self.mirrored_eyes.len() {
+            let image = shadow_of(in_anchor, self.mirrored_eyes[index]);
+            if image.z > 0.0 {
+                self.include_on(0, image.truncate() / image.z);
+            }
+        }
     }
 
     /// Includes the shadow of a point that is not under receiver `k`, and its penumbra.

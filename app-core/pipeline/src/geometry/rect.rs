@@ -1,4 +1,4 @@
-//! Rectangles: of the camera image, and of a receiver's plane.
+//! Rectangles of the camera image and of a receiver's plane.
 
 use glam::{DVec2, UVec2};
 use serde::Serialize;
@@ -13,7 +13,7 @@ pub struct PixelRect {
 }
 
 impl PixelRect {
-    /// Grown by `margin_px` on each side, as far as the image goes.
+    /// The rectangle grown by `margin_px` on each side, limited to the image.
     #[must_use]
     pub fn grown(&self, margin_px: u32, image_px: UVec2) -> Self {
         let origin_px = self.origin_px.saturating_sub(UVec2::splat(margin_px));
@@ -24,7 +24,7 @@ impl PixelRect {
         }
     }
 
-    /// What this one and `other` have in common, if anything.
+    /// The intersection with `other`; `None` if it is empty.
     #[must_use]
     pub fn common(&self, other: &Self) -> Option<Self> {
         let origin_px = self.origin_px.max(other.origin_px);
@@ -33,7 +33,7 @@ impl PixelRect {
         (size_px.min_element() > 0).then_some(Self { origin_px, size_px })
     }
 
-    /// The rest of it beside a part of it, in at most four rectangles.
+    /// The rectangle without `part`, in at most four rectangles.
     pub fn beside(&self, part: &Self) -> impl Iterator<Item = Self> {
         let (UVec2 { x: left, y: top }, end) = (self.origin_px, self.origin_px + self.size_px);
         let (from, to) = (part.origin_px, part.origin_px + part.size_px);
@@ -50,7 +50,7 @@ impl PixelRect {
         rects.filter(|rect| rect.size_px.min_element() > 0)
     }
 
-    /// Whether all of `other` lies within.
+    /// Whether the rectangle contains all of `other`.
     #[must_use]
     pub fn contains(&self, other: &Self) -> bool {
         self.origin_px.cmple(other.origin_px).all()
@@ -59,7 +59,8 @@ impl PixelRect {
                 .all()
     }
 
-    /// A rectangle of `size_px` within the image that holds this one, which is no larger, as near its middle as can be.
+    /// The rectangle of `size_px` within the image that contains this smaller one, centred on it as
+    /// far as possible.
     #[must_use]
     pub fn within(&self, size_px: UVec2, image_px: UVec2) -> Self {
         let spare_px = size_px.saturating_sub(self.size_px) / 2;
@@ -81,13 +82,13 @@ pub struct PlaneRect {
 }
 
 impl PlaneRect {
-    /// Whether a point lies within.
+    /// Whether the rectangle contains a point.
     #[must_use]
     pub fn holds(&self, in_plane: DVec2) -> bool {
         in_plane.cmpge(self.min).all() && in_plane.cmple(self.max).all()
     }
 
-    /// The point within that is nearest to a point.
+    /// The point of the rectangle nearest to a point.
     #[must_use]
     pub fn nearest(&self, in_plane: DVec2) -> DVec2 {
         in_plane.clamp(self.min, self.max)

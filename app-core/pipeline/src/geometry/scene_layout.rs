@@ -8,12 +8,13 @@ use app_scene::scene::Light;
 /// Receivers, lights and the position of the toy.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneLayout<'a> {
-    /// The planes that catch the shadow, at least one; those after the fourth are left out. The first one's plane
-    /// space is the anchor.
+    /// The planes that receive the shadow, at least one; those after the fourth are left out. The
+    /// first one's plane space is the anchor.
     pub receivers: &'a [AnchoredReceiver],
     /// At most four lights; further ones are left out.
     pub lights: &'a [Light],
-    /// Middle of the toy, in anchor space: direct fractions are stated at the points of the receivers nearest to it.
+    /// Centre of the toy, in anchor space: direct fractions are given at the points of the
+    /// receivers nearest to it.
     pub toy_in_anchor: DVec3,
 }
 

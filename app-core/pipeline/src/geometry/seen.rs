@@ -1,5 +1,5 @@
-//! Where a shape may be seen, or its shadow fall, or either be looked up from beside it; and whether all of the shadow is seen, so
-//! that nothing of the shape needs to be cut off.
+//! Bounds of the pixels in which a shape or its shadow may be visible or may be looked up from a
+//! neighbour, and whether the whole shadow is visible, so that no part of the shape needs clipping.
 
 use glam::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 
@@ -7,11 +7,12 @@ use crate::geometry::rect::PixelRect;
 use crate::geometry::silhouette::{Projection, around, landings};
 use crate::geometry::tiles::Tiles;
 
-/// What rounding in 32 bits may add to a ball, as a share of its radius.
+/// Share of a ball's radius that rounding in 32 bits may add.
 const ROUNDING: f32 = 1e-3;
 
-/// The pixels of a target of `size_px` in which a shape may be seen, with one around for what rounding and the offsets of samples
-/// add: all of them where that has no bounds, none where it is beyond the target.
+/// The pixels of a target of `size_px` in which a shape may be visible, with a margin of one pixel
+/// for rounding and the offsets of samples: all pixels if the shape's projection has no bounds,
+/// none if it is outside the target.
 #[must_use]
 pub fn seen_rect(positions: &[Vec3], projection: &dyn Projection, size_px: UVec2) -> Option<PixelRect> {
     let all = PixelRect {
@@ -27,7 +28,7 @@ pub fn seen_rect(positions: &[Vec3], projection: &dyn Projection, size_px: UVec2
     let Some([low, high]) = seen else {
         return Some(all);
     };
-    // What lies before the target's origin is cut off by the numbers without a sign.
+    // The conversion to unsigned numbers cuts off the part before the target's origin.
     let [first, end] = [(low - 1.0).floor(), (high + 1.0).ceil()].map(|corner| corner.as_uvec2());
     let seen = PixelRect {
         origin_px: first,
@@ -36,8 +37,8 @@ pub fn seen_rect(positions: &[Vec3], projection: &dyn Projection, size_px: UVec2
     seen.common(&all)
 }
 
-/// Marks the tiles within `reach_px`, along either axis, of where a shape may be seen, or its shadow fall: all of them where that
-/// has no bounds. `corners` are those of its triangles.
+/// Marks the tiles within `reach_px`, along either axis, of the places where a shape may be visible
+/// or its shadow may fall: all tiles if these have no bounds. `corners` are those of its triangles.
 pub fn mark_seen(
     tiles: &mut Tiles,
     positions: &[Vec3],
@@ -59,21 +60,22 @@ pub fn mark_seen(
     }
 }
 
-/// A ball that holds a shape, in the space of a receiver.
+/// A ball that contains a shape, in the space of a receiver.
 #[derive(Clone, Copy, Debug)]
 pub struct Caster {
-    /// Its middle.
+    /// The ball's centre.
     pub centre: Vec3,
-    /// In metres.
+    /// The ball's radius in metres.
     pub radius_m: f32,
 }
 
 impl Caster {
-    /// Whether a light point, (position, 1) or (unit direction, 0), is above all of it, and all of its shadow is farther than
-    /// `near_m` before the camera. `depth` is that of the receiver's point (x, z, 1).
+    /// Whether a light point, (position, 1) or (unit direction, 0), is above the whole ball, and
+    /// its whole shadow is farther than `near_m` in front of the camera. `depth` is that of the
+    /// receiver's point (x, z, 1).
     ///
-    /// Both are told by functions that are linear in a point of the shape: with its shadow s = (x, z, w), `flatten` of the
-    /// shaders, these are w and depth . s - near w.
+    /// Both conditions are functions that are linear in a point of the shape: with its shadow s =
+    /// (x, z, w), `flatten` of the shaders, they are w and depth . s - near w.
     #[must_use]
     pub fn has_whole_shadow(&self, light: Vec4, depth: Vec3, near_m: f32) -> bool {
         let beyond = depth - near_m * Vec3::Z;

@@ -1,16 +1,17 @@
-//! Layout of the toy's depth maps: one tile of an atlas for each of a light's points, made to hold all of the toy.
+//! Layout of the toy's depth maps: one tile of an atlas for each light point, sized to contain the
+//! whole toy.
 
 use glam::{DMat4, DVec3, DVec4, Vec4, Vec4Swizzles};
 
 use app_scene::geometry::bounds::Sphere;
 
-/// Texels at a tile's rim that hold nothing, so that a filtered fetch never reaches the next tile.
+/// Empty texels at a tile's rim, so that a filtered fetch never reaches the next tile.
 const RIM_TEXELS: f64 = 2.0;
 
 /// An atlas of square depth maps, one for each point of each light.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShadowAtlas {
-    /// Maps of each light.
+    /// Number of maps of each light.
     pub n_points: Vec<usize>,
     /// Tiles along each side of the atlas.
     pub n_columns: u32,
@@ -23,14 +24,14 @@ pub struct ShadowAtlas {
 pub struct Tile {
     /// Index of the light.
     pub light: usize,
-    /// Clip space of the atlas; depth is reversed, 0 where there is nothing.
+    /// Transform to clip space of the atlas; depth is reversed, 0 in empty texels.
     pub atlas_from_anchor: DMat4,
     /// Width of a texel at w = 1.
     pub texel_m: f64,
 }
 
 impl ShadowAtlas {
-    /// Room for `n_points` maps of each light, of `tile_px` texels along each side.
+    /// An atlas for `n_points` maps of each light, of `tile_px` texels along each side.
     #[must_use]
     pub fn new(n_points: Vec<usize>, tile_px: u32) -> Self {
         let n_tiles: usize = n_points.iter().sum();
@@ -41,8 +42,8 @@ impl ShadowAtlas {
         }
     }
 
-    /// The tiles of each light's points over a toy within `toy`, light by light. A light inside that ball, from where
-    /// no frustum holds all of the toy, gets none.
+    /// The tiles of each light's points over a toy within `toy`, light by light. A light inside
+    /// that ball gets none, since no frustum from there contains the whole toy.
     #[must_use]
     pub fn tiles(&self, light_points: &[&[Vec4]], toy: &Sphere) -> Vec<Tile> {
         let used = 1.0 - 2.0 * RIM_TEXELS / f64::from(self.tile_px);
@@ -62,7 +63,8 @@ impl ShadowAtlas {
             .collect()
     }
 
-    /// From the clip space of tile `index`, of which the part `used` along each side is drawn to, to that of the atlas.
+    /// Transform from the clip space of tile `index`, of which the part `used` along each side is
+    /// drawn, to that of the atlas.
     #[must_use]
     pub fn atlas_from_tile(&self, index: u32, used: f64) -> DMat4 {
         let side = 1.0 / f64::from(self.n_columns);
@@ -76,7 +78,8 @@ impl ShadowAtlas {
     }
 }
 
-/// `n_points` of a light's points, evenly taken, as seen from them; none when one of them is inside the toy's ball.
+/// Frusta from `n_points` of a light's points, evenly selected; none if one of them is inside the
+/// toy's ball.
 fn frusta(points: &[Vec4], n_points: usize, toy: &Sphere) -> Vec<Frustum> {
     let stride = points.len() / n_points.max(1);
     let taken = points.iter().step_by(stride.max(1)).take(n_points);
@@ -86,7 +89,8 @@ fn frusta(points: &[Vec4], n_points: usize, toy: &Sphere) -> Vec<Frustum> {
 
 /// Frustum of a light point around the toy.
 struct Frustum {
-    /// Depth is reversed, from 1 at the ball's near side; w is the distance along the axis, 1 for a directional light.
+    /// Transform to clip space: depth is reversed, from 1 at the ball's near side; w is the
+    /// distance along the axis, 1 for a directional light.
     clip_from_anchor: DMat4,
     /// Width of the frustum, at w = 1.
     width_m: f64,
@@ -105,7 +109,7 @@ impl Frustum {
         let axes_from_anchor = DMat4::from_mat3(glam::DMat3::from_cols(right, up, back).transpose());
         let centre_at_origin = axes_from_anchor * DMat4::from_translation(-toy.centre);
         let r = toy.radius_m;
-        // Rows of clip x, y, z, w over the point along (right, up, back), from the ball's middle.
+        // Rows of clip x, y, z, w over the point along (right, up, back), from the ball's centre.
         let (rows, width_m) = if light_point.w == 0.0 {
             let rows = [
                 DVec4::X / r,

@@ -1,10 +1,12 @@
-//! Which triangles of a shape face points that look at it: of a closed shape no others hide anything from there. And where its
-//! silhouette may run, seen from all of these points at once, so that all else is drawn but once.
+//! Selection of the triangles of a shape that face a set of viewpoints: in a closed shape no other
+//! triangles hide anything. And bounds of its silhouettes from all of these viewpoints at once, so
+//! that everything else is drawn only once.
 //!
-//! What a shape covers is bounded by its silhouette: edges between a triangle that shows its outer side and one that shows
-//! its inner side, and edges of one triangle alone. In a tile that no silhouette of any point comes near, every point sees
-//! the same: all of it is covered, or none. Only triangles that meet other tiles have to be drawn once for each point.
-//! Source: Appel 1967 (silhouettes as edges between front and back faces); tiles as in Green 2008 (bounds of penumbras).
+//! The area that a shape covers is bounded by its silhouette: edges between a triangle that shows
+//! its outer side and one that shows its inner side, and edges of one triangle alone. A tile far
+//! from every silhouette is the same from all viewpoints: fully covered or empty. Only triangles
+//! that meet other tiles have to be drawn once per viewpoint. Source: Appel 1967 (silhouettes as
+//! edges between front and back faces); tiles as in Green 2008 (bounds of penumbras).
 
 use glam::{UVec2, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
@@ -13,21 +15,23 @@ use app_scene::geometry::edges::Edge;
 
 /// Pixels along each side of a tile.
 const TILE_PX: u32 = 4;
-/// Distance that positions within a pixel are from its centre, and some for the rounding of 32 bits.
+/// Largest distance of positions within a pixel from its centre, plus a margin for rounding in 32
+/// bits.
 pub const AROUND_PX: f32 = 0.55;
 
-/// Points that look at a shape: of a light, or the camera. All are points, or all are directions.
+/// Viewpoints of a shape: those of a light, or the camera. All are points, or all are directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewers {
-    /// A ball that holds them: its centre and radius.
+    /// Centre and radius of a ball that contains them.
     centre: Vec3,
     radius: f32,
-    /// 1 of points, 0 of directions towards them.
+    /// 1 for points, 0 for directions towards them.
     w: f32,
 }
 
 impl Viewers {
-    /// Of homogeneous points, `w` 1 or 0; none of none, and of both kinds at once.
+    /// The viewers at homogeneous points, `w` 1 or 0; `None` for an empty list or if both kinds
+    /// occur.
     #[must_use]
     pub fn around(points: &[Vec4]) -> Option<Self> {
         let w = points.first()?.w;
@@ -42,22 +46,23 @@ impl Viewers {
         Some(Self { centre, radius, w })
     }
 
-    /// Whether a triangle, counter-clockwise seen from outside, may show its outer side to one of them.
+    /// Whether a triangle, counter-clockwise from outside, may show its outer side to a viewer.
     fn may_see(&self, triangle: [Vec3; 3]) -> bool {
         self.sides_of(triangle)[0]
     }
 
-    /// Whether a triangle may show its outer side to one of them, and whether its inner side.
+    /// Whether a triangle may show its outer side to a viewer, and whether its inner side.
     fn sides_of(&self, [a, b, c]: [Vec3; 3]) -> [bool; 2] {
         let normal = (b - a).cross(c - a);
         let to_centre = self.centre - self.w * a;
         let towards = normal.dot(to_centre);
-        // Of a ball the point that is farthest on either side; the rounding of a product of four is far below a thousandth.
+        // The point of the ball that is farthest on either side; the rounding of a product of four
+        // is far below a thousandth.
         let reach = (self.radius + 1e-3 * to_centre.length()) * normal.length();
         [towards >= -reach, towards <= reach]
     }
 
-    /// Corners of those triangles of a shape that face them, in the same order.
+    /// Corners of those triangles of a shape that face a viewer, in the same order.
     #[must_use]
     pub fn facing(&self, positions: &[Vec3], corners: &[u32]) -> Vec<u32> {
         let triangles = corners.as_chunks::<3>().0.iter();
@@ -67,32 +72,32 @@ impl Viewers {
     }
 }
 
-/// Where points of a shape are seen.
+/// The projection of a shape's points.
 pub trait Projection {
-    /// Of a point in anchor space; none where that has no bounds.
+    /// Image position of a point in anchor space; `None` if it has no bounds.
     fn land(&self, in_anchor: Vec3) -> Option<Landing>;
 
-    /// Farthest that the positions that a pixel is drawn for lie from its centre.
+    /// Largest distance of a pixel's sample positions from its centre.
     fn around_px(&self) -> f32 {
         AROUND_PX
     }
 }
 
-/// Where a point is seen, from one point or from many.
+/// Image position of a point, from one viewpoint or from many.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Landing {
-    /// In the middle.
+    /// Centre of the positions.
     pub at_px: Vec2,
-    /// How far from there, along each axis.
+    /// Largest distance from the centre along each axis.
     pub within_px: Vec2,
-    /// Whether something may cut off what is there: the silhouette then runs where it does.
+    /// Whether the point may be clipped: the silhouette then may also run there.
     pub may_be_cut: bool,
 }
 
-/// From a camera, before receivers.
+/// Projection to a camera, in front of receivers.
 #[derive(Clone, Debug)]
 pub struct ByCamera {
-    /// Clip space of the region.
+    /// Transform to clip space of the region.
     pub clip_from_anchor: glam::Mat4,
     /// Size of the region.
     pub region_size_px: Vec2,
@@ -100,17 +105,18 @@ pub struct ByCamera {
     pub origin_px: Vec2,
     /// Inverse depths of the receivers' planes at a pixel of the region (u, v, 1).
     pub inverse_depths: Vec<Vec3>,
-    /// Farthest that the positions that a pixel is drawn for lie from its centre.
+    /// Largest distance of a pixel's sample positions from its centre.
     pub around_px: f32,
 }
 
-/// Half of the share of its depth by which a point may lie behind a receiver and still be before it, as the shaders have it.
+/// Half of the share of its depth by which a point may lie behind a receiver and still count as in
+/// front of it, as in the shaders.
 const ON_RECEIVER: f32 = 0.5e-4;
 
 impl Projection for ByCamera {
     fn land(&self, in_anchor: Vec3) -> Option<Landing> {
         let clip = self.clip_from_anchor * in_anchor.extend(1.0);
-        // Reversed depth: beyond 1 it is nearer than what is drawn.
+        // Reversed depth: beyond 1 the point is nearer than the near plane.
         if clip.w <= 0.0 || clip.z > clip.w {
             return None;
         }
@@ -130,24 +136,24 @@ impl Projection for ByCamera {
     }
 }
 
-/// From the points of a light, as shadows on a receiver.
+/// Projection from the points of a light, as shadows on a receiver.
 #[derive(Clone, Debug)]
 pub struct OntoReceiver {
-    /// The receiver's plane is y = 0 there.
+    /// Transform to the receiver's plane space, in which its plane is y = 0.
     pub plane_from_anchor: glam::Mat4,
-    /// A ball that holds the light's points, in that space.
+    /// A ball that contains the light's points, in that space.
     pub light: Viewers,
     /// Homography: clip (x, y, w) of the plane's point (x, z, 1).
     pub clip_from_plane: glam::Mat3,
     /// Size of the region.
     pub region_size_px: Vec2,
-    /// Depth in metres nearer than which a shadow is cut off.
+    /// Depth in metres below which a shadow is clipped.
     pub near_m: f32,
-    /// Farthest that the positions that a pixel is drawn for lie from its centre.
+    /// Largest distance of a pixel's sample positions from its centre.
     pub around_px: f32,
 }
 
-/// Height up to which a shadow may be cut off where its caster meets the receiver, in metres.
+/// Height up to which a shadow may be clipped where its caster meets the receiver, in metres.
 const NEAR_RECEIVER_M: f32 = 1e-5;
 
 impl Projection for OntoReceiver {
@@ -161,7 +167,7 @@ impl Projection for OntoReceiver {
             return None;
         }
         let shadow = in_plane.xz() + aside * (height / below);
-        // Of (aside / below), where either moves by the radius.
+        // Bound of (aside / below) if both move by the radius.
         let within_m = height.abs() * self.light.radius / least_below * (1.0 + aside.length() / below);
         let clip = self.clip_from_plane * shadow.extend(1.0);
         let rows = self.clip_from_plane.transpose();
@@ -185,28 +191,29 @@ impl Projection for OntoReceiver {
     }
 }
 
-/// A shape in a pose: its places in anchor space, its triangles, and their edges.
+/// A posed shape: its positions in anchor space, its triangles and their edges.
 #[derive(Clone, Copy)]
 pub struct Shape<'a> {
-    /// Of all vertices, in anchor space.
+    /// Positions of all vertices, in anchor space.
     pub positions: &'a [Vec3],
-    /// Three of each triangle.
+    /// Three corners of each triangle.
     pub corners: &'a [u32],
-    /// Between them.
+    /// Edges between the triangles.
     pub edges: &'a [Edge],
 }
 
-/// What has to be drawn once for each point, and where.
+/// The triangles that have to be drawn once per viewpoint, and the tiles in which they are needed.
 #[derive(Clone, Debug)]
 pub struct Silhouette {
-    /// Tiles in which the points may see different things.
+    /// Tiles in which the viewpoints may see different things.
     pub tiles: Tiles,
-    /// Corners of the triangles, of those that were asked for, that meet these tiles.
+    /// Corners of those requested triangles that meet these tiles.
     pub corners: Vec<u32>,
 }
 
-/// Looks for the silhouette of a shape in a target of `size_px`. `facing` are the corners that are to be drawn, at least those
-/// that show to one of the viewers. None where what is seen of a point has no bounds.
+/// Finds the silhouette of a shape in a target of `size_px`. `facing` are the corners that are to
+/// be drawn, at least those visible to a viewer. `None` if the image position of a point has no
+/// bounds.
 #[must_use]
 pub fn find_silhouette(
     shape: Shape<'_>,
@@ -218,7 +225,7 @@ pub fn find_silhouette(
     let landings = landings(shape.positions, shape.corners, projection)?;
     let land = |corner: u32| landings.get(corner as usize).copied().unwrap_or(NOWHERE);
     let triangles = shape.corners.as_chunks::<3>().0;
-    // Whether a triangle may show its outer side, and its inner side.
+    // Whether a triangle may show its outer side, and whether its inner side.
     let sides: Vec<[bool; 2]> = triangles
         .iter()
         .map(|corners| viewers.sides_of(corners.map(|corner| place(shape.positions, corner))))
@@ -253,14 +260,14 @@ pub fn find_silhouette(
     Some(Silhouette { tiles, corners })
 }
 
-/// Of a corner that there is not.
+/// Position of a corner that does not exist.
 const NOWHERE: Landing = Landing {
     at_px: Vec2::ZERO,
     within_px: Vec2::ZERO,
     may_be_cut: false,
 };
 
-/// Where each corner of a shape is seen; none where one has no bounds.
+/// The image position of each corner of a shape; `None` if one has no bounds.
 pub(super) fn landings(
     positions: &[Vec3],
     corners: &[u32],
@@ -279,7 +286,7 @@ pub(super) fn landings(
     positions.iter().zip(is_used).map(land).collect()
 }
 
-/// Whether one of the viewers may see the outer side of one triangle and the inner side of another.
+/// Whether a viewer may see the outer side of one triangle and the inner side of another.
 fn may_part(sides: &[[bool; 2]], one: u32, other: u32) -> bool {
     let [[outer, inner], [other_outer, other_inner]] = [one, other].map(|index| sides[index as usize]);
     (outer && other_inner) || (inner && other_outer)
@@ -289,7 +296,7 @@ fn place(positions: &[Vec3], corner: u32) -> Vec3 {
     positions.get(corner as usize).copied().unwrap_or_default()
 }
 
-/// A box around all that is seen of a triangle, and `reach_px` beyond.
+/// A box around all image positions of a triangle, grown by `reach_px`.
 pub(super) fn around(landings: [Landing; 3], reach_px: f32) -> PixelBox {
     let low = landings.map(|one| one.at_px - one.within_px);
     let high = landings.map(|one| one.at_px + one.within_px);

@@ -1,4 +1,4 @@
-//! Square tiles of a target, of which some are marked: where a pass has to look closely.
+//! Square tiles of a target, some of which are marked for a pass that must treat them separately.
 
 use std::ops::Range;
 
@@ -6,16 +6,16 @@ use glam::{UVec2, Vec2};
 
 use crate::geometry::rect::PixelRect;
 
-/// Tiles of a target, in rows, whose last ones may reach past its border.
+/// Tiles of a target, in rows; the last ones may extend beyond its border.
 #[derive(Clone, Debug)]
 pub struct Tiles {
-    /// Of the target.
+    /// Size of the target.
     size_px: UVec2,
     grid: Grid,
     is_marked: Vec<bool>,
 }
 
-/// How a target is parted.
+/// Partition of a target into tiles.
 #[derive(Clone, Copy, Debug)]
 struct Grid {
     /// Pixels along each side of a tile.
@@ -24,11 +24,11 @@ struct Grid {
     size: UVec2,
 }
 
-/// A box in pixels: its least corner, and its most.
+/// A box in pixels: its lowest corner and its highest one.
 pub type PixelBox = [Vec2; 2];
 
 impl Tiles {
-    /// Of `tile_px` pixels along each side; none marked yet.
+    /// Tiles of `tile_px` pixels along each side, none of them marked.
     #[must_use]
     pub fn over(size_px: UVec2, tile_px: u32) -> Self {
         let size = UVec2::new(size_px.x.div_ceil(tile_px), size_px.y.div_ceil(tile_px));
@@ -39,7 +39,7 @@ impl Tiles {
         }
     }
 
-    /// Marks those as well that another marks, which is of the same size.
+    /// Adds the marks of another set of the same size.
     pub fn join(&mut self, other: &Self) {
         debug_assert_eq!(self.is_marked.len(), other.is_marked.len());
         for (is_marked, of_other) in self.is_marked.iter_mut().zip(&other.is_marked) {
@@ -47,7 +47,7 @@ impl Tiles {
         }
     }
 
-    /// Those alone that another of the same size does not mark.
+    /// The marked tiles that another set of the same size does not mark.
     #[must_use]
     pub fn without(&self, other: &Self) -> Self {
         debug_assert_eq!(self.is_marked.len(), other.is_marked.len());
@@ -65,10 +65,10 @@ impl Tiles {
         self.is_marked.fill(true);
     }
 
-    /// Marks all tiles that a segment meets, or that lie within `reach_px` of it along either axis.
+    /// Marks all tiles that a segment meets, and those within `reach_px` of it along either axis.
     pub fn mark_segment(&mut self, [from, to]: PixelBox, reach_px: Vec2) {
         let (low, high) = (from.min(to) - reach_px, from.max(to) + reach_px);
-        // Of a short one there is nothing to leave out.
+        // A short segment has no tiles that could be left out.
         if (high - low).cmplt(Vec2::splat(self.grid.px(1))).all() {
             return self.mark_box([low, high]);
         }
@@ -110,14 +110,14 @@ impl Tiles {
         self.is_marked[(first + columns.start) as usize..(first + columns.end) as usize].fill(true);
     }
 
-    /// Whether the tile that holds a pixel is marked.
+    /// Whether the tile that contains a pixel is marked.
     #[must_use]
     pub fn is_marked_at(&self, px: UVec2) -> bool {
         let (tile, size) = (px / self.grid.tile_px, self.grid.size);
         tile.cmplt(size).all() && self.is_marked[(tile.y * size.x + tile.x) as usize]
     }
 
-    /// Runs of marked tiles, row by row: each a box in pixels.
+    /// Runs of marked tiles, row by row, each as a box in pixels.
     pub fn runs(&self) -> impl Iterator<Item = PixelBox> + '_ {
         self.rows_of_runs(true).flat_map(|(row, runs)| {
             let grid = self.grid;
@@ -130,11 +130,11 @@ impl Tiles {
         })
     }
 
-    /// Rectangles that fill the marked tiles, or the others, as far as the target goes.
+    /// Rectangles that cover the marked tiles, or the unmarked ones, within the target.
     #[must_use]
     pub fn rects(&self, is_marked: bool) -> Vec<PixelRect> {
         let mut rects: Vec<PixelRect> = Vec::new();
-        // Those that reach down to the row.
+        // Indices of the rectangles that reach down to the row.
         let mut open: Vec<usize> = Vec::new();
         for (row, runs) in self.rows_of_runs(is_marked) {
             let above = std::mem::take(&mut open);
@@ -156,7 +156,7 @@ impl Tiles {
         rects
     }
 
-    /// Of each row in turn the runs of marked tiles, or of the others.
+    /// For each row in turn, the runs of marked tiles or of unmarked ones.
     fn rows_of_runs(&self, is_marked: bool) -> impl Iterator<Item = (u32, impl Iterator<Item = Range<u32>>)> {
         let width = self.grid.size.x as usize;
         (0..)
@@ -177,7 +177,7 @@ impl Tiles {
             })
     }
 
-    /// Sums over the tiles, to ask for many boxes.
+    /// The tiles with their sums, for many queries.
     #[must_use]
     pub fn counted(&self) -> CountedTiles {
         let size = self.grid.size;
@@ -197,7 +197,7 @@ impl Tiles {
     }
 }
 
-/// How many tiles are marked above and left of each corner. Source: Crow 1984 (summed-area tables).
+/// Number of marked tiles above and left of each corner. Source: Crow 1984 (summed-area tables).
 pub struct CountedTiles {
     grid: Grid,
     sums: Vec<u32>,
@@ -220,22 +220,22 @@ impl CountedTiles {
 }
 
 impl Grid {
-    /// The columns between two places, both within; none where all of that is beyond the target.
+    /// The columns between two positions, inclusive; `None` if all of them are outside the target.
     fn columns(&self, low_px: f32, high_px: f32) -> Option<Range<u32>> {
         span(self.px(1), [low_px, high_px], self.size.x)
     }
 
-    /// The same of rows.
+    /// The rows between two positions, inclusive; `None` if all of them are outside the target.
     fn rows(&self, low_px: f32, high_px: f32) -> Option<Range<u32>> {
         span(self.px(1), [low_px, high_px], self.size.y)
     }
 
-    /// Where a column or a row begins.
+    /// Start of a column or a row in pixels.
     fn px(&self, tile: u32) -> f32 {
         (tile * self.tile_px) as f32
     }
 
-    /// A run of tiles, as far as a target of `size_px` goes.
+    /// A run of tiles, limited to a target of `size_px`.
     fn rect(&self, row: u32, run: Range<u32>, size_px: UVec2) -> PixelRect {
         let origin_px = self.tile_px * UVec2::new(run.start, row);
         let end_px = self.tile_px * UVec2::new(run.end, row + 1);
@@ -246,11 +246,11 @@ impl Grid {
     }
 }
 
-/// The tiles between two places, both within; none where all of that is beyond the target.
+/// The tiles between two positions, inclusive; `None` if all of them are outside the target.
 #[allow(clippy::cast_possible_truncation, reason = "clamped to the number of tiles")]
 fn span(tile_px: f32, between_px: [f32; 2], n_tiles: u32) -> Option<Range<u32>> {
     let [first, last] = between_px.map(|px| (px / tile_px).floor());
-    // What is no number is everywhere.
+    // A position that is not a number counts as everywhere.
     if last < 0.0 || first >= n_tiles as f32 || n_tiles == 0 {
         return None;
     }

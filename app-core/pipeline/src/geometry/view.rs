@@ -26,7 +26,7 @@ impl View {
         }
     }
 
-    /// The camera's centre, in the space that `world_from_space` comes from.
+    /// The camera's centre, in the space from which `world_from_space` transforms.
     #[must_use]
     pub fn camera_in(&self, world_from_space: &DMat4) -> DVec3 {
         (self.camera_from_world * *world_from_space)
@@ -35,13 +35,14 @@ impl View {
             .truncate()
     }
 
-    /// What a pixel is across at a distance, where it is smallest.
+    /// Width of a pixel at a distance, in metres, where it is smallest.
     #[must_use]
     pub fn pixel_m(&self, distance_m: f64) -> f64 {
         distance_m / self.intrinsics.fx_px.max(self.intrinsics.fy_px)
     }
 
-    /// Whether the camera's centre is before a receiver, which then shows its front.
+    /// Whether the camera's centre is in front of a receiver, so that it shows the receiver's
+    /// front.
     #[must_use]
     pub fn sees_front_of(&self, world_from_plane: &DMat4) -> bool {
         self.camera_in(world_from_plane).y > 0.0
@@ -59,8 +60,8 @@ impl View {
         )
     }
 
-    /// The pixels of the image that can show anything amid `points`; all of them where one is behind the camera, none where
-    /// it is out of the picture.
+    /// The pixels of the image that can show anything between `points`; all of them if a point is
+    /// behind the camera, `None` if the points are outside the picture.
     #[must_use]
     pub fn image_rect(
         &self,
@@ -79,7 +80,8 @@ impl View {
         DMat3::from_cols(column(DVec4::X), column(DVec4::Z), column(DVec4::W))
     }
 
-    /// Clip space of `rect` from the space that `world_from_space` comes from; depth is reversed and endless.
+    /// Transform to clip space of `rect` from the space from which `world_from_space` transforms;
+    /// depth is reversed, with the far plane at infinity.
     #[must_use]
     pub fn clip_from(&self, rect: &PixelRect, world_from_space: &DMat4) -> DMat4 {
         let k = &self.intrinsics;

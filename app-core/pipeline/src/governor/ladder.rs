@@ -12,7 +12,7 @@ pub enum QualitySetting {
     AmbientDirections,
     /// Points over each light.
     LightPoints,
-    /// Positions within a pixel that the toy's outline is counted over.
+    /// Number of positions within a pixel at which the toy's outline is sampled.
     CoveragePositions,
     /// Frames a second.
     FramesPerSecond,
@@ -23,19 +23,20 @@ pub enum QualitySetting {
 pub struct QualityStep {
     /// The setting that is reduced.
     pub setting: QualitySetting,
-    /// Its value from there on.
+    /// The setting's value from this step on.
     pub value: u32,
     /// Expected load after the step over the load before it, 0 to 1.
     pub gain: f64,
-    /// As a person is told.
+    /// The text that is shown to a person.
     pub what: &'static str,
 }
 
 /// The quality ladder of preset `balanced`.
 ///
-/// The order is that in which least error is added for what is saved. What a step is expected to bring is the mean of what
-/// the ledger says of triangles and of bytes, for a new pose, one light with a wide penumbra and 10,000 triangles; where it was
-/// taken once, the governor knows better. The step to 32 points brings nothing where all lights have as many.
+/// The steps are ordered by the error that each adds for the time it saves. The expected gain of a
+/// step is the mean of the ledger's ratios of triangles and of bytes, for a new pose, one light
+/// with a wide penumbra and 10,000 triangles; once a step was taken, the governor knows its gain
+/// better. The step to 32 points has no effect if no light has more.
 #[rustfmt::skip] // One step a line.
 pub const BALANCED_QUALITY_LADDER: &[QualityStep] = &[
     QualityStep { setting: QualitySetting::AmbientDivisor, value: 8, gain: 0.99, what: "ambient shadow is drawn at an eighth of the resolution" },
@@ -48,7 +49,8 @@ pub const BALANCED_QUALITY_LADDER: &[QualityStep] = &[
 ];
 
 impl QualityStep {
-    /// Turns a setting down that is finer than this; the rate of frames is no setting.
+    /// Reduces a setting that is finer than this step; the frame rate is not a setting of the
+    /// model.
     pub fn apply(&self, settings: &mut ModelSettings) {
         let points = self.value as usize;
         match self.setting {

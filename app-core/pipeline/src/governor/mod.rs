@@ -1,24 +1,36 @@
-//! The governor: keeps a frame's time within that of a screen's by moving along a ladder of quality steps.
+//! The governor: keeps a frame's time within the interval of the screen by moving along a ladder of
+//! quality steps.
 //!
-//! It has no clock: each frame it is told how long the device took, or else how long the frame was shown, and how warm the
-//! phone is. It looks at the *load*, which is that time over what a frame may take.
+//! It has no clock: for each frame it gets the time on the device, or else the time for which the
+//! frame was shown, and the phone's heat. It controls the *load*, the ratio of that time to the
+//! time that a frame may take.
 //!
-//! - **Down**: where the median load of `WINDOW` frames is above `HIGH`, it takes as many steps at once as are expected
-//!   to bring it to `AIM`.
-//! - **Up**: one step, where the load that is expected then has been below `AIM` for `UP_FRAMES` frames. What a step
-//!   brings is learned when it is taken. A step up that is taken back within `TRIAL_FRAMES` frames is tried again only
-//!   after twice as long, up to `MAX_WAIT_FRAMES`: a load that lies between two steps ends in the cheaper one.
-//! - **Without device times** a frame that is ready early looks like any other, so that only frames that come late tell
-//!   anything: a step down where one in five of `LATE_WINDOW` is late, two where half of them are. A step up is a trial,
-//!   after `BLIND_UP_FRAMES` frames of which hardly one was late.
-//! - **The end**: where all steps are taken and frames are slow for `END_FRAMES[0]` of them, or the phone has been too warm for
-//!   `END_FRAMES[1]` since the latest step, [`Governor::exhausted`] says so: a cheaper preset is what is left.
-//! - **Heat** narrows what a frame may take at once, and widens it only after `COOL_FRAMES` frames; there is no step up
-//!   above [`Thermal::Fair`].
+//! - **Down**: if the median load of `WINDOW` frames is above `HIGH`, it takes as many steps at
+//!   once as are expected
+//!   to reduce it to `AIM`.
+//! - **Up**: one step, if the load that is then expected has been below `AIM` for `UP_FRAMES`
+//!   frames. The gain of a
+//!   step is learned when it is taken. A step up that is taken back within `TRIAL_FRAMES` frames is
+//!   repeated only
+//!   after twice the time, up to `MAX_WAIT_FRAMES`: a load that lies between two steps ends in the
+//!   cheaper one.
+//! - **Without device times** a frame that is ready early looks like any other, so that only late
+//!   frames are evidence:
+//!   a step down if one in five of `LATE_WINDOW` is late, two if half of them are. A step up is a
+//!   trial
+//!   after `BLIND_UP_FRAMES` frames of which hardly any was late.
+//! - **The end**: if all steps are taken and frames are slow for `END_FRAMES[0]` of them, or the
+//!   phone has been too warm
+//!   for `END_FRAMES[1]` since the latest step, [`Governor::exhausted`] reports it: only a cheaper
+//!   preset is left.
+//! - **Heat** reduces the time that a frame may take at once, and restores it only after
+//!   `COOL_FRAMES` frames; there is
+//!   no step up above [`Thermal::Fair`].
 //!
-//! From a sudden load of twice the time it is back within 40 frames, whether steps bring half or one and a half times of
-//! what is expected; without device times after a window of late frames for each step or two. Back at its best it is after
-//! `UP_FRAMES` and a window for each step. Simulations hold all of that.
+//! After a sudden load of twice the time it recovers within 40 frames, whether the gains of steps
+//! are half or one and a half times the expected ones; without device times it needs a window of
+//! late frames for each step or two. It returns to the best level after `UP_FRAMES` and a window
+//! for each step. Simulations verify all of this.
 
 mod ladder;
 mod window;
@@ -28,7 +40,7 @@ use window::Window;
 
 /// Frames whose median load decides.
 pub const WINDOW: usize = 15;
-/// Frames after a change that still show what was before.
+/// Frames after a change that still show the previous state.
 pub const SETTLE_FRAMES: u32 = 4;
 /// Median load above which a step is taken down.
 const HIGH: f64 = 0.9;
@@ -38,43 +50,45 @@ const AIM: f64 = 0.75;
 pub const UP_FRAMES: u32 = 120;
 /// Frames within which a step up has failed if it is taken back.
 const TRIAL_FRAMES: u32 = 600;
-/// Most frames that a step up waits for after failures.
+/// Longest wait of a step up after failures, in frames.
 const MAX_WAIT_FRAMES: u32 = 9600;
-/// Frames of which late ones are counted, without device times.
+/// Number of frames among which late ones are counted, without device times.
 const LATE_WINDOW: usize = 30;
 /// Frames before a trial, without device times.
 const BLIND_UP_FRAMES: u32 = 600;
-/// Frames that a phone must be cooler for until it counts.
+/// Frames for which a phone must be cooler before that counts.
 const COOL_FRAMES: u32 = 3600;
 
-/// Frames at the end of the ladder that are too slow, or since the latest step while the phone is too warm, before more is to be done.
+/// Number of slow frames at the end of the ladder, and number of frames since the latest step while
+/// the phone is too warm, before the ladder counts as exhausted.
 const END_FRAMES: [u32; 2] = [90, 900];
 
-/// Interval over that of the screen from which a frame is late.
+/// Ratio of the interval to that of the screen from which a frame is late.
 pub const LATE: f64 = 1.4;
-/// Part of the frames that may be late, without device times; and from which two steps are taken.
+/// Share of late frames, without device times, from which one step is taken, and from which two
+/// are.
 const MANY_LATE: [f64; 2] = [0.2, 0.5];
-/// Part of the frames that may be late before a trial.
+/// Largest share of late frames before a trial.
 const FEW_LATE: f64 = 0.05;
-/// What a step may be learned to bring: load after it over load before.
+/// Range of the gain that may be learned for a step: load after it over load before.
 const GAINS: [f64; 2] = [0.4, 0.98];
 
-/// How warm a phone says that it is.
+/// The heat that a phone reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Thermal {
-    /// As it should be.
+    /// The normal temperature.
     #[default]
     Nominal,
-    /// A little above.
+    /// Slightly warmer than normal.
     Fair,
     /// The phone has begun to slow down.
     Serious,
-    /// It must cool down now.
+    /// The phone must cool down now.
     Critical,
 }
 
 impl Thermal {
-    /// Part of a frame's time that may be used.
+    /// Share of a frame's time that may be used.
     fn part(self) -> f64 {
         match self {
             Self::Nominal => 1.0,
@@ -85,23 +99,23 @@ impl Thermal {
     }
 }
 
-/// What is known of a frame.
+/// Measurements of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Time on the device, where it can tell; of a frame or two before.
+    /// Time on the device, if it can be measured, of a frame or two before.
     pub gpu_ms: Option<f64>,
-    /// Time since the frame before was shown.
+    /// Time since the previous frame was shown.
     pub interval_ms: f64,
-    /// How warm the phone is.
+    /// The phone's heat.
     pub thermal: Thermal,
 }
 
-/// Steps that were taken.
+/// A change of the level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turned {
-    /// Steps of the ladder before.
+    /// Number of steps before.
     pub from: usize,
-    /// Steps of the ladder from now on.
+    /// Number of steps from now on.
     pub to: usize,
 }
 
@@ -110,29 +124,30 @@ pub struct Turned {
 pub struct Governor {
     ladder: Vec<QualityStep>,
     frames_per_second: u32,
-    /// Steps taken.
+    /// Number of steps taken.
     level: usize,
-    /// Load after each step over that before, as far as it is known.
+    /// Load after each step over the load before it, as far as it is known.
     gains: Vec<f64>,
     loads: Window,
     lates: Window,
     /// Frames since the last change.
     age: u32,
-    /// Frames for which a step up would have done.
+    /// Frames at which a step up would have been possible.
     low_frames: u32,
-    /// Frames that each step waits for until it is taken back.
+    /// Number of frames that each step up waits.
     waits: Vec<u32>,
-    /// The latest change was a step up, which is on trial.
+    /// Whether the latest change was a step up, which is on trial.
     is_trial: bool,
-    /// Median load before the latest change, and the level then.
+    /// The level before the latest change, and its median load.
     before: Option<(usize, f64)>,
     thermal: Thermal,
     cooler_frames: u32,
-    /// Frames at the ladder's end that were all too slow, and since the latest step, all made while the phone was too warm.
+    /// Consecutive slow frames at the ladder's end, and frames since the latest step, all made
+    /// while the phone was too warm.
     end_frames: [u32; 2],
 }
 
-/// Why all steps together are not enough.
+/// The reason why all steps together are not enough.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exhausted {
     /// Frames still take too long.
@@ -142,7 +157,7 @@ pub enum Exhausted {
 }
 
 impl Governor {
-    /// At its best, for a screen of so many frames a second.
+    /// A governor at the best level, for a screen with this frame rate.
     #[must_use]
     pub fn new(ladder: &[QualityStep], frames_per_second: u32) -> Self {
         Self {
@@ -163,7 +178,8 @@ impl Governor {
         }
     }
 
-    /// Why the steps of the ladder are not enough; none while there are more, or they are. What helps then is a cheaper preset.
+    /// The reason why the steps of the ladder are not enough; `None` if there are further steps, or
+    /// if they are enough. Then only a cheaper preset helps.
     #[must_use]
     pub fn exhausted(&self) -> Option<Exhausted> {
         let [is_slow, is_warm] = [0, 1].map(|index| self.end_frames[index] >= END_FRAMES[index]);
@@ -174,25 +190,26 @@ impl Governor {
         }
     }
 
-    /// Counts frames that nothing helps any more.
+    /// Counts the frames that no further step can improve.
     fn count_end(&mut self, thermal: Thermal) {
         let is_slow = self.loads.median().is_some_and(|load| load > HIGH)
             || self.lates.mean().is_some_and(|late| late >= MANY_LATE[0]);
         let is_slow_at_end = is_slow && self.level == self.ladder.len();
-        // Whatever steps were taken for it: each begins the count anew.
+        // Every step that was taken for it begins the count anew.
         let is_warm = thermal >= Thermal::Serious;
         for (frames, is_end) in self.end_frames.iter_mut().zip([is_slow_at_end, is_warm]) {
             *frames = if is_end { frames.saturating_add(1) } else { 0 };
         }
     }
 
-    /// The steps that are taken: what is turned down, each over those of the same setting before it.
+    /// The steps that are taken: the reduced settings; a later step of a setting overrides the
+    /// earlier ones.
     #[must_use]
     pub fn turned_down(&self) -> &[QualityStep] {
         &self.ladder[..self.level]
     }
 
-    /// The value of a setting; none if it is not reduced.
+    /// The value of a setting; `None` if it is not reduced.
     #[must_use]
     pub fn value(&self, setting: QualitySetting) -> Option<u32> {
         let steps = self.turned_down().iter().rev();
@@ -202,14 +219,15 @@ impl Governor {
             .next()
     }
 
-    /// Frames a second that are to be shown.
+    /// The frame rate to be shown.
     #[must_use]
     pub fn frames_per_second(&self) -> u32 {
         self.value(QualitySetting::FramesPerSecond)
             .map_or(self.frames_per_second, |limit| limit.min(self.frames_per_second))
     }
 
-    /// Takes what is known of a frame; tells where it goes another way from the next frame on.
+    /// Takes the measurements of a frame; returns the change if the level changes from the next
+    /// frame on.
     pub fn take(&mut self, frame: &Measured) -> Option<Turned> {
         self.feel(frame.thermal);
         self.age = self.age.saturating_add(1);
@@ -232,7 +250,7 @@ impl Governor {
         to.map(|to| self.go(to))
     }
 
-    /// Follows the heat: up at once, down when it has lasted.
+    /// Follows the heat: upwards at once, downwards after it has lasted.
     fn feel(&mut self, thermal: Thermal) {
         if thermal >= self.thermal {
             self.cooler_frames = 0;
@@ -242,7 +260,7 @@ impl Governor {
         if thermal > self.thermal || self.cooler_frames >= COOL_FRAMES {
             self.thermal = thermal;
             self.cooler_frames = 0;
-            // Loads so far are over another time.
+            // Earlier loads are ratios to another time.
             self.loads.clear();
             self.before = None;
         }
@@ -260,7 +278,7 @@ impl Governor {
         (self.low_frames >= self.waits[above].max(UP_FRAMES)).then_some(above)
     }
 
-    /// The first level that is expected to bring the load to where it should be.
+    /// The first level at which the expected load is low enough.
     fn down_to(&self, load: f64) -> usize {
         let mut expected = load;
         let gains = &self.gains[self.level..];
@@ -271,7 +289,7 @@ impl Governor {
         n_steps.map_or(self.ladder.len(), |last| self.level + last + 1)
     }
 
-    /// Learns what the steps bring that were taken last.
+    /// Learns the gains of the steps that were taken last.
     fn learn(&mut self, load: f64) {
         let Some((from, before)) = self.before.take() else {
             return;
@@ -286,7 +304,7 @@ impl Governor {
         }
         let each = (whole / expected).max(0.0).powf(1.0 / steps.len() as f64);
         for (gain, step) in steps.iter_mut().zip(&self.ladder[low..high]) {
-            // The rate of frames brings what it says.
+            // The gain of a lower frame rate is known exactly.
             if step.setting != QualitySetting::FramesPerSecond {
                 *gain = (*gain * each).clamp(GAINS[0], GAINS[1]);
             }
@@ -296,7 +314,7 @@ impl Governor {
     fn by_lateness(&mut self) -> Option<usize> {
         let late = self.lates.mean()?;
         let n_steps = MANY_LATE.iter().filter(|part| late >= **part).count();
-        // Heat alone asks for steps as well, where no time tells of it.
+        // Heat alone requires steps as well if no frame time shows it.
         let n_steps = n_steps.max(usize::from(self.is_too_warm()));
         if n_steps > 0 && self.level < self.ladder.len() {
             return Some((self.level + n_steps).min(self.ladder.len()));
@@ -307,7 +325,8 @@ impl Governor {
         (self.low_frames >= self.waits[above].max(BLIND_UP_FRAMES)).then_some(above)
     }
 
-    /// Whether so few steps are taken that a phone this warm would not cool down by them, as far as they say themselves.
+    /// Whether the steps taken have, by their own values, too little effect for a phone this warm
+    /// to cool down.
     fn is_too_warm(&self) -> bool {
         let taken: f64 = self.ladder[..self.level].iter().map(|step| step.gain).product();
         taken > self.thermal.part()
@@ -317,7 +336,7 @@ impl Governor {
         let from = self.level;
         if to > from {
             if self.is_trial && self.age <= TRIAL_FRAMES {
-                // The step that was taken up last is the first of those that are taken back.
+                // The step that was taken up last is the first one to be taken back.
                 let wait = self.waits[from].max(if self.loads.median().is_some() {
                     UP_FRAMES
                 } else {
@@ -326,11 +345,12 @@ impl Governor {
                 self.waits[from] = (2 * wait).min(MAX_WAIT_FRAMES);
             }
         } else if self.is_trial && self.age > TRIAL_FRAMES {
-            // The trial before this one held.
+            // The previous trial succeeded.
             self.waits[from] = 0;
         }
         self.is_trial = to < from;
-        // Where the rate of frames changes, a load is over another time: it is what that step says.
+        // If the frame rate changes, a load is a ratio to another time, and the gain is the step's
+        // value.
         self.before = self.loads.median().map(|load| (from, load));
         self.level = to;
         self.end_frames = [0; 2];

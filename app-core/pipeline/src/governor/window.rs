@@ -28,14 +28,14 @@ impl Window {
         self.numbers.clear();
     }
 
-    /// None until it is full.
+    /// Median; `None` until the window is full.
     pub(super) fn median(&self) -> Option<f64> {
         let mut sorted: Vec<f64> = self.full()?.collect();
         sorted.sort_by(f64::total_cmp);
         sorted.get(sorted.len() / 2).copied()
     }
 
-    /// None until it is full.
+    /// Mean; `None` until the window is full.
     pub(super) fn mean(&self) -> Option<f64> {
         let n = self.size as f64;
         Some(self.full()?.sum::<f64>() / n)

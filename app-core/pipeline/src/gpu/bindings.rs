@@ -1,4 +1,4 @@
-//! Bindings of shaders: the slots of a bind group, and bind groups that are cached.
+//! Bindings of shaders: the slots of a bind group, and a cache of bind groups.
 
 use std::collections::HashMap;
 use std::num::NonZeroU64;
@@ -27,13 +27,13 @@ pub(crate) const N_GROUPS: usize = 4;
 /// Type of a binding; its index among the slots is its binding number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Slot {
-    /// A uniform of so many bytes, in a buffer of its own.
+    /// A uniform of this many bytes, in a buffer of its own.
     Uniform(usize),
-    /// A uniform of so many bytes, written for each use at a dynamic offset.
+    /// A uniform of this many bytes, written for each use at a dynamic offset.
     PerUse(usize),
-    /// A storage buffer to read.
+    /// A read-only storage buffer.
     Read,
-    /// A storage buffer to read and write, in compute shaders.
+    /// A storage buffer for reading and writing, in compute shaders.
     ReadWrite,
     /// A texture whose texels are loaded.
     Texture,
@@ -43,9 +43,9 @@ pub(crate) enum Slot {
     WholeNumbers,
     /// A filterable texture.
     Filtered,
-    /// A depth map of the pixels that are drawn.
+    /// A depth map of the drawn pixels.
     Depth,
-    /// A depth map from a light, which is looked at anywhere.
+    /// A depth map from a light, which is sampled at any position.
     ShadowMap,
     /// The sampler that filters.
     Sampler,
@@ -64,7 +64,7 @@ impl Slot {
         Self::PerUse(size_of::<T>())
     }
 
-    /// Bytes of a buffer of `n_bytes` that a shader sees through the slot.
+    /// Number of bytes of a buffer of `n_bytes` that a shader can access through the slot.
     fn seen_bytes(self, n_bytes: u64) -> u64 {
         match self {
             Self::Uniform(size) | Self::PerUse(size) => size as u64,
@@ -145,7 +145,7 @@ impl<'a> Resource<'a> {
         !matches!(self, Self::View(view) if !view.is_own)
     }
 
-    /// What it moves through a slot.
+    /// The data that a resource moves through a slot.
     pub(super) fn bound(self, slot: Slot) -> Option<Bound> {
         match (self, slot) {
             (Self::Buffer(buffer), _) => Some(Bound::Buffer {
@@ -175,7 +175,7 @@ impl Held {
             (Self::View(view), _) => wgpu::BindingResource::TextureView(view),
             (Self::Sampler(sampler), _) => wgpu::BindingResource::Sampler(sampler),
             (Self::PerUse, Slot::PerUse(n_bytes)) => uniforms.binding(n_bytes),
-            // Refused by the device, which names the binding.
+            // The device refuses it and names the binding.
             (Self::PerUse, _) => uniforms.binding(0),
         }
     }
@@ -209,7 +209,7 @@ pub(super) enum Held {
 }
 
 impl Held {
-    /// None of a resource that was only counted.
+    /// Returns `None` for a resource that was only counted.
     pub(super) fn of(resource: &Resource<'_>) -> Option<Self> {
         Some(match *resource {
             Resource::Buffer(buffer) => Self::Buffer(buffer.raw.clone()?),
@@ -257,8 +257,9 @@ impl BindingCache {
         layout.clone()
     }
 
-    /// The group of `resources`, in the order of the layout's slots, from the cache where it has one; none where one of them
-    /// is on no device. One with a texture that is not the core's own lives no longer than its use.
+    /// The group of `resources`, in the order of the layout's slots, from the cache if it is there;
+    /// `None` if a resource is on no device. A group with a texture that the core does not own
+    /// lives no longer than its use.
     pub(crate) fn group(
         &self,
         device: &Device,
@@ -280,19 +281,20 @@ impl BindingCache {
         Some(group)
     }
 
-    /// Drops everything, to be made anew.
+    /// Drops everything, to be created anew.
     pub(crate) fn clear(&self) {
         locked(&self.layouts).clear();
         self.release_groups();
     }
 
-    /// Drops all groups, and with them the resources that nothing else holds: for textures replaced by larger ones.
+    /// Drops all groups, and with them the resources that nothing else holds: for textures replaced
+    /// by larger ones.
     pub(crate) fn release_groups(&self) {
         locked(&self.groups).clear();
     }
 }
 
-/// A group of what is held, in the order of the layout's slots.
+/// A group of the held resources, in the order of the layout's slots.
 fn make_group(device: &Device, uniforms: &Uniforms, layout: &Layout, held: &[Held]) -> wgpu::BindGroup {
     let entries: Vec<_> = (0..)
         .zip(layout.slots.iter().zip(held))
@@ -308,7 +310,7 @@ fn make_group(device: &Device, uniforms: &Uniforms, layout: &Layout, held: &[Hel
     })
 }
 
-/// What a mutex guards; a thread that panicked leaves a cache as sound as it was.
+/// The content of a mutex; a thread that panicked leaves a cache intact.
 pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

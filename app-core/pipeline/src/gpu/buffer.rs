@@ -8,7 +8,7 @@ use super::meter::Meter;
 pub(crate) use super::resource::Buffer;
 
 impl Gpu {
-    /// A buffer filled with `contents`, which can be written to.
+    /// A writable buffer filled with `contents`.
     pub(crate) fn buffer(&self, label: &str, contents: &[u8], usage: BufferUsages) -> Buffer {
         let raw = self.opened.as_ref().map(|opened| {
             opened.device.filled_buffer(&wgpu::util::BufferInitDescriptor {

@@ -30,6 +30,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "frame",
     "fullscreen",
     "globals",
+    "gloss",
     "grain",
     "grid",
     "hemispheres",
@@ -44,6 +45,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "planes",
     "pool",
     "receiver_light",
+    "reflection",
     "self_shadow",
     "soft_toy",
     "source",
@@ -53,6 +55,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "tint_cells",
     "tint_grid",
     "toy_light",
+    "toy_point",
     "toy_radiance",
 ];
 

@@ -22,21 +22,21 @@ pub enum AdapterChoice {
     /// The fastest one.
     #[default]
     Fastest,
-    /// The first whose name contains this text, whatever the case.
+    /// The first whose name contains this text, in upper or lower case.
     Named(String),
 }
 
-/// Why there is no device.
+/// The reason why there is no device.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// There is no driver, or none that can draw on the surface.
+    /// No driver exists, or none can draw on the surface.
     #[error("no graphics adapter: {reason}")]
     NoAdapter {
-        /// Why none fits.
+        /// The reason why none is suitable.
         reason: String,
     },
-    /// The adapter gave no device with the required limits.
+    /// The adapter offers no device with the required limits.
     #[error("adapter {adapter} gives no device: {reason}")]
     NoDevice {
         /// Name of the adapter.
@@ -49,10 +49,10 @@ pub enum GpuError {
     KnownFault {
         /// Name of the adapter.
         adapter: String,
-        /// What it fails at, and the source of that.
+        /// The fault, with its source.
         fault: &'static str,
     },
-    /// The device refused work: out of memory, most often.
+    /// The device refused work, mostly because memory ran out.
     #[error("the device refused work: {reason}")]
     Refused {
         /// The driver's first message.
@@ -64,7 +64,8 @@ pub enum GpuError {
         /// The driver's message.
         reason: String,
     },
-    /// The surface is gone, and the device is not: another surface is to be made of the same window.
+    /// The surface is lost, but the device is not: another surface must be created for the same
+    /// window.
     #[error("the surface is lost")]
     SurfaceLost,
     /// The device was lost, or a read-back failed.
@@ -75,7 +76,7 @@ pub enum GpuError {
     },
 }
 
-/// A device and everything that is created once on it, or none: then nothing is drawn, and what would be is counted.
+/// A device and everything that is created once on it; or no device, and the work is only counted.
 #[derive(Default)]
 pub struct Gpu {
     pub(crate) opened: Option<Opened>,
@@ -87,7 +88,7 @@ pub struct Gpu {
 pub(crate) struct Opened {
     pub(crate) device: Device,
     pub(crate) queue: wgpu::Queue,
-    /// None for an adopted device.
+    /// The adapter; `None` for an adopted device.
     pub(crate) adapter: Option<wgpu::Adapter>,
     pub(super) uniforms: Uniforms,
     pipelines: PipelineCache,
@@ -95,7 +96,7 @@ pub(crate) struct Opened {
     info: wgpu::AdapterInfo,
 }
 
-/// What is used where a device has it.
+/// Features that are used if a device has them.
 fn wished_features(info: &wgpu::AdapterInfo) -> wgpu::Features {
     let timestamps = wgpu::Features::TIMESTAMP_QUERY;
     if fault_of_pipeline_caches(info).is_some() {
@@ -105,7 +106,7 @@ fn wished_features(info: &wgpu::AdapterInfo) -> wgpu::Features {
     }
 }
 
-/// The limits of every phone that is supported; tests run under them too.
+/// The limits that every supported phone has; tests run under them too.
 #[must_use]
 pub fn phone_limits() -> wgpu::Limits {
     // Camera images are wider than the 2048 texels that the oldest devices offer.
@@ -119,7 +120,8 @@ impl Gpu {
     /// Opens a device that can draw on `surface`, or on textures alone.
     ///
     /// # Errors
-    /// When there is no adapter, it falls short of the limits of a phone, or its driver is known to fail on a surface.
+    /// If there is no adapter, if it falls short of the limits of a phone, or if its driver is
+    /// known to fail on a surface.
     pub(crate) async fn open(
         instance: &wgpu::Instance,
         choice: &AdapterChoice,
@@ -147,7 +149,8 @@ impl Gpu {
                     adapter: info.name,
                     reason: error.to_string(),
                 })?;
-        // Errors outside of `guarded`, such as the loss of the device: without a handler they would end the program.
+        // Errors outside of `guarded`, such as the loss of the device, would end the program
+        // without a handler.
         device.on_uncaptured_error(Arc::new(|_: wgpu::Error| ()));
         Self::new(device, queue, Some(adapter))
     }
@@ -155,7 +158,7 @@ impl Gpu {
     /// Adopts a device that the caller opened.
     ///
     /// # Errors
-    /// When it falls short of the limits of a phone.
+    /// If it falls short of the limits of a phone.
     pub(crate) fn adopt(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
         if !phone_limits().check_limits(&device.limits()) {
             return Err(GpuError::NoDevice {
@@ -189,27 +192,27 @@ impl Gpu {
         })
     }
 
-    /// Runs `work` on the device, and fails where the device refused any of it.
+    /// Runs `work` on the device, and fails if the device refused any of it.
     pub(crate) fn guarded<T>(&self, work: impl FnOnce() -> T) -> Result<T, GpuError> {
         let Some(opened) = &self.opened else {
             return Ok(work());
         };
         let done = guarded(&opened.device.raw, work);
         if done.is_err() {
-            // What was refused must not be taken from a cache as if it were sound.
+            // Refused objects must not be taken from a cache as if they were valid.
             opened.pipelines.clear();
             opened.bindings.clear();
         }
         done
     }
 
-    /// The limits that all work keeps to.
+    /// The limits of all work.
     pub(crate) fn limits(&self) -> wgpu::Limits {
         let opened = self.opened.as_ref();
         opened.map_or_else(phone_limits, |opened| opened.device.raw.limits())
     }
 
-    /// Bytes of textures and buffers that were made so far.
+    /// Bytes of textures and buffers that were created so far.
     pub(crate) fn memory(&self) -> Memory {
         self.meter.memory()
     }
@@ -245,7 +248,7 @@ impl Gpu {
         }
     }
 
-    /// What pipelines are kept under; none where they cannot be.
+    /// Key under which pipelines are kept; `None` if they cannot be.
     pub(crate) fn pipelines_key(&self) -> Option<String> {
         let opened = self.opened.as_ref()?;
         let features = opened.device.raw.features();
@@ -263,31 +266,33 @@ impl Gpu {
         })
     }
 
-    /// Compiles with a cache of the driver's from now on.
+    /// Compiles with a cache of the driver from now on.
     pub(crate) fn set_pipeline_cache(&self, cache: wgpu::PipelineCache) {
         if let Some(opened) = &self.opened {
             opened.pipelines.set_of_driver(cache);
         }
     }
 
-    /// What that cache holds.
+    /// The content of that cache.
     pub(crate) fn pipeline_data(&self) -> Option<Vec<u8>> {
         self.opened.as_ref()?.pipelines.data_of_driver()
     }
 
-    /// Compiles shaders from other texts from now on, and returns those before. Pipelines that are held stay as they are.
+    /// Compiles shaders from other texts from now on, and returns the previous texts. Pipelines in
+    /// use stay unchanged.
     pub(crate) fn replace_shaders(&self, texts: ShaderTexts) -> ShaderTexts {
         let pipelines = self.opened.as_ref().map(|opened| &opened.pipelines);
         pipelines.map_or_else(ShaderTexts::default, |kept| kept.replace_texts(texts))
     }
 
-    /// Whether shaders are compiled from what is built in.
+    /// Whether shaders are compiled from the built-in texts.
     pub(crate) fn has_built_in_shaders(&self) -> bool {
         let opened = self.opened.as_ref();
         opened.is_none_or(|opened| opened.pipelines.is_built_in())
     }
 
-    /// Drops all groups, and with them the resources that nothing else holds: for textures replaced by larger ones.
+    /// Drops all groups, and with them the resources that nothing else holds: for textures replaced
+    /// by larger ones.
     pub(crate) fn release_groups(&self) {
         if let Some(opened) = &self.opened {
             opened.bindings.release_groups();
@@ -317,7 +322,7 @@ impl Opened {
         self.bindings.layout(&self.device, slots)
     }
 
-    /// The group of `resources`, in the order of the layout's slots, from the cache where it has one.
+    /// The group of `resources`, in the order of the layout's slots, from the cache if it is there.
     pub(super) fn bind(&self, layout: &Layout, resources: &[Resource<'_>]) -> Option<wgpu::BindGroup> {
         self.bindings
             .group(&self.device, &self.uniforms, layout, resources)
@@ -352,7 +357,7 @@ fn guarded<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, GpuE
     }
 }
 
-/// The value of a future that is ready at once, as an error scope always is off the web.
+/// The value of a future that is ready at once, as an error scope always is outside the web.
 fn ready<T>(future: impl Future<Output = T>) -> Option<T> {
     let mut context = Context::from_waker(Waker::noop());
     match pin!(future).poll(&mut context) {
@@ -392,7 +397,7 @@ async fn find_adapter(
                 .into_iter()
                 .find(fits)
                 .ok_or_else(|| GpuError::NoAdapter {
-                    reason: format!("none is named \"{wanted}\", there are {names:?}"),
+                    reason: format!("none is named \"{wanted}\"; available: {names:?}"),
                 })
         }
     }

@@ -1,4 +1,5 @@
-//! The device, which counts the objects it creates: a frame that changes only pose, picture or view creates none.
+//! The device, with a count of the objects it creates: a frame that changes only pose, picture or
+//! view creates none.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -12,7 +13,7 @@ use super::handle::DeviceHandle;
 pub enum Kind {
     /// Vertices, uniforms, storage.
     Buffer,
-    /// Textures, of whatever use.
+    /// Textures for any use.
     Texture,
     /// Views of textures.
     View,
@@ -45,7 +46,7 @@ impl Kind {
     ];
 }
 
-/// A device, and the number of objects it created, whether they still live or not.
+/// A device and the number of objects it created, including those that were dropped.
 #[derive(Debug)]
 pub(crate) struct Device {
     pub(crate) raw: wgpu::Device,
@@ -62,7 +63,7 @@ impl Device {
         }
     }
 
-    /// The device for textures that are not the core's own.
+    /// The device, for textures that the core does not own.
     pub(crate) fn handle(&self) -> DeviceHandle {
         DeviceHandle::new(self.raw.clone(), Arc::clone(&self.identity))
     }
@@ -148,7 +149,7 @@ impl Device {
         self.raw.create_query_set(descriptor)
     }
 
-    /// A command encoder, one per submission: not counted.
+    /// A command encoder, one per submission; it is not counted.
     pub(crate) fn encoder(&self) -> wgpu::CommandEncoder {
         self.raw
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default())

@@ -1,10 +1,10 @@
-//! A core's device as others may have it.
+//! Handle to a core's device for other modules.
 
 use std::fmt;
 use std::sync::Arc;
 
-/// A device for textures that a platform lends. Two are the same one if they came of the same core: devices of two instances may
-/// be equal by wgpu's own comparison.
+/// A device for textures that a platform shares. Two handles are equal if they come from the same
+/// core: devices of two instances may be equal by wgpu's own comparison.
 #[derive(Clone)]
 pub struct DeviceHandle {
     raw: wgpu::Device,
@@ -16,13 +16,13 @@ impl DeviceHandle {
         Self { raw, identity }
     }
 
-    /// wgpu's own.
+    /// The device of wgpu.
     #[must_use]
     pub fn raw(&self) -> &wgpu::Device {
         &self.raw
     }
 
-    /// Whether both are one device.
+    /// Whether both are the same device.
     pub(crate) fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.identity, &other.identity)
     }

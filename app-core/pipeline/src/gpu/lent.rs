@@ -1,4 +1,4 @@
-//! Camera planes that the platform lends as textures.
+//! Camera planes that the platform shares as textures.
 
 use app_scene::camera_frame::{LentPlanes, PlanarImage, PlaneError, YcbcrEncoding, half_size_px};
 use thiserror::Error;
@@ -6,9 +6,10 @@ use wgpu::TextureFormat;
 
 use super::handle::DeviceHandle;
 
-/// Planes that are textures of the platform's already: passes read them where they lie.
+/// Planes that already are textures of the platform; passes read them in place.
 ///
-/// The textures, or what their device calls once it is done with them, keep the platform's buffer.
+/// The platform's buffer lives as long as the textures, or until the callback that their device
+/// runs when it has finished with them.
 pub struct LentTextures {
     /// The device of both textures.
     pub device: DeviceHandle,
@@ -16,41 +17,41 @@ pub struct LentTextures {
     pub luma: wgpu::Texture,
     /// Cb and Cr, as `Rg8Unorm`, of half the size, rounded up.
     pub chroma: wgpu::Texture,
-    /// Copies the same planes; none if the platform does not let them be read.
+    /// Copies the same planes; returns `None` if the platform does not permit reading.
     pub read: Box<dyn Fn() -> Option<PlanarImage> + Send + Sync>,
 }
 
-/// Why textures are no picture.
+/// The reason why textures are not a valid picture.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum LentError {
     /// No picture has that size.
     #[error(transparent)]
     Planes(#[from] PlaneError),
-    /// A texture of another size or format than the component's.
+    /// A texture with another size or format than its component.
     #[error("camera planes, {plane}: a texture of {} x {} px, {format:?}; {} x {} px, {needed:?} is needed",
         size_px[0], size_px[1], needed_px[0], needed_px[1])]
     Texture {
-        /// Which component.
+        /// Name of the component.
         plane: &'static str,
         /// Width and height.
         size_px: [u32; 2],
-        /// As given.
+        /// Format as given.
         format: TextureFormat,
-        /// Width and height that the component has.
+        /// Required width and height.
         needed_px: [u32; 2],
-        /// The format that it has.
+        /// Required format.
         needed: TextureFormat,
     },
 }
 
 impl LentTextures {
-    /// A picture that stays where the platform has it.
+    /// A picture that stays in the platform's memory.
     ///
     /// # Errors
-    /// When no picture has that size, or a texture is not one of its plane.
+    /// If no picture has that size, or if a texture does not match its plane.
     pub fn into_image(self, size_px: [u32; 2], encoding: YcbcrEncoding) -> Result<PlanarImage, LentError> {
         let checked = self.check(size_px);
-        // A size that no picture has is what is told first.
+        // An impossible size is reported first.
         let image = PlanarImage::lent(size_px, encoding, self)?;
         checked.map(|()| image)
     }
@@ -80,7 +81,8 @@ impl LentTextures {
         Ok(())
     }
 
-    /// Luma and chroma if they are textures of `device`; of another one, as after a loss, they mean nothing to it.
+    /// Luma and chroma if they are textures of `device`; on another device, as after a loss, they
+    /// are invalid.
     pub(crate) fn on<'a>(image: &'a PlanarImage, device: &DeviceHandle) -> Option<[&'a wgpu::Texture; 2]> {
         let lent: &Self = image.lent_as().filter(|lent: &&Self| lent.device.is(device))?;
         Some([&lent.luma, &lent.chroma])

@@ -1,23 +1,23 @@
-//! Counts of what is made and moved, on a device or on none.
+//! Counts of allocated and transferred data, with or without a device.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::work::Id;
 
-/// Bytes of textures and buffers that a core made, by their descriptors: a driver may round them up. Targets that never
-/// leave the chip, which a tiler gives no memory, are not in it.
+/// Bytes of textures and buffers that a core created, by their descriptors: a driver may round them
+/// up. Targets that never leave the chip, for which a tiler allocates no memory, are not included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
-    /// Of those that there are.
+    /// Bytes of the existing ones.
     pub held_bytes: u64,
-    /// Most that there were at a time.
+    /// Largest number of bytes at a time.
     pub peak_bytes: u64,
-    /// Of all that were made.
+    /// Bytes of all that were ever created.
     pub made_bytes: u64,
 }
 
-/// Of the next resource, whatever device it is on.
+/// Identifier of the next resource, on any device.
 static NEXT_ID: AtomicU64 = AtomicU64::new(0);
 
 /// The counts of one device.
@@ -28,7 +28,7 @@ pub(crate) struct Meter {
     held: Arc<HeldBytes>,
 }
 
-/// Bytes of what is kept, and the most that they were.
+/// Bytes that are held now, and their maximum.
 #[derive(Debug, Default)]
 struct HeldBytes {
     now: AtomicU64,
@@ -41,7 +41,7 @@ impl Meter {
         NEXT_ID.fetch_add(1, Ordering::Relaxed)
     }
 
-    /// Counts the bytes of a resource until what is returned is dropped.
+    /// Counts the bytes of a resource until the returned value is dropped.
     pub(super) fn hold(&self, n_bytes: u64) -> Held {
         self.made.fetch_add(n_bytes, Ordering::Relaxed);
         let now = self.held.now.fetch_add(n_bytes, Ordering::Relaxed) + n_bytes;
@@ -52,12 +52,12 @@ impl Meter {
         }
     }
 
-    /// Counts bytes that the processor hands over.
+    /// Counts bytes that the processor transfers to the device.
     pub(super) fn upload(&self, n_bytes: usize) {
         self.uploaded.fetch_add(n_bytes as u64, Ordering::Relaxed);
     }
 
-    /// Bytes that the processor handed over so far.
+    /// Bytes that the processor transferred so far.
     pub(super) fn uploaded_bytes(&self) -> u64 {
         self.uploaded.load(Ordering::Relaxed)
     }
@@ -71,7 +71,7 @@ impl Meter {
     }
 }
 
-/// Bytes of one texture or buffer.
+/// The counted bytes of one texture or buffer.
 #[derive(Debug)]
 pub(super) struct Held {
     of: Arc<HeldBytes>,

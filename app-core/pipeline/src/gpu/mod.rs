@@ -1,6 +1,7 @@
-//! The thin layer over wgpu: device and caches, textures and buffers, recording of what ran, read-back.
+//! The thin layer over wgpu: device and caches, textures and buffers, recording of passes,
+//! readback.
 //!
-//! Everything that is created on the device is created here, and counted.
+//! Everything on the device is created and counted here.
 
 pub(crate) mod bindings;
 pub(crate) mod buffer;

@@ -1,10 +1,10 @@
-//! Records of the passes that ran.
+//! Records of the executed passes.
 
 use serde::Serialize;
 
 use super::work::Work;
 
-/// The path of a pass: what learns from the real toy, or what draws each picture.
+/// The path of a pass: estimation from the real toy, or drawing of each picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PassGroup {
@@ -25,23 +25,23 @@ impl PassGroup {
     }
 }
 
-/// A pass that ran.
+/// An executed pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 pub struct PassRun {
-    /// The path it ran on.
+    /// The path of the pass.
     pub path: PassGroup,
     /// Its name.
     pub pass: &'static str,
-    /// How often it ran.
+    /// Number of runs.
     pub n_runs: u32,
-    /// What that costs.
+    /// The cost of all runs.
     pub work: Work,
 }
 
 /// Device time of one pass.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PassTime {
-    /// The path it ran on.
+    /// The path of the pass.
     pub path: PassGroup,
     /// The pass's name.
     pub pass: &'static str,

@@ -1,4 +1,4 @@
-//! Pipelines: compiled once per device, whatever scene or view uses them.
+//! Pipelines, compiled once per device for all scenes and views.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -11,7 +11,7 @@ use super::bindings::{BindingCache, Layout, N_GROUPS, Slot, locked};
 use super::device::Device;
 use super::shader::{Shader, ShaderTexts};
 
-/// Slots of each group; empty where a shader has no such group.
+/// Slots of each group; empty if a shader has no such group.
 pub(crate) type Groups = [&'static [Slot]; N_GROUPS];
 
 /// A vertex stream of one attribute: its shader location and format.
@@ -24,12 +24,12 @@ pub(crate) struct DrawSpec {
     pub(crate) vertex: &'static str,
     pub(crate) fragment: &'static str,
     pub(crate) groups: Groups,
-    /// One per vertex buffer, in the order of its slots.
+    /// One stream per vertex buffer, in the order of its slots.
     pub(crate) streams: &'static [Stream],
     pub(crate) targets: Vec<ColorTargetState>,
     pub(crate) n_samples: u32,
     pub(crate) depth: Option<DepthStencilState>,
-    /// Side of a triangle that is not drawn.
+    /// The culled side of triangles.
     pub(crate) culled: Option<Face>,
     /// Values of `override` constants.
     pub(crate) constants: Vec<(&'static str, u32)>,
@@ -73,7 +73,7 @@ pub(crate) struct ComputeSpec {
 pub(crate) struct Pipeline<T> {
     pub(crate) name: &'static str,
     pub(crate) slots: Groups,
-    /// None where nothing is drawn, only counted.
+    /// `None` if work is only counted.
     pub(super) compiled: Option<Compiled<T>>,
 }
 
@@ -92,12 +92,12 @@ pub(crate) type Compute = Pipeline<wgpu::ComputePipeline>;
 /// Cache of everything compiled on a device.
 #[derive(Default)]
 pub(crate) struct PipelineCache {
-    /// What modules are compiled from.
+    /// Source texts of the modules.
     texts: Mutex<ShaderTexts>,
     modules: Mutex<HashMap<&'static str, wgpu::ShaderModule>>,
     draws: Mutex<HashMap<DrawSpec, Draw>>,
     computes: Mutex<HashMap<ComputeSpec, Compute>>,
-    /// The driver's own, which outlives a start of the program.
+    /// The driver's own cache, which outlives the program.
     of_driver: Mutex<Option<wgpu::PipelineCache>>,
 }
 
@@ -114,24 +114,24 @@ impl PipelineCache {
         })
     }
 
-    /// Has the driver look there for what it has compiled before, and put there what it compiles.
+    /// Makes the driver read compiled pipelines from a cache and add new ones to it.
     pub(super) fn set_of_driver(&self, cache: wgpu::PipelineCache) {
         *locked(&self.of_driver) = Some(cache);
     }
 
-    /// What the driver has put there.
+    /// The content of the driver's cache.
     pub(super) fn data_of_driver(&self) -> Option<Vec<u8>> {
         locked(&self.of_driver).as_ref()?.get_data()
     }
 
-    /// Compiles from other texts from now on, and returns those before.
+    /// Compiles from other texts from now on, and returns the previous ones.
     pub(crate) fn replace_texts(&self, texts: ShaderTexts) -> ShaderTexts {
         let before = mem::replace(&mut *locked(&self.texts), texts);
         self.clear();
         before
     }
 
-    /// Whether modules are compiled from what is built in.
+    /// Whether modules are compiled from the built-in texts.
     pub(crate) fn is_built_in(&self) -> bool {
         *locked(&self.texts) == ShaderTexts::default()
     }
@@ -218,7 +218,7 @@ impl PipelineCache {
     }
 }
 
-/// Values of `override` constants as the device takes them.
+/// Values of `override` constants in the device's type.
 fn values(constants: &[(&'static str, u32)]) -> Vec<(&'static str, f64)> {
     let values = constants.iter();
     values.map(|(name, value)| (*name, f64::from(*value))).collect()
@@ -243,7 +243,7 @@ fn pipeline_layout(
     (layouts, layout)
 }
 
-/// The value under `key`, created outside the lock where there is none: compiling takes its time.
+/// The value under `key`. A missing one is created outside the lock, since compilation takes long.
 fn cached<K: Clone + Eq + Hash, V: Clone>(
     cache: &Mutex<HashMap<K, V>>,
     key: &K,
@@ -272,7 +272,7 @@ fn buffer(attributes: &[VertexAttribute; 1]) -> wgpu::VertexBufferLayout<'_> {
     }
 }
 
-/// Reversed depth that keeps the nearest surface.
+/// Depth state with reversed depth that keeps the nearest surface.
 pub(crate) fn nearest_surface() -> DepthStencilState {
     DepthStencilState {
         format: wgpu::TextureFormat::Depth32Float,

@@ -1,13 +1,14 @@
 //! Drivers with faults that the core cannot work around.
 //!
-//! Only faults that reach what the core does have an entry. Known ones that do not: stale samples after storage writes to a texture
-//! (Adreno 830; there is no storage texture here), arrays of bindings (Mali; there are none), reads out of a workgroup's arrays
-//! (Mali; wgpu's bounds checks stay on). Wrong pictures of unknown cause (Adreno 725 and 740, wgpu issue 6340) are for the self-test
-//! to find. Entries go when a driver is known to be mended.
+//! Only faults that affect the core have an entry. Known faults that do not: stale samples after
+//! storage writes to a texture (Adreno 830; the core uses no storage texture), arrays of bindings
+//! (Mali; there are none), out-of-bounds reads of a workgroup's arrays (Mali; wgpu's bounds checks
+//! stay on). Wrong pictures of unknown cause (Adreno 725 and 740, wgpu issue 6340) are left to the
+//! self-test. An entry is removed when a driver is known to be fixed.
 
 use wgpu::{AdapterInfo, Backend};
 
-/// A driver by what it tells of itself, and its fault.
+/// A driver, by its adapter's properties, and its fault.
 struct Quirk {
     /// PCI vendor.
     vendor: u32,
@@ -23,13 +24,13 @@ const IMAGINATION: u32 = 0x1010;
 /// Caches of compiled pipelines.
 const OF_PIPELINE_CACHES: [Quirk; 1] = [Quirk {
     vendor: IMAGINATION,
-    // Of the Pixel 10; other names of this maker's were not reported.
+    // Adapter of the Pixel 10; no fault of the vendor's other adapters was reported.
     name: "DXT-48",
     backend: Backend::Vulkan,
     fault: "its driver ends the program in vkCreatePipelineCache (godot issue 115171, open since January 2026)",
 }];
 
-/// On a surface alone: pictures that are not shown come out right with these.
+/// Faults on a surface alone: off-screen pictures are correct with these drivers.
 const ON_SURFACES: [Quirk; 1] = [Quirk {
     vendor: IMAGINATION,
     name: "BXM-8-256",
@@ -37,13 +38,13 @@ const ON_SURFACES: [Quirk; 1] = [Quirk {
     fault: "its driver ends the program with the first picture on a screen (wgpu issue 7669, open since May 2025)",
 }];
 
-/// Why a driver is not asked to keep pipelines; none where it may be.
+/// The reason not to use a driver's pipeline cache; `None` if it may be used.
 #[must_use]
 pub fn fault_of_pipeline_caches(info: &AdapterInfo) -> Option<&'static str> {
     fault_in(&OF_PIPELINE_CACHES, info)
 }
 
-/// Why a driver is not to draw on a surface; none where it may.
+/// The reason not to draw on a surface with a driver; `None` if it may draw.
 #[must_use]
 pub fn fault_on_surfaces(info: &AdapterInfo) -> Option<&'static str> {
     fault_in(&ON_SURFACES, info)

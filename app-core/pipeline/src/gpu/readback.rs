@@ -1,9 +1,10 @@
-//! Read-back of buffers and textures: blocking, for replay and tests.
+//! Readback of buffers and textures: blocking, for replay and tests.
 
 use super::buffer::Buffer;
 use super::context::{Gpu, GpuError, Opened};
 
-/// Fills the read-back before the copy, so that a copy that never ran cannot look like black.
+/// Value that fills the readback before the copy, so that a copy that never ran cannot look like
+/// black.
 const POISON: u8 = 0xa5;
 
 impl Gpu {
@@ -17,7 +18,8 @@ impl Gpu {
         opened.read_buffer(raw)
     }
 
-    /// Waits for the device and returns the texels of a texture, row by row without padding, layer after layer.
+    /// Waits for the device and returns the texels of a texture, row by row without padding, layer
+    /// after layer.
     pub fn read_texture(&self, texture: Option<&wgpu::Texture>) -> Result<Vec<u8>, GpuError> {
         let (opened, raw) = self
             .opened
@@ -29,7 +31,7 @@ impl Gpu {
 }
 
 impl GpuError {
-    /// What is only counted cannot be read.
+    /// The error of reading data that is only counted.
     pub(crate) fn no_device() -> Self {
         Self::ReadBack {
             reason: "there is no device: what would be drawn is only counted".to_owned(),

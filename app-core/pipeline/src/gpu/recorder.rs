@@ -15,29 +15,29 @@ use super::timer::Timer;
 use super::uniforms::Written;
 use super::work::{Bound, Tally, Work};
 
-/// Commands being recorded, and counted; only counted where there is no device.
+/// Commands that are recorded and counted; without a device they are only counted.
 pub(crate) struct Recorder<'g> {
     pub(crate) gpu: &'g Gpu,
     /// The group to which passes are attributed.
     pub(crate) group: PassGroup,
-    /// Pixels of the pictures that are worked on: the most that a compute shader looks at.
+    /// Pixels of the retargeted pictures: the largest number that a compute shader processes.
     pub(crate) n_pixels: u64,
     pub(crate) stages: Stages,
     raw: Option<wgpu::CommandEncoder>,
     uniforms: Written,
     timer: Option<&'g mut Timer>,
-    /// In the order of their first runs.
+    /// The passes, in the order of their first runs.
     ran: Vec<PassRun>,
-    /// Bytes that the processor had handed over before.
+    /// Bytes that the processor had transferred before.
     uploaded_bytes: u64,
 }
 
-/// What was recorded.
+/// A finished recording.
 #[derive(Debug)]
 pub(crate) struct Recorded {
     /// The passes, in the order of their first runs.
     pub(crate) ran: Vec<PassRun>,
-    /// Bytes that the processor handed over meanwhile.
+    /// Bytes that the processor transferred meanwhile.
     pub(crate) uploaded_bytes: u64,
     pub(crate) stages: Vec<StageTime>,
 }
@@ -46,12 +46,13 @@ pub(crate) struct Recorded {
 pub(crate) struct Group {
     index: u32,
     raw: Option<wgpu::BindGroup>,
-    /// Dynamic offset of the uniform of this use.
+    /// Dynamic offset of this use's uniform.
     offset: Option<u32>,
     bound: Vec<Bound>,
 }
 
-/// A colour attachment: a view, what becomes of it, and where several samples are resolved to.
+/// A colour attachment: a view, its load and store operations, and the target to which several
+/// samples are resolved.
 #[derive(Clone, Copy)]
 pub(crate) struct Attachment<'a> {
     view: &'a TextureView,
@@ -84,7 +85,8 @@ impl<'g> Recorder<'g> {
         }
     }
 
-    /// The same with `uniform`, for this use alone, in place of [`Resource::PerUse`].
+    /// Like [`bind`](Self::bind), with `uniform`, for this use alone, in place of
+    /// [`Resource::PerUse`].
     pub(crate) fn bind_with<T, U: bytemuck::Pod>(
         &mut self,
         pipeline: &Pipeline<T>,
@@ -151,7 +153,7 @@ impl<'g> Recorder<'g> {
         self.fullscreen_onto(draw, groups, &colors);
     }
 
-    /// The same onto attachments of which some may be kept.
+    /// Like [`fullscreen`](Self::fullscreen), onto attachments some of which may be kept.
     pub(crate) fn fullscreen_onto(
         &mut self,
         draw: &Draw,
@@ -163,7 +165,8 @@ impl<'g> Recorder<'g> {
         render.draw(0..3, 0..1);
     }
 
-    /// The same, onto the part of them at `origin_px` alone, of so many pixels; nowhere where there is none.
+    /// The same, onto the part of the attachments at `origin_px` alone, of this size; nothing if
+    /// the part is `None`.
     pub(crate) fn fullscreen_within(
         &mut self,
         draw: &Draw,
@@ -183,7 +186,7 @@ impl<'g> Recorder<'g> {
         self.compute_over(compute, groups, workgroups, self.n_pixels);
     }
 
-    /// The same of a shader that looks at so many pixels.
+    /// Runs a compute shader that processes this number of pixels.
     pub(crate) fn compute_over(
         &mut self,
         compute: &Compute,
@@ -217,7 +220,7 @@ impl<'g> Recorder<'g> {
         pass.dispatch_workgroups(x, y, z);
     }
 
-    /// Makes all of a target black.
+    /// Fills a target with black.
     pub(crate) fn blacken(&mut self, target: &TextureView) {
         self.render("black", &[Some(cleared(target))], None, wgpu::StoreOp::Discard);
     }
@@ -229,14 +232,14 @@ impl<'g> Recorder<'g> {
         }
     }
 
-    /// Copies all of a texture to one of the same size and format.
+    /// Copies a whole texture to one of the same size and format.
     pub(crate) fn copy(&mut self, from: &Texture, to: &Texture) {
         if let (Some(encoder), Some(from), Some(to)) = (&mut self.raw, from.raw(), to.raw()) {
             encoder.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), to.size());
         }
     }
 
-    /// Submits the commands; returns the passes that are in them.
+    /// Submits the commands; returns their passes.
     pub(crate) fn submit(mut self) -> Recorded {
         self.stages.begin("submit");
         if let (Some(opened), Some(mut encoder)) = (&self.gpu.opened, self.raw.take()) {
@@ -262,7 +265,7 @@ impl<'g> Recorder<'g> {
     ) -> Option<wgpu::BindGroup> {
         let (opened, compiled) = self.gpu.opened.as_ref().zip(pipeline.compiled.as_ref())?;
         let layout = compiled.layouts[index].clone();
-        // A group that the pipeline lacks is refused by the device, which names it.
+        // The device refuses a group that the pipeline lacks, and names it.
         let layout = layout.unwrap_or_else(|| opened.layout(&[]));
         opened.bind(&layout, resources)
     }
@@ -292,7 +295,7 @@ fn counted<'a>(ran: &'a mut Vec<PassRun>, group: PassGroup, pass: &'static str) 
     &mut run.work
 }
 
-/// Counts what attachments move.
+/// Counts the bytes that attachments move.
 fn tally<'a>(
     work: &'a mut Work,
     colors: &[Option<Attachment<'_>>],
@@ -320,7 +323,7 @@ fn tally<'a>(
     tally
 }
 
-/// The attachment of a device; none of a view that was only counted.
+/// The attachment on a device; `None` for a view that was only counted.
 fn on_device<'a>(color: &Attachment<'a>) -> Option<wgpu::RenderPassColorAttachment<'a>> {
     Some(wgpu::RenderPassColorAttachment {
         view: color.view.raw.as_ref()?,
@@ -359,7 +362,7 @@ impl Render<'_> {
         }
     }
 
-    /// Sets a buffer of indices of 32 bits.
+    /// Sets a buffer of 32-bit indices.
     pub(crate) fn set_indices(&mut self, buffer: &Buffer) {
         if let (Some(raw), Some(buffer)) = (&mut self.raw, &buffer.raw) {
             raw.set_index_buffer(buffer.slice(..), wgpu::IndexFormat::Uint32);
@@ -380,7 +383,8 @@ impl Render<'_> {
         }
     }
 
-    /// Draws a picture of `size_px` of which the attachments hold the part at `origin_px`; before anything is set.
+    /// Draws a picture of `size_px` of which the attachments hold the part at `origin_px`; to be
+    /// called before anything is set.
     pub(crate) fn part_of(&mut self, (origin_px, size_px): (UVec2, UVec2)) {
         let (origin, size) = (origin_px.as_vec2(), size_px.as_vec2());
         if let Some(raw) = &mut self.raw {
@@ -388,18 +392,18 @@ impl Render<'_> {
         }
     }
 
-    /// Draws no farther than a part of the attachments; before anything is set.
+    /// Limits drawing to a part of the attachments; to be called before anything is set.
     pub(crate) fn within(&mut self, part: (UVec2, UVec2)) {
         self.narrow(n_pixels(part.1));
         self.clip(part);
     }
 
-    /// What is set next is looked at by so many pixels alone.
+    /// Counts only this number of pixels for the resources that are set next.
     pub(crate) fn narrow(&mut self, n_pixels: u64) {
         self.tally.narrow(n_pixels);
     }
 
-    /// Draws next in a part of the attachments; others are drawn in the rest of them.
+    /// Limits the next draws to a part of the attachments; others are drawn in the rest of them.
     pub(crate) fn clip(&mut self, (origin_px, size_px): (UVec2, UVec2)) {
         if let Some(raw) = &mut self.raw {
             raw.set_scissor_rect(origin_px.x, origin_px.y, size_px.x, size_px.y);
@@ -411,7 +415,7 @@ fn n(range: &Range<u32>) -> u32 {
     range.end.saturating_sub(range.start)
 }
 
-/// Pixels of a picture of that size.
+/// Number of pixels of a picture of that size.
 pub(crate) fn n_pixels(size_px: UVec2) -> u64 {
     u64::from(size_px.x) * u64::from(size_px.y)
 }
@@ -452,12 +456,12 @@ pub(crate) fn resolved<'a>(view: &'a TextureView, target: &'a TextureView) -> At
     }
 }
 
-/// A target that starts at zero and is resolved from its samples, or has one of its own.
+/// A target that starts at zero and is resolved from its samples, or has a single sample.
 pub(crate) fn sampled<'a>(samples: Option<&'a TextureView>, target: &'a TextureView) -> Attachment<'a> {
     samples.map_or_else(|| cleared(target), |samples| resolved(samples, target))
 }
 
-/// A multisampled attachment that starts at zero and is forgotten.
+/// A multisampled attachment that starts at zero and is discarded.
 pub(crate) fn discarded(view: &TextureView) -> Attachment<'_> {
     Attachment {
         ops: wgpu::Operations {

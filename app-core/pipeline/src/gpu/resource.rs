@@ -1,4 +1,4 @@
-//! Buffers and views as passes hold them; where nothing is drawn, only counted, no more than their sizes.
+//! Buffers and views as passes hold them; if work is only counted, they are no more than sizes.
 
 use super::meter::Held;
 use super::shape::Shape;
@@ -17,9 +17,9 @@ pub(crate) struct Buffer {
 #[derive(Debug)]
 pub(crate) struct TextureView {
     pub raw: Option<wgpu::TextureView>,
-    /// The texture's, of which those with several layers have one each.
+    /// Identifier of the texture; textures with several layers have one for each.
     pub(super) id: Id,
     pub(super) shape: Shape,
-    /// Whether the core made it; what a platform lends no cached group holds.
+    /// Whether the core created it; cached groups do not hold the platform's textures.
     pub(super) is_own: bool,
 }

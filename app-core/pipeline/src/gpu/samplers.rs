@@ -2,7 +2,7 @@
 
 use super::device::Device;
 
-/// A sampler; none where nothing is drawn, only counted.
+/// A sampler; empty if work is only counted.
 #[derive(Debug, Default)]
 pub(crate) struct Sampler(pub(super) Option<wgpu::Sampler>);
 
@@ -10,7 +10,8 @@ pub(crate) struct Sampler(pub(super) Option<wgpu::Sampler>);
 pub(crate) struct Samplers {
     /// Bilinear between texels, clamped to the edge.
     pub(crate) linear: Sampler,
-    /// Filtered comparison, 1 where the compared depth is as near as the map's, or nearer; depth is reversed.
+    /// Filtered comparison, 1 if the compared depth is as near as the map's, or nearer; depth is
+    /// reversed.
     pub(crate) nearer: Sampler,
 }
 
@@ -27,7 +28,7 @@ impl Samplers {
         };
         Self {
             linear: sampler("linear", None),
-            // What is as near to the light as the map, or nearer, is lit.
+            // A surface is lit if it is as near to the light as the map, or nearer.
             nearer: sampler("nearer", Some(wgpu::CompareFunction::GreaterEqual)),
         }
     }

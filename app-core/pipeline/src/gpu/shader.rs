@@ -1,7 +1,7 @@
-//! Shaders: WGSL joined with the parts that it imports, and the host's mirrors of its declarations.
+//! Shaders: WGSL joined with its imported parts, and the host's mirrors of its declarations.
 //!
-//! A file names the parts that it needs in its head, each in a line `//#import common/x`; parts may import others. To WGSL these
-//! lines are comments.
+//! A file names its imports in its head, each in a line `//#import common/x`; parts may import
+//! others. To WGSL these lines are comments.
 
 use std::collections::BTreeMap;
 use std::hash::{Hash, Hasher};
@@ -9,13 +9,13 @@ use std::hash::{Hash, Hasher};
 use super::common;
 use super::shared::Mirror;
 
-/// What begins a line that imports a part.
+/// Prefix of a line that imports a part.
 const IMPORT: &str = "//#import ";
 
-/// Declarations of a file of WGSL that the host shares.
+/// Declarations of a WGSL file that the host shares.
 #[derive(Clone, Copy, Debug)]
 pub struct Mirrors {
-    /// Path of the file below `shaders`, without its ending.
+    /// Path of the file below `shaders`, without its extension.
     pub path: &'static str,
     /// Host mirrors of structs that it declares.
     pub structs: &'static [Mirror],
@@ -23,7 +23,8 @@ pub struct Mirrors {
     pub constants: &'static [(&'static str, f64)],
 }
 
-/// WGSL files in place of those that are built in, by their paths below `shaders` without the ending; a part may be a new one.
+/// WGSL files in place of the built-in ones, by their paths below `shaders` without the extension;
+/// a part may be new.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ShaderTexts(BTreeMap<String, String>);
 
@@ -34,16 +35,16 @@ impl FromIterator<(String, String)> for ShaderTexts {
     }
 }
 
-/// Every file as it is built in.
+/// All files as they are built in.
 static BUILT_IN: ShaderTexts = ShaderTexts(BTreeMap::new());
 
 impl ShaderTexts {
-    /// The text that is given for a path.
+    /// The replacement text for a path, if there is one.
     fn given(&self, path: &str) -> Option<&str> {
         self.0.get(path).map(String::as_str)
     }
 
-    /// The WGSL of a part: the one that is given, else the one that is built in.
+    /// The WGSL of a part: the replacement, or the built-in text.
     fn part(&self, path: &str) -> Option<&str> {
         self.given(path).or_else(|| common::text(path))
     }
@@ -52,11 +53,11 @@ impl ShaderTexts {
 /// A pass's shader.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
-    /// The pass's one name, that of its file.
+    /// The pass's only name, that of its file.
     pub name: &'static str,
     /// The file's own WGSL.
     pub text: &'static str,
-    /// What the host shares of it.
+    /// Declarations that the host shares with it.
     pub mirrors: Mirrors,
 }
 
@@ -69,7 +70,8 @@ impl Shader {
         }
     }
 
-    /// Paths of the parts that it imports and that these import, each once and after those that it needs itself.
+    /// Paths of the parts that it imports and of their own imports, each once and after those that
+    /// it needs itself.
     #[must_use]
     pub fn imports(&self) -> Vec<&'static str> {
         imports(self.text, &BUILT_IN)
@@ -81,7 +83,7 @@ impl Shader {
         self.source_with(&BUILT_IN)
     }
 
-    /// The same with other texts.
+    /// The source with other texts.
     pub(crate) fn source_with(&self, texts: &ShaderTexts) -> String {
         let own = texts.given(self.mirrors.path).unwrap_or(self.text);
         let imported = imports(own, texts).into_iter();
@@ -91,14 +93,16 @@ impl Shader {
     }
 }
 
-/// Paths of the parts that `text` imports and that these import, each once and after those that it needs itself.
+/// Paths of the parts that `text` imports and of their own imports, each once and after those that
+/// it needs itself.
 fn imports<'a>(text: &'a str, texts: &'a ShaderTexts) -> Vec<&'a str> {
     let mut paths = Vec::new();
     add_imports(text, texts, &mut Vec::new(), &mut paths);
     paths
 }
 
-/// Adds the parts that `text` imports to `paths`; those in `seen` are there, or are about to be.
+/// Adds the parts that `text` imports to `paths`; those in `seen` are in the list already, or are
+/// about to be added.
 fn add_imports<'a>(text: &'a str, texts: &'a ShaderTexts, seen: &mut Vec<&'a str>, paths: &mut Vec<&'a str>) {
     let imported = text.lines().filter_map(|line| line.strip_prefix(IMPORT));
     for path in imported.map(str::trim_end) {
@@ -133,7 +137,7 @@ const fn file_name(path: &'static str) -> &'static str {
     path.split_at(first).1
 }
 
-/// The host's structs and constants of the same names as those of a file of WGSL below `shaders`.
+/// The host's structs and constants with the names of those in a WGSL file below `shaders`.
 macro_rules! mirrors {
     (
         $path:literal
@@ -149,7 +153,8 @@ macro_rules! mirrors {
     };
 }
 
-/// The shader of a file of WGSL below `shaders`, with the host's structs and constants of the same names.
+/// The shader of a WGSL file below `shaders`, with the host's structs and constants of the same
+/// names.
 macro_rules! shader {
     ($path:literal $($mirrors:tt)*) => {
         $crate::gpu::shader::Shader::new(

@@ -1,9 +1,10 @@
-//! The size and format of a texture or of a view of it, from which all that is said of bytes is worked out.
+//! The size and format of a texture or of a view of it, from which all numbers of bytes are
+//! computed.
 
 use glam::UVec2;
 use wgpu::{TextureFormat, TextureUsages};
 
-/// What a texture is to be.
+/// Description of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Shape {
     pub(crate) size_px: UVec2,
@@ -15,7 +16,7 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
-    /// One layer, one level, one sample a texel.
+    /// A shape with one layer, one level and one sample per texel.
     pub(crate) fn of(size_px: UVec2, format: TextureFormat, usage: TextureUsages) -> Self {
         Self {
             size_px,
@@ -27,14 +28,14 @@ impl Shape {
         }
     }
 
-    /// Texels of the finest level, of all layers.
+    /// Number of texels of the finest level, over all layers.
     pub(crate) fn n_texels(&self) -> u64 {
         u64::from(self.size_px.x) * u64::from(self.size_px.y) * u64::from(self.n_layers)
     }
 
-    /// Bytes of a texel, of all its samples.
+    /// Bytes of a texel with all its samples.
     pub(crate) fn texel_bytes(&self) -> u64 {
-        // Formats without a size of their own are depths, which no pass here has.
+        // Formats without a size of their own are depth formats, which no pass here reads.
         let bytes = self.format.block_copy_size(None).unwrap_or(4);
         u64::from(bytes * self.n_samples)
     }
@@ -49,7 +50,7 @@ impl Shape {
         n_texels * u64::from(self.n_layers) * self.texel_bytes()
     }
 
-    /// Bytes that it takes in memory: none where it never leaves the chip.
+    /// Bytes in memory: zero if the texture never leaves the chip.
     pub(crate) fn held_bytes(&self) -> u64 {
         if self.usage.contains(TextureUsages::TRANSIENT_ATTACHMENT) {
             0

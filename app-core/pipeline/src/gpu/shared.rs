@@ -1,13 +1,13 @@
-//! Structs shared with shaders, and their layout: a test compares each with the WGSL through naga.
+//! Structs shared with shaders, and their layout; a test compares each with the WGSL through naga.
 
-/// A struct as Rust lays it out.
+/// Layout of a struct in Rust.
 #[derive(Clone, Copy, Debug)]
 pub struct Mirror {
     /// Its name on both sides.
     pub name: &'static str,
-    /// Bytes.
+    /// Size in bytes.
     pub size: usize,
-    /// In the order of declaration.
+    /// Members in the order of declaration.
     pub members: &'static [Member],
 }
 
@@ -16,11 +16,11 @@ pub struct Mirror {
 pub struct Member {
     /// Its name on both sides.
     pub name: &'static str,
-    /// Bytes from the beginning of the struct.
+    /// Offset from the beginning of the struct in bytes.
     pub offset: usize,
-    /// Bytes.
+    /// Size in bytes.
     pub size: usize,
-    /// Its scalar type; none for a struct, whose members are compared by themselves.
+    /// Scalar type; `None` for a struct, whose members are compared separately.
     pub kind: Option<NumberKind>,
 }
 
@@ -43,7 +43,7 @@ pub(crate) trait Shared: bytemuck::Pod {
 
 /// Scalar type of a member.
 pub(crate) trait Numbers {
-    /// None for a struct.
+    /// `None` for a struct.
     const KIND: Option<NumberKind>;
 }
 
@@ -63,7 +63,7 @@ impl<T: Numbers, const N: usize> Numbers for [T; N] {
     const KIND: Option<NumberKind> = T::KIND;
 }
 
-/// A 3 x 3 matrix in uniform layout: columns on 16 bytes.
+/// A 3 x 3 matrix in uniform layout: columns aligned to 16 bytes.
 pub(crate) type Mat3Columns = [[f32; 4]; 3];
 
 /// Declares a struct that a shader declares under the same name, with the same members.

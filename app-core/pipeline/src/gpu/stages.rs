@@ -1,21 +1,21 @@
-//! Stages of a frame on the processor, timed by the caller's clock: the core has none.
+//! Stages of a frame on the processor, timed by the caller's clock, since the core has none.
 
 use std::fmt;
 use std::sync::Arc;
 
 use serde::Serialize;
 
-/// A caller's clock: milliseconds since whenever, never going back.
+/// A caller's clock: monotonic milliseconds from any origin.
 #[derive(Clone)]
 pub struct Clock(Arc<dyn Fn() -> f64 + Send + Sync>);
 
 impl Clock {
-    /// Of a function that tells milliseconds since whenever.
+    /// A clock from a function that returns milliseconds since any origin.
     pub fn new(now_ms: impl Fn() -> f64 + Send + Sync + 'static) -> Self {
         Self(Arc::new(now_ms))
     }
 
-    /// Milliseconds since whenever.
+    /// Milliseconds since the clock's origin.
     pub fn now_ms(&self) -> f64 {
         (self.0)()
     }
@@ -32,13 +32,13 @@ impl fmt::Debug for Clock {
 pub struct StageTime {
     /// Its name.
     pub stage: &'static str,
-    /// When it began, by the caller's clock.
+    /// Start by the caller's clock.
     pub begin_ms: f64,
-    /// How long it took.
+    /// Duration.
     pub cpu_ms: f64,
 }
 
-/// Stages of a frame, one after the other.
+/// Stages of a frame, in sequence.
 #[derive(Debug, Default)]
 pub(crate) struct Stages {
     clock: Option<Clock>,
@@ -47,7 +47,7 @@ pub(crate) struct Stages {
 }
 
 impl Stages {
-    /// Timed by `clock`; none without it.
+    /// Stages timed by `clock`; without it nothing is timed.
     pub(crate) fn new(clock: Option<Clock>) -> Self {
         Self {
             clock,
@@ -55,7 +55,7 @@ impl Stages {
         }
     }
 
-    /// Ends the stage before, and begins the next.
+    /// Ends the previous stage and begins the next.
     pub(crate) fn begin(&mut self, stage: &'static str) {
         let Some(clock) = &self.clock else {
             return;

@@ -1,4 +1,4 @@
-//! Textures of our own: drawn to by passes, or filled with pictures.
+//! Textures of the core: targets of passes, or pictures.
 
 use glam::UVec2;
 use wgpu::{TextureFormat, TextureUsages, TextureViewDimension};
@@ -10,7 +10,7 @@ use super::shape::Shape;
 
 pub(crate) use super::resource::TextureView;
 
-/// A texture with its whole view; where nothing is drawn, only counted, no more than its shape.
+/// A texture with a view of all of it; if work is only counted, it is no more than its shape.
 #[derive(Debug)]
 pub(crate) struct Texture {
     raw: Option<wgpu::Texture>,
@@ -28,7 +28,8 @@ impl Texture {
         Self::new(gpu, label, Shape::of(size_px, format, usage))
     }
 
-    /// A texture of one sample or several that never leaves the chip: it is drawn to and resolved, or discarded.
+    /// A texture with one or more samples that never leaves the chip: it is drawn to and resolved,
+    /// or discarded.
     pub(crate) fn samples(
         gpu: &Gpu,
         label: &str,
@@ -43,7 +44,7 @@ impl Texture {
         Self::new(gpu, label, shape)
     }
 
-    /// A plane of a picture to read from, as it is stored.
+    /// A plane of a picture for reading, in its stored form.
     pub(crate) fn plane(gpu: &Gpu, label: &str, size_px: UVec2, format: TextureFormat) -> Self {
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         Self::new(gpu, label, Shape::of(size_px, format, usage))
@@ -66,7 +67,7 @@ impl Texture {
         texture
     }
 
-    /// An array of pictures to read from, sRGB-encoded.
+    /// An array of pictures for reading, sRGB-encoded.
     pub(crate) fn pictures(gpu: &Gpu, label: &str, size_px: UVec2, n_layers: u32) -> Self {
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         let shape = Shape {
@@ -89,7 +90,7 @@ impl Texture {
         }
     }
 
-    /// The texture on its device; none where nothing is drawn, only counted.
+    /// The texture on its device; `None` if work is only counted.
     pub(crate) fn raw(&self) -> Option<&wgpu::Texture> {
         self.raw.as_ref()
     }
@@ -102,7 +103,7 @@ impl Texture {
         self.view.shape.size_px
     }
 
-    /// A view of the codes of an sRGB texture, not decoded.
+    /// A view of the codes of an sRGB texture, without decoding.
     pub(crate) fn codes(&self, gpu: &Gpu) -> TextureView {
         let format = TextureFormat::Rgba8Unorm;
         let descriptor = wgpu::TextureViewDescriptor {
@@ -120,7 +121,7 @@ impl Texture {
         }
     }
 
-    /// Fills the whole texture with rows of texels, nothing between them.
+    /// Fills the whole texture with rows of texels without padding.
     pub(crate) fn write(&self, gpu: &Gpu, texels: &[u8]) {
         self.write_layer(gpu, 0, texels);
     }
@@ -156,19 +157,20 @@ impl Texture {
     }
 }
 
-/// Targets of one shape, drawn to one by one and read together.
+/// Targets of one shape that are drawn to separately and read together.
 #[derive(Debug)]
 pub(crate) struct TextureLayers {
     raw: Option<wgpu::Texture>,
-    /// All of them, as an array.
+    /// View of all layers as an array.
     pub(crate) view: TextureView,
-    /// Each by itself.
+    /// View of each layer.
     pub(crate) layers: Vec<TextureView>,
     _held: Held,
 }
 
 impl TextureLayers {
-    /// `n_layers` textures that passes draw to and read from, and one where there is none: a binding needs it.
+    /// `n_layers` textures that passes draw to and read from, and a single one for zero layers,
+    /// since a binding needs one.
     pub(crate) fn targets(
         gpu: &Gpu,
         label: &str,
@@ -194,15 +196,15 @@ impl TextureLayers {
         }
     }
 
-    /// The texture on its device; none where nothing is drawn, only counted.
+    /// The texture on its device; `None` if work is only counted.
     pub(crate) fn raw(&self) -> Option<&wgpu::Texture> {
         self.raw.as_ref()
     }
 }
 
-/// Makes a texture; none where there is no device.
+/// Creates a texture; `None` without a device.
 fn make(gpu: &Gpu, label: &str, shape: &Shape) -> Option<wgpu::Texture> {
-    // The codes of an sRGB texture are read and written as they are when a picture passes through untouched.
+    // The codes of an sRGB texture are read and written unchanged when a picture passes through.
     let view_formats: &[_] = match (shape.format, shape.n_samples) {
         (TextureFormat::Rgba8UnormSrgb, 1) => &[TextureFormat::Rgba8Unorm],
         (TextureFormat::Rgba8Unorm, 1) => &[TextureFormat::Rgba8UnormSrgb],
@@ -230,7 +232,7 @@ impl TextureView {
         self.shape.size_px
     }
 
-    /// The whole of a texture that is not the core's own.
+    /// A view of a whole texture that the core does not own.
     pub(crate) fn of_other(gpu: &Gpu, texture: &wgpu::Texture) -> Self {
         let size_px = UVec2::new(texture.width(), texture.height());
         Self {
@@ -274,7 +276,7 @@ fn view_of(
     }
 }
 
-/// The narrowest format of half floats that has so many channels, of up to four.
+/// The narrowest half-float format with this number of channels, up to four.
 #[must_use]
 pub(crate) const fn half_float(n_channels: usize) -> TextureFormat {
     match n_channels {
@@ -284,7 +286,7 @@ pub(crate) const fn half_float(n_channels: usize) -> TextureFormat {
     }
 }
 
-/// The narrowest format of 8-bit fractions that has so many channels, of up to four.
+/// The narrowest format of 8-bit fractions with this number of channels, up to four.
 #[must_use]
 pub(crate) const fn fractions(n_channels: usize) -> TextureFormat {
     match n_channels {
@@ -294,7 +296,7 @@ pub(crate) const fn fractions(n_channels: usize) -> TextureFormat {
     }
 }
 
-/// A sampler that filters a picture and its mips; `modes` are what it shows beyond its border.
+/// A sampler that filters a picture and its mips; `modes` give the values beyond its border.
 pub(crate) fn picture_sampler(gpu: &Gpu, label: &str, modes: [wgpu::AddressMode; 2]) -> Sampler {
     Sampler(gpu.opened.as_ref().map(|opened| {
         opened.device.sampler(&wgpu::SamplerDescriptor {

@@ -16,7 +16,7 @@ pub(crate) struct Timer {
 }
 
 impl Timer {
-    /// None where the device has no time stamps.
+    /// Returns `None` if the device has no time stamps.
     pub(crate) fn new(gpu: &Gpu) -> Option<Self> {
         let Opened { device, .. } = gpu.opened.as_ref()?;
         if !device.raw.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
@@ -38,12 +38,12 @@ impl Timer {
         })
     }
 
-    /// Drops the records of the submission before.
+    /// Drops the records of the previous submission.
     pub(crate) fn start(&mut self) {
         self.passes.clear();
     }
 
-    /// Query index of the first of the next pass's two stamps; none when all are taken.
+    /// Query index of the first of the next pass's two stamps; `None` if all are used.
     pub(crate) fn next(&mut self, group: PassGroup, pass: &'static str) -> Option<(&wgpu::QuerySet, u32)> {
         let index = u32::try_from(self.passes.len())
             .ok()
@@ -60,8 +60,8 @@ impl Timer {
         }
     }
 
-    /// Waits for the device and returns each pass's time, passes of one path and name summed, in order of their first
-    /// run.
+    /// Waits for the device and returns each pass's time, passes of one path and name summed, in
+    /// order of their first run.
     pub(crate) fn read(&self, gpu: &Gpu) -> Result<Vec<PassTime>, GpuError> {
         let Some(opened) = &gpu.opened else {
             return Ok(Vec::new());

@@ -1,12 +1,13 @@
 //! Uniforms that are written for each use: one buffer that every submission fills from its start.
 //!
-//! The queue writes before it runs what is submitted after, so that one buffer is enough.
+//! One buffer is enough because the queue writes before it runs later submissions.
 
 use std::num::NonZeroU64;
 
 use super::device::Device;
 
-/// Bytes of one submission's uniforms: the widest, a baseline with four lights on four receivers, takes 40 KiB.
+/// Bytes of one submission's uniforms: the largest, a baseline with four lights on four receivers,
+/// needs 40 KiB.
 const CAPACITY: usize = 128 << 10;
 /// Alignment of offsets, valid on every device.
 const ALIGNMENT: usize = 256;
@@ -51,7 +52,7 @@ impl Written {
         let offset = self.bytes.len().next_multiple_of(ALIGNMENT);
         self.bytes.resize(offset, 0);
         self.bytes.extend_from_slice(bytemuck::bytes_of(value));
-        // A submission that does not fit is refused by the device, which names the write.
+        // The device refuses a submission that does not fit, and names the write.
         u32::try_from(offset).unwrap_or(u32::MAX)
     }
 
@@ -59,7 +60,7 @@ impl Written {
         self.bytes.len()
     }
 
-    /// Writes them to the device's buffer.
+    /// Writes the uniforms to the device's buffer.
     pub(crate) fn write(&self, queue: &wgpu::Queue, uniforms: &Uniforms) {
         if !self.bytes.is_empty() {
             queue.write_buffer(&uniforms.buffer, 0, &self.bytes);

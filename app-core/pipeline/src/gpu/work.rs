@@ -1,4 +1,5 @@
-//! What passes cost, counted from the very attachments, bindings and draws that they are recorded with.
+//! The cost of passes, counted from the same attachments, bindings and draws with which they are
+//! recorded.
 
 use std::iter::Sum;
 use std::ops::AddAssign;
@@ -7,15 +8,16 @@ use serde::Serialize;
 
 use super::shape::Shape;
 
-/// Work of a pass, over all of its runs. Only a recorder makes one that is not empty, from descriptors.
+/// Work of a pass, over all of its runs. Only a recorder creates a non-empty one, from descriptors.
 ///
-/// Bytes are those that a tiler moves at least: an attachment that is loaded or stored counts whole, whatever is drawn to
-/// it; of a texture that is read each texel counts once a pass, and no more texels a layer than the pass has pixels, or
-/// than it says that it looks at, but shadow maps whole; buffers count whole, indices as far as they are drawn. What stays
-/// on the chip costs nothing, nor does what a tiler writes of its own accord for the triangles.
+/// The bytes are a lower bound for a tiler: an attachment that is loaded or stored counts in full,
+/// whatever is drawn to it. Each texel of a texture that is read counts once a pass, but per layer
+/// at most as many texels as the pass has pixels, or as it declares to read; shadow maps count in
+/// full. Buffers count in full, indices as far as they are drawn. Data that stays on the chip costs
+/// nothing, and neither do a tiler's own writes for the triangles.
 ///
-/// So a pass that looks elsewhere than where it draws, as `toy` does at the real toy's pixels, is counted as if it looked at
-/// as many.
+/// Thus a pass that reads outside the pixels that it draws, as `toy` does at the real toy's pixels,
+/// counts as if it read the same number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 pub struct Work {
     n_draws: u32,
@@ -26,37 +28,38 @@ pub struct Work {
 }
 
 impl Work {
-    /// Draws, and dispatches of compute shaders.
+    /// Number of draws, and of dispatches of compute shaders.
     #[must_use]
     pub fn n_draws(&self) -> u32 {
         self.n_draws
     }
 
-    /// Triangles, of all instances.
+    /// Number of triangles, over all instances.
     #[must_use]
     pub fn triangles(&self) -> u64 {
         self.triangles
     }
 
-    /// Vertices of all instances: the most that can be shaded, where none is shared by triangles.
+    /// Number of vertices, over all instances: the upper bound of shaded ones, if triangles share
+    /// none.
     #[must_use]
     pub fn vertices(&self) -> u64 {
         self.vertices
     }
 
-    /// Bytes that are read from memory.
+    /// Bytes read from memory.
     #[must_use]
     pub fn bytes_read(&self) -> u64 {
         self.bytes_read
     }
 
-    /// Bytes that are written to memory.
+    /// Bytes written to memory.
     #[must_use]
     pub fn bytes_written(&self) -> u64 {
         self.bytes_written
     }
 
-    /// Bytes that are moved either way.
+    /// Bytes read and written.
     #[must_use]
     pub fn bytes_moved(&self) -> u64 {
         self.bytes_read + self.bytes_written
@@ -96,24 +99,24 @@ impl Sum for Work {
     }
 }
 
-/// What tells a texture or a buffer from all others of its device.
+/// Identifier of a texture or a buffer, unique on its device.
 pub(crate) type Id = u64;
 
-/// A resource of a group, as far as it moves bytes.
+/// A resource of a group, for the count of bytes.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Bound {
     /// A part of a buffer.
     Buffer { id: Id, n_bytes: u64, is_written: bool },
-    /// A view of a texture, of which no more is read than the pixels that are looked at, or all.
+    /// A view of a texture, of which only the processed pixels are read, or all.
     View { id: Id, shape: Shape, is_whole: bool },
 }
 
 /// A pass that is being counted.
 pub(super) struct Tally<'a> {
     work: &'a mut Work,
-    /// Pixels that it looks at in each layer.
+    /// Number of pixels that it reads in each layer.
     n_pixels: u64,
-    /// What was counted already.
+    /// Resources that are counted already.
     counted: Vec<Id>,
 }
 
@@ -126,19 +129,19 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// An attachment that is brought to the chip, or taken from it.
+    /// Counts an attachment that is loaded or stored.
     pub(super) fn attach(&mut self, shape: &Shape, is_loaded: bool, is_stored: bool) {
         let n_bytes = shape.n_texels() * shape.texel_bytes();
         self.work.read(if is_loaded { n_bytes } else { 0 });
         self.work.write(if is_stored { n_bytes } else { 0 });
     }
 
-    /// Narrows what it looks at to so many pixels.
+    /// Limits the pixels that it reads to this number.
     pub(super) fn narrow(&mut self, n_pixels: u64) {
         self.n_pixels = self.n_pixels.min(n_pixels);
     }
 
-    /// Resources that its shaders see from here on.
+    /// Counts resources that its shaders can access from here on.
     pub(super) fn bind(&mut self, bound: &[Bound]) {
         for resource in bound {
             match *resource {
@@ -163,7 +166,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// A stream of vertices.
+    /// Counts a stream of vertices.
     pub(super) fn stream(&mut self, id: Id, n_bytes: u64) {
         if self.is_new(id) {
             self.work.read(n_bytes);
@@ -174,7 +177,7 @@ impl<'a> Tally<'a> {
         self.work.draw(n_vertices, n_instances);
     }
 
-    /// The same by indices of 32 bits.
+    /// Counts an indexed draw, with 32-bit indices.
     pub(super) fn draw_indexed(&mut self, n_indices: u32, n_instances: u32) {
         self.work.draw(n_indices, n_instances);
         self.work.read(u64::from(n_indices) * size_of::<u32>() as u64);

@@ -3,6 +3,7 @@
 pub(crate) mod capture;
 pub mod diagnostics;
 pub(crate) mod frame;
+pub mod gloss;
 pub(crate) mod lighting;
 pub mod plan;
 pub(crate) mod readback;
@@ -101,7 +102,8 @@ impl Model {
             self.captured.light.injected = None;
             self.drawn.light.injected = None;
             self.lighting.cast_by(plan.casters);
-            if plan.n_light_points != self.region.plan.n_light_points {
+            // Eyes behind a receiver move with the camera.
+            if plan.n_light_points != self.region.plan.n_light_points || plan.reflection.is_some() {
                 self.lighting.relocate(gpu, light_points);
             }
             self.region.follow(gpu, plan, globals);

@@ -5,10 +5,12 @@ use wgpu::TextureFormat;
 
 use crate::geometry::rect::PixelRect;
 use crate::geometry::shadow_atlas::ShadowAtlas;
+use crate::model::gloss::Specular;
 use crate::passes::plate::{CODED_FORMAT, FINE_FORMAT};
 use crate::passes::toy_mesh::CasterLod;
 use crate::plan::{SceneFacts, SkippedWork};
 use crate::preset::ModelSettings;
+use app_scene::reflection::Reflection;
 use app_scene::scene::MAX_LIGHTS;
 use app_scene::sharpness::Sharpness;
 
@@ -85,6 +87,9 @@ pub struct Plan {
     pub penumbrae_px: Vec<f64>,
     /// Points over each of them: of a hard light as well, whose edge they antialias.
     pub n_light_points: Vec<usize>,
+    /// How the first receiver reflects: of one more channel of visibilities, behind those of the lights. None where it is matt, and
+    /// where lights have all channels.
+    pub reflection: Option<Reflection>,
     /// Directions of ambient light.
     pub n_ambient_directions: usize,
     /// Size of the ambient maps.
@@ -115,6 +120,8 @@ pub struct Plan {
     pub sharpness: Sharpness,
     /// Whether there is what makes the plate and the toy's colours as soft as the picture.
     pub is_softened: bool,
+    /// What the toy reflects.
+    pub specular: Specular,
     /// Steps of a first fit.
     pub n_fit_steps: u32,
     /// Steps of a fit that starts from a known solution.
@@ -146,7 +153,11 @@ impl Plan {
             ambient_px: (size_px + settings.ambient_divisor - 1) / settings.ambient_divisor,
             n_receivers: facts.n_receivers,
             is_plate_estimated: !facts.is_plate_complete,
-            is_plate_fine: settings.is_plate_fine || !facts.is_plate_complete || facts.are_plates_scaled,
+            is_plate_fine: settings.is_plate_fine
+                || !facts.is_plate_complete
+                || facts.are_plates_scaled
+                || facts.reflection.is_some(),
+            reflection: facts.reflection.filter(|_| n_lights < MAX_LIGHTS),
             n_toy_draws: settings.n_toy_draws,
             n_toy_samples: settings.n_toy_samples,
             n_coverage_positions: settings.n_coverage_positions,
@@ -157,6 +168,7 @@ impl Plan {
             casters: Casters::new(facts, settings),
             sharpness: facts.sharpness,
             is_softened: facts.is_softened,
+            specular: Specular::new(&facts.gloss, facts.angular_radii_rad.iter().copied()),
             n_fit_steps: N_FIT_STEPS,
             n_refine_steps: N_REFINE_STEPS,
             n_intensity_steps: N_INTENSITY_STEPS,
@@ -173,11 +185,17 @@ impl Plan {
 }
 
 impl Plan {
+    /// Channels of the visibilities.
+    #[must_use]
+    pub fn n_channels(&self) -> usize {
+        self.n_lights + usize::from(self.reflection.is_some())
+    }
+
     /// Whether its maps are of the sizes and formats of another's.
     #[must_use]
     pub fn has_sizes_of(&self, other: &Self) -> bool {
         let sizes = |plan: &Self| {
-            let counts = [plan.n_lights, plan.n_ambient_directions];
+            let counts = [plan.n_lights, plan.n_channels(), plan.n_ambient_directions];
             let boxes_px = [plan.toy_box.size_px, plan.physical_box.size_px];
             (
                 plan.region.size_px,

@@ -1,4 +1,4 @@
-//! The model's maps, read back for reports and tests.
+//! Readback of the model's maps, for reports and tests.
 
 use glam::{UVec2, Vec2, Vec3, Vec4};
 
@@ -46,7 +46,8 @@ impl Model {
         map.map(Some)
     }
 
-    /// A target of the toy box or of the physical box, laid into the region; beyond the box is `beyond`.
+    /// A target of the toy box or of the physical box, placed into the region; pixels outside the
+    /// box are `beyond`.
     fn read_box(
         &self,
         gpu: &Gpu,
@@ -67,7 +68,7 @@ impl Model {
         })
     }
 
-    /// The toy's own colours: those of the frame in the region that the source tells of.
+    /// The toy's own colours: those of the frame at the source pixels.
     fn read_appearance(&self, gpu: &Gpu, frame: Option<&Image>) -> Result<FloatMap, GpuError> {
         let physical_box = self.region.plan.physical_box;
         let source = &self.captured.by_pass.appearance.source;
@@ -102,7 +103,7 @@ impl Model {
         Ok(map)
     }
 
-    /// The lights' direct fraction, computed here from the fit: no pass has it as a texture.
+    /// The lights' direct fraction, computed here from the fit, since no pass has it as a texture.
     fn read_direct_fraction(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
         let fit: Fit = bytemuck::pod_read_unaligned(&gpu.read_buffer(&self.state.solution)?);
         let plan = &self.region.plan;
@@ -122,13 +123,13 @@ impl Model {
         })
     }
 
-    /// Whether a receiver's front is at a place in the picture.
+    /// Whether a receiver's front is visible at a position in the picture.
     pub(crate) fn shows_receiver(&self, image_px: Vec2) -> bool {
         let region_px = image_px - self.region.rect().origin_px.as_vec2();
         receiver_point(&self.region.uniform, region_px).is_some()
     }
 
-    /// Waits for the device and returns the filled residuals on a receiver; empty where it has none.
+    /// Waits for the device and returns the filled residuals on a receiver; empty if it has none.
     pub(crate) fn read_residual(&self, gpu: &Gpu, receiver: usize) -> Result<FloatMap, GpuError> {
         let grid = self.state.layout.grids[receiver];
         let cells = gpu.read_buffer(&self.state.residual.cells)?;
@@ -144,8 +145,9 @@ impl Model {
     }
 }
 
-/// Sum over lights of fraction falloff / (1 - sum fraction + sum fraction falloff), with the falloff cos / d^2
-/// against the reference point, as in the shaders' model; 0 beside the receivers.
+/// Sum over lights of fraction falloff / (1 - sum fraction + sum fraction falloff), with the
+/// falloff cos / d^2 relative to the reference point, as in the shaders' model; 0 outside the
+/// receivers.
 fn direct_fraction_at(globals: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
     let Some((index, in_plane)) = receiver_point(globals, region_px) else {
         return Vec3::ZERO;
@@ -171,7 +173,8 @@ fn direct_fraction_at(globals: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
     direct / total
 }
 
-/// The nearest receiver seen at a pixel, and its point there; none where that is its back.
+/// The nearest receiver visible at a pixel, and its point there; `None` if the pixel shows its
+/// back.
 fn receiver_point(globals: &Globals, region_px: Vec2) -> Option<(usize, Vec2)> {
     let receivers = globals.receivers.iter().take(globals.n_receivers as usize);
     let hits = receivers.enumerate().filter_map(|(index, receiver)| {

@@ -12,6 +12,8 @@ pub(crate) struct Region {
     /// Contents of `globals`.
     pub(crate) uniform: Globals,
     pub(crate) globals: Buffer,
+    /// What the toy reflects.
+    pub(crate) specular: Buffer,
 }
 
 impl Region {
@@ -19,6 +21,7 @@ impl Region {
         let uniform = globals.with_spread(plan.sharpness.outline_spread);
         Self {
             globals: gpu.uniform("globals", &uniform),
+            specular: gpu.uniform("specular", &plan.specular),
             uniform,
             plan,
         }
@@ -29,6 +32,7 @@ impl Region {
         self.uniform = globals.with_spread(plan.sharpness.outline_spread);
         self.plan = plan;
         gpu.write(&self.globals, &[self.uniform]);
+        gpu.write(&self.specular, &[self.plan.specular]);
     }
 
     /// Takes the picture as so soft.

@@ -1,4 +1,4 @@
-//! `camera_planes`: the camera's planes of luma and chroma as sRGB codes.
+//! `camera_planes`: conversion of the camera's planes of luma and chroma to sRGB codes.
 
 use glam::UVec2;
 use wgpu::TextureFormat;
@@ -11,14 +11,14 @@ use app_scene::camera_frame::{PlanarImage, half_size_px};
 
 pub(crate) const SHADER: Shader = shader!("passes/camera_planes");
 const SLOTS: &[Slot] = &[Slot::per_use::<Encoding>(), Slot::Texture, Slot::Texture];
-/// Format of what is written: codes of the frame.
+/// Format of the output: codes of the frame.
 const CODES: TextureFormat = TextureFormat::Rgba8Unorm;
 
 pub(crate) struct Pass {
     draw: Draw,
 }
 
-/// Textures that planes are written to.
+/// Target textures of the conversion.
 pub(crate) struct Planes {
     luma: Texture,
     chroma: Texture,
@@ -51,7 +51,7 @@ impl Pass {
         }
     }
 
-    /// Decodes all of a picture.
+    /// Decodes a whole picture.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,

@@ -1,9 +1,12 @@
-//! What `occlusion` and `coverage` share: a target that counts, for each pixel, how many of a pass's instances show there.
+//! Common parts of `occlusion` and `coverage`: a target that counts, for each pixel, the instances
+//! of a pass that cover it.
 //!
-//! Blending counts, up or down. Each instance has a depth of its own, above those before it, and what is not above what is there is
-//! rejected: so triangles of one instance that overlap count once.
+//! Blending counts, up or down. Each instance has a depth of its own, above those before it, and
+//! fragments that are not above the stored depth are rejected. Thus overlapping triangles of one
+//! instance count once.
 //!
-//! Where no silhouette comes near, all instances show the same: what is there is drawn once and counts in full.
+//! Far from every silhouette all instances cover the same pixels: the shape is drawn once and
+//! counts in full.
 
 use std::ops::Range;
 
@@ -19,7 +22,7 @@ use crate::passes::toy_mesh::{Corners, PoseBuffers};
 /// Format of the depths that order the instances.
 const ORDER_FORMAT: TextureFormat = TextureFormat::Depth16Unorm;
 
-/// Depths that tell which instance was drawn last in each pixel; they never leave the chip.
+/// Depths that identify the last drawn instance in each pixel; they never leave the chip.
 pub(crate) struct InstanceOrder(Texture);
 
 impl InstanceOrder {
@@ -27,7 +30,7 @@ impl InstanceOrder {
         Self(Texture::samples(gpu, label, size_px, (ORDER_FORMAT, 1)))
     }
 
-    /// Begins a pass that counts, from what is in the target.
+    /// Begins a pass that counts, starting from the target's content.
     pub(crate) fn render<'a>(
         &self,
         recorder: &'a mut Recorder<'_>,
@@ -40,18 +43,18 @@ impl InstanceOrder {
 
 /// Pipelines that count a shape's instances.
 pub(crate) struct CountingDraws {
-    /// Once for each instance; both sides of each triangle, or the outer one.
+    /// Draws for each instance, of both sides of each triangle or of the outer one.
     each: [Draw; 2],
-    /// The same where less has to be looked at.
+    /// The same, for instances that need fewer tests.
     plain: [Draw; 2],
-    /// Once for all of them; the same.
+    /// A single draw for all instances, likewise.
     once: [Draw; 2],
     tiles: Draw,
 }
 
 impl CountingDraws {
-    /// `each` draws one instance; the shader has `vs_once` and `fs_cover_all` beside it, and for instances that have it plain
-    /// `vs_plain` and `fs_cover_plain`.
+    /// `each` draws one instance; its shader also has `vs_once` and `fs_cover_all`, and for plain
+    /// instances `vs_plain` and `fs_cover_plain`.
     pub(crate) fn new(gpu: &Gpu, each: &DrawSpec) -> Self {
         let plain = DrawSpec {
             vertex: "vs_plain",
@@ -86,12 +89,12 @@ impl CountingDraws {
         }
     }
 
-    /// One of them, to bind groups for all.
+    /// Any of the pipelines, for binding groups that all share.
     pub(crate) fn any(&self) -> &Draw {
         &self.each[0]
     }
 
-    /// Counts instances of a shape in a pose, of which the first `n_plain` have it plain.
+    /// Counts instances of a posed shape, the first `n_plain` of which are plain.
     pub(crate) fn count(
         &self,
         render: &mut Render<'_>,
@@ -112,7 +115,7 @@ impl CountingDraws {
         } else {
             groups.iter().for_each(|group| render.set(group));
         }
-        // One after the other, since each counts above those before it.
+        // The draws run in sequence, since each counts above those before it.
         let first_other = (instances.start + n_plain).min(instances.end);
         let plain = (&self.plain[sided], instances.start..first_other);
         let others = (&self.each[sided], first_other..instances.end);
@@ -125,7 +128,7 @@ impl CountingDraws {
     }
 }
 
-/// A target that adds up what is drawn, or takes it from what is there.
+/// A target that adds the drawn values or subtracts them.
 pub(crate) fn counting(format: TextureFormat, operation: BlendOperation) -> ColorTargetState {
     let count = BlendComponent {
         src_factor: BlendFactor::One,
@@ -142,7 +145,7 @@ pub(crate) fn counting(format: TextureFormat, operation: BlendOperation) -> Colo
     }
 }
 
-/// One that leaves what was counted.
+/// A target that keeps the counted values.
 pub(crate) fn not_counting(counting: &ColorTargetState) -> ColorTargetState {
     ColorTargetState {
         write_mask: ColorWrites::empty(),
@@ -150,7 +153,8 @@ pub(crate) fn not_counting(counting: &ColorTargetState) -> ColorTargetState {
     }
 }
 
-/// The depths of the instances; those that count are `Greater` than what is there.
+/// The depth state of the instances; for those that count, the comparison with the stored depth is
+/// `Greater`.
 pub(crate) fn ordered(compare: CompareFunction) -> DepthStencilState {
     DepthStencilState {
         format: ORDER_FORMAT,

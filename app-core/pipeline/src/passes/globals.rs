@@ -10,6 +10,7 @@ use crate::geometry::silhouette::{AROUND_PX, ByCamera, OntoReceiver, Viewers};
 use crate::geometry::view::View;
 use crate::gpu::{Buffer, Mat3Columns, Mirrors, Slot, mirrors, shared_struct};
 use app_scene::geometry::bounds::Sphere;
+use app_scene::reflection::Reflection;
 use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS};
 use app_scene::sharpness::Spread;
 
@@ -55,6 +56,9 @@ shared_struct! {
         pub seen_from_behind: u32,
         pub near_m: f32,
         pub soft_side: f32,
+        pub reflection_channel: [f32; 4],
+        pub reflected_surroundings: [f32; 4],
+        pub reflected_toy: [f32; 4],
     }
 }
 
@@ -166,6 +170,9 @@ pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globa
         seen_from_behind: seen_from_behind(view, layout.receivers),
         near_m: narrowed(NEAR_OVER_DISTANCE * camera_in_anchor.distance(layout.toy_in_anchor)),
         soft_side: 0.0,
+        reflection_channel: [0.0; 4],
+        reflected_surroundings: [0.0; 4],
+        reflected_toy: [0.0; 4],
     }
 }
 
@@ -178,6 +185,26 @@ impl Globals {
             toy_box_size_px: toy_box.size_px.as_vec2().to_array(),
             physical_box_origin_px: physical_box.origin_px.as_vec2().to_array(),
             physical_box_size_px: physical_box.size_px.as_vec2().to_array(),
+            ..self
+        }
+    }
+
+    /// The same over a first receiver that reflects, of which a channel of the visibilities tells; a matt one where none does.
+    #[must_use]
+    pub fn with_reflection(self, reflection: Option<(&Reflection, usize)>) -> Self {
+        let Some((reflection, channel)) = reflection else {
+            return self;
+        };
+        let mut reflection_channel = [0.0; 4];
+        if let Some(slot) = reflection_channel.get_mut(channel) {
+            *slot = 1.0;
+        }
+        let [r, g, b] = reflection.surroundings;
+        let [toy_r, toy_g, toy_b] = reflection.toy_above_surroundings;
+        Self {
+            reflection_channel,
+            reflected_surroundings: [r, g, b, narrowed(reflection.roughness.sqrt())],
+            reflected_toy: [toy_r, toy_g, toy_b, 0.0],
             ..self
         }
     }

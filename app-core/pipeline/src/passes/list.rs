@@ -11,11 +11,11 @@ impl NoTargets {
     }
 }
 
-/// A pass's name, and the function that compiles it.
+/// A pass's name and the function that compiles it.
 pub(crate) type WarmUp = (&'static str, fn(&Gpu));
 
-/// Declares the modules of a path's passes, in the order in which they first run, and of each its `Pass` and its
-/// `SHADER`; after the type of a plan, its `Targets` as well.
+/// Declares the modules of a path's passes, in the order of their first runs, and for each its
+/// `Pass` and its `SHADER`; if the type of a plan follows, its `Targets` as well.
 macro_rules! passes {
     ($plan:ty: $($pass:ident),* $(,)?) => {
         $crate::passes::list::passes!($($pass),*);
@@ -54,7 +54,7 @@ macro_rules! passes {
         /// The passes' shaders.
         pub(crate) const SHADERS: &[&$crate::gpu::shader::Shader] = &[$(&$pass::SHADER),*];
 
-        /// Compiles one pass each, ahead of its first use.
+        /// Functions that each compile one pass ahead of its first use.
         pub(crate) const WARM_UPS: &[$crate::passes::list::WarmUp] =
             &[$((stringify!($pass), |gpu| drop($pass::Pass::new(gpu)))),*];
     };

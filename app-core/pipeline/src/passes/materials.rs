@@ -1,8 +1,8 @@
-//! The toy's materials on the device: one buffer of them all, and a bind group for each look.
+//! The toy's materials on the device: one buffer for all of them, and a bind group for each look.
 //!
-//! Many materials share a texture and a sampler, most often none of their own. Drivers spend memory and time on each
-//! sampler, group and change of a binding, so all are made once for each texture and its addressing, and a draw names
-//! its material by its instance.
+//! Many materials share a texture and a sampler; most have no texture of their own. Drivers spend
+//! memory and time on each sampler, group and change of a binding. Therefore these are created once
+//! for each texture and its addressing, and a draw selects its material by its instance.
 
 use std::iter;
 
@@ -15,23 +15,23 @@ use crate::gpu::{
 use crate::passes::mips::mips;
 use app_scene::toy::{Material, Toy, Wrap};
 
-/// What the group holds.
+/// Content of the group.
 pub(crate) const MATERIAL_GROUP: &[Slot] = &[Slot::Read, Slot::Filtered, Slot::Sampler];
 
-/// The texture of a material that has none.
+/// The texture of a material without one.
 const WHITE: [u8; 4] = [255; 4];
 
 /// The materials of a toy.
 pub(crate) struct Materials {
     base_colors_linear: Buffer,
-    /// For each material the index of its look.
+    /// Index of each material's look.
     look_of_material: Vec<usize>,
     looks: Vec<Look>,
-    /// Those of the toy, then the one of materials without any.
+    /// The toy's textures, then the one for materials without any.
     textures: Vec<Texture>,
 }
 
-/// A texture as some materials show it.
+/// A texture with the addressing that some materials use.
 struct Look {
     /// Index of the texture.
     texture: usize,
@@ -79,12 +79,12 @@ impl Materials {
         self.look_of_material.len()
     }
 
-    /// The look of a material, as an index of what [`Materials::bind`] returns.
+    /// The look of a material, as an index into the result of [`Materials::bind`].
     pub(crate) fn look(&self, material: usize) -> Option<usize> {
         self.look_of_material.get(material).copied()
     }
 
-    /// Group [`GROUP_DRAW`] of a pipeline, one a look.
+    /// Group [`GROUP_DRAW`] of a pipeline, one per look.
     pub(crate) fn bind<T>(&self, recorder: &Recorder<'_>, pipeline: &Pipeline<T>) -> Vec<Group> {
         let bind = |look: &Look| {
             let resources = [

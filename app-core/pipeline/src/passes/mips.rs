@@ -1,17 +1,19 @@
-//! Mip levels of a picture, so that a texture seen from afar does not alias.
+//! Mip levels of a picture, so that a distant texture does not alias.
 
 use glam::UVec2;
 
 use app_scene::geometry::color::{linear_of_codes, srgb_from_linear};
 
-/// The levels below a picture of sRGB-encoded RGBA, each half the size of the one before, down to one texel.
+/// The levels below a picture of sRGB-encoded RGBA, each half the size of the previous one, down to
+/// one texel.
 ///
-/// Texels are averages over the area that they cover of the level before, in linear light; a size that cannot be halved is
-/// rounded down. Source: Guthe and Heckbert 2005 (non-power-of-two mipmap creation).
+/// Texels are averages over the area that they cover in the previous level, in linear light; a size
+/// that cannot be halved is rounded down. Source: Guthe and Heckbert 2005 (non-power-of-two mipmap
+/// creation).
 pub(crate) fn mips(size_px: UVec2, rgba8_srgb: &[u8]) -> Vec<Vec<u8>> {
     let of_code = linear_of_codes();
     let (texels, _) = rgba8_srgb.as_chunks::<4>();
-    // The picture itself is decoded texel by texel: as floats it would take four times its size.
+    // The picture itself is decoded texel by texel: as floats it would need four times the memory.
     let mut half_px = half(size_px);
     let mut level = shrunk(|index| decoded(texels[index], &of_code), size_px, half_px);
     let mut levels = Vec::new();
@@ -66,9 +68,10 @@ fn shrunk(texel_at: impl Fn(usize) -> Texel, from_px: UVec2, to_px: UVec2) -> Ve
     texels
 }
 
-/// For each texel along one side of a level, those of the level before that it covers: index and part of it, in sum 1.
+/// For each texel along one side of a level, the texels of the previous level that it covers: index
+/// and weight; the weights sum to 1.
 fn footprints(n_from: u32, n_to: u32) -> Vec<Vec<(usize, f32)>> {
-    // In units of 1 / n_to of a texel of the level before, all whole numbers.
+    // Positions in units of 1 / n_to of a texel of the previous level, all integers.
     let footprint = |index: u32| {
         let (start, end) = (index * n_from, (index + 1) * n_from);
         let covered = (start / n_to..end.div_ceil(n_to)).map(|at| {

@@ -1,7 +1,8 @@
-//! Passes that several paths run, and code shared by passes. A pass has one name: shader, module, label and time
-//! stamp.
+//! Passes that several paths run, and code shared by passes. A pass has one name for shader,
+//! module, label and time stamp.
 //!
-//! A pass is immutable after `new`; `encode` takes all it reads and writes and decides nothing.
+//! A pass is immutable after `new`; `encode` gets all of its inputs and outputs and makes no
+//! decisions.
 
 pub(crate) mod camera_planes;
 pub(crate) mod counting;
@@ -26,7 +27,7 @@ pub(crate) const SHADERS: &[&Shader] = &[
     &present::SHADER,
     &screen::SHADER,
 ];
-/// Compiles those that both methods run.
+/// Compiles the passes that both methods run.
 pub(crate) const WARM_UPS: &[WarmUp] = &[
     ("camera_planes", |gpu| drop(camera_planes::Pass::new(gpu))),
     ("plate", |gpu| drop(plate::Pass::new(gpu))),

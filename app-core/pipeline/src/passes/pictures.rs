@@ -1,4 +1,5 @@
-//! Pictures that passes read: the camera frame in the form that it came in, the plates, and the picture that is shown in the end.
+//! Pictures that passes read: the camera frame in its original form, the plates, and the picture
+//! that is finally shown.
 
 use std::sync::OnceLock;
 
@@ -10,7 +11,7 @@ use crate::passes::thing_marks::Things;
 use app_scene::camera_frame::YcbcrEncoding;
 use app_scene::grain::Grain;
 
-/// Planes as sRGB codes, of which a shader binds those of chroma as `chroma`.
+/// Planes as sRGB codes; a shader binds the chroma plane as `chroma`.
 pub(crate) const PLANES: Mirrors = mirrors!("common/planes", structs: [Encoding]);
 
 shared_struct! {
@@ -22,7 +23,7 @@ shared_struct! {
     }
 }
 
-/// The camera image, in the form that it came in.
+/// The camera image, in its original form.
 #[derive(Clone, Copy)]
 pub(crate) enum Frame<'a> {
     Picture(Picture<'a>),
@@ -32,28 +33,28 @@ pub(crate) enum Frame<'a> {
 /// Two views of an sRGB texture.
 #[derive(Clone, Copy)]
 pub(crate) struct Picture<'a> {
-    /// Decoded where it is read.
+    /// View that decodes the codes.
     pub(crate) light: &'a TextureView,
-    /// Its codes.
+    /// View of the codes.
     pub(crate) codes: &'a TextureView,
 }
 
-/// Views of luma and of chroma, which may be the platform's, and what their codes mean.
+/// Views of luma and chroma, which may belong to the platform, and the encoding of their codes.
 #[derive(Clone, Copy)]
 pub(crate) struct FramePlanes<'a> {
     pub(crate) views: [&'a TextureView; 2],
     pub(crate) encoding: YcbcrEncoding,
 }
 
-/// Pipelines by the form of the picture, which `common/frame` has as a constant: for planes, which phones deliver, compiled
-/// ahead, for pictures when the first comes.
+/// Pipelines by the form of the picture, a constant of `common/frame`: the ones for planes, which
+/// phones deliver, are compiled ahead, the ones for pictures when the first comes.
 pub(crate) struct ByForm<T> {
     of_planes: T,
     of_picture: OnceLock<T>,
     make: Box<Make<T>>,
 }
 
-/// Makes a pipeline with a value of the constant.
+/// Creates a pipeline with a value of the constant.
 type Make<T> = dyn Fn(&Gpu, (&'static str, u32)) -> T + Send + Sync;
 
 impl<T> ByForm<T> {
@@ -88,7 +89,7 @@ impl FramePlanes<'_> {
 }
 
 impl<'a> Frame<'a> {
-    /// For `common/frame`.
+    /// Uniform for `common/frame`.
     pub(crate) fn uniform(&self) -> Encoding {
         match self {
             Self::Picture(_) => bytemuck::Zeroable::zeroed(),
@@ -96,7 +97,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The picture, which stands in for the chroma that it does not have; or both planes.
+    /// The picture, which also takes the place of the chroma that it lacks; or both planes.
     pub(crate) fn views(&self) -> [&'a TextureView; 2] {
         match self {
             Self::Picture(picture) => [picture.light; 2],
@@ -105,7 +106,8 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// The noise of a picture, and the picture's number, by which it differs from that of others.
+/// The noise of a picture, and the picture's number, by which its noise differs from that of
+/// others.
 #[derive(Clone, Copy)]
 pub(crate) struct PictureGrain {
     pub(crate) grain: Grain,
@@ -115,28 +117,28 @@ pub(crate) struct PictureGrain {
 /// The camera frame and the plates, of the image's size.
 pub(crate) struct Pictures<'a> {
     pub(crate) frame: Frame<'a>,
-    /// Its noise.
+    /// The frame's noise.
     pub(crate) grain: Option<PictureGrain>,
-    /// How many the state has learned from before.
+    /// Number of frames from which the state was estimated before.
     pub(crate) n_before: u32,
-    /// Exposure of `frame` over that of the frame that last updated the state.
+    /// Exposure of `frame` relative to that of the frame that last updated the state.
     pub(crate) exposure_ratio: f32,
     pub(crate) plates: &'a TextureView,
     /// Cameras and exposures of the plates.
     pub(crate) plate_views: &'a Buffer,
-    /// Whether the first plate was taken from this very camera.
+    /// Whether the first plate was taken by this very camera.
     pub(crate) is_same_view: bool,
-    /// Things that stand in the frame beside the toy.
+    /// Objects in the frame beside the toy.
     pub(crate) things: Option<&'a Things>,
 }
 
-/// The picture that is shown: the camera image, and the region's picture to lay over it.
+/// The picture that is shown: the camera image, and the region's picture over it.
 #[derive(Clone, Copy)]
 pub(crate) struct ComposedFrame<'a> {
     pub(crate) frame: Frame<'a>,
-    /// None if the camera image passes through.
+    /// `None` if the camera image passes through.
     pub(crate) region: Option<RegionOverlay<'a>>,
-    /// Of the camera image.
+    /// Size of the camera image.
     pub(crate) size_px: UVec2,
 }
 
@@ -145,16 +147,16 @@ pub(crate) struct ComposedFrame<'a> {
 pub(crate) struct RegionOverlay<'a> {
     pub(crate) picture: Picture<'a>,
     pub(crate) rect: PixelRect,
-    /// Part of it that is shown, the rest being the camera image: from 0 to 1.
+    /// Opacity of the region's picture over the camera image, from 0 to 1.
     pub(crate) effect: f32,
 }
 
-/// Pixels of disjoint rectangles.
+/// Number of pixels of disjoint rectangles.
 pub(crate) fn n_pixels_of(parts: &[PixelRect]) -> u64 {
     parts.iter().map(|part| n_pixels(part.size_px)).sum()
 }
 
-/// Fills disjoint rectangles of a target by the fullscreen pipeline that is set.
+/// Fills disjoint rectangles of a target with the fullscreen pipeline that is set.
 pub(crate) fn fill_parts(render: &mut Render<'_>, parts: &[PixelRect]) {
     for part in parts {
         render.clip((part.origin_px, part.size_px));

@@ -12,11 +12,12 @@ use app_scene::scene::MAX_RECEIVERS;
 pub(crate) const SHADER: Shader =
     shader!("passes/plate", structs: [PlateView, PlateViews], constants: [MAX_PLATES]);
 const SLOTS: &[Slot] = &[Slot::uniform::<PlateViews>(), Slot::Layers];
-/// Format of a plate that is finer than codes, as where gains have been applied; alpha marks photographed pixels.
+/// Format of a plate with more precision than codes, for instance after gains were applied; alpha
+/// marks photographed pixels.
 pub(crate) const FINE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-/// Format of a plate in codes, as where all of it was photographed at one exposure.
+/// Format of a plate in codes, for a plate that was photographed at one exposure throughout.
 pub(crate) const CODED_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
-/// Maximum number of plates that a view's plate is made of.
+/// Maximum number of plates from which a view's plate is composed.
 pub(crate) const MAX_PLATES: usize = 4;
 
 shared_struct! {
@@ -29,7 +30,7 @@ shared_struct! {
 }
 
 shared_struct! {
-    /// Uniform of the plates that a view's plate is made of.
+    /// Uniform of the plates from which a view's plate is composed.
     pub struct PlateViews {
         pub plates: [PlateView; MAX_PLATES],
         pub camera_in_plane: [[f32; 4]; MAX_RECEIVERS],
@@ -40,7 +41,7 @@ shared_struct! {
 }
 
 impl PlateViews {
-    /// Whether a plate is brought to another exposure than its own.
+    /// Whether a plate is converted to an exposure other than its own.
     pub(crate) fn are_scaled(&self) -> bool {
         let plates = self.plates.iter().take(self.n_plates as usize);
         plates.flat_map(|plate| &plate.gain[..3]).any(|gain| *gain != 1.0)
@@ -52,10 +53,10 @@ pub(crate) struct Pass {
     coded: Draws,
 }
 
-/// Onto a plate of one format.
+/// Draws to a plate of one format.
 struct Draws {
     choose: Draw,
-    /// Of a plate that was taken from this very camera.
+    /// Draw for a plate that was taken by this very camera.
     copy: Draw,
 }
 
@@ -64,7 +65,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) views: &'a Buffer,
     /// An array of pictures, in the order of `views`.
     pub(crate) plates: &'a TextureView,
-    /// Whether the first of them was taken from this very camera.
+    /// Whether the first of them was taken by this very camera.
     pub(crate) is_same_view: bool,
 }
 

@@ -1,5 +1,5 @@
-//! `present`: the camera image with the work region laid over it, code for code, or as much of it as is shown, for those who
-//! read the picture.
+//! `present`: the camera image with the work region over it, in full or at the shown opacity, code
+//! for code, for programs that read the picture.
 
 use std::sync::OnceLock;
 
@@ -15,13 +15,13 @@ pub(crate) const SHADER: Shader = shader!("passes/present", structs: [Placement]
 const SLOTS: &[Slot] = &[Slot::per_use::<Placement>(), Slot::Texture, Slot::Texture];
 /// Format of the region's picture.
 pub(crate) const REGION_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
-/// Format of the finished picture: codes, as a screen takes them.
+/// Format of the finished picture: codes, as a screen expects them.
 pub(crate) const OUTPUT_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 /// Format of the region's picture and of the finished one in light.
 pub(crate) const LIGHT_FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 
 shared_struct! {
-    /// Position and size of the region, and how much of its picture is shown.
+    /// Position and size of the region, and its opacity.
     pub(crate) struct Placement {
         pub origin_px: [u32; 2],
         pub size_px: [u32; 2],
@@ -32,7 +32,7 @@ shared_struct! {
 
 pub(crate) struct Pass {
     draw: Draw,
-    /// Compiled when the first picture in light is asked for.
+    /// Compiled when the first picture in light is requested.
     of_light: OnceLock<Draw>,
 }
 
@@ -44,7 +44,7 @@ impl Pass {
         }
     }
 
-    /// With the camera image, all of it decoded.
+    /// Draws the picture; the camera image is decoded in full.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
@@ -59,7 +59,7 @@ impl Pass {
         recorder.fullscreen(&self.draw, &[own], &[target]);
     }
 
-    /// The same in light, as the device decodes it.
+    /// The same in light, with the device's decoding.
     pub(crate) fn encode_light(
         &self,
         recorder: &mut Recorder<'_>,

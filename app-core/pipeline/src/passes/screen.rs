@@ -1,4 +1,4 @@
-//! `screen`: the camera image with the work region laid over it, on a screen, turned and cropped.
+//! `screen`: the camera image with the work region over it, on a screen, rotated and cropped.
 
 use bytemuck::Zeroable;
 use glam::{DAffine2, DVec2, UVec2};
@@ -13,15 +13,15 @@ use crate::passes::pictures::{ComposedFrame, Encoding, Frame, RegionOverlay, fil
 
 pub(crate) const SHADER: Shader = shader!("passes/screen", structs: [ScreenMap]);
 const SLOTS: &[Slot] = &[Slot::per_use::<ScreenMap>(), Slot::Sampler];
-/// Of a picture, and of luma and chroma.
+/// Slots for a picture, and for luma and chroma.
 const FRAME_SLOTS: [&[Slot]; 2] = [&[Slot::Filtered], &[Slot::Filtered, Slot::Filtered]];
 /// Group of the region's picture.
 const GROUP_REGION: usize = 3;
 const REGION_SLOTS: &[Slot] = &[Slot::Filtered];
 
 shared_struct! {
-    /// Map from pixels of the screen to those of the picture, the picture's size, and where and how much of the region's picture
-    /// is shown.
+    /// Map from pixels of the screen to those of the picture, the picture's size, and position and
+    /// opacity of the region's picture.
     pub(crate) struct ScreenMap {
         pub x_axis: [f32; 2],
         pub y_axis: [f32; 2],
@@ -63,15 +63,15 @@ impl ScreenMap {
 }
 
 pub(crate) struct Pass {
-    /// Of a picture, and of planes.
+    /// Draws for a picture and for planes.
     frame: [Draw; 2],
     region: Draw,
-    /// The region fading in the frame, of a picture and of planes.
+    /// Draws that blend the region into the frame, for a picture and for planes.
     mixed: [Draw; 2],
 }
 
 impl Pass {
-    /// For a screen of `format`, which takes sRGB codes as they are.
+    /// The pass for a screen of `format`, which stores sRGB codes unchanged.
     pub(crate) fn new(gpu: &Gpu, format: TextureFormat) -> Self {
         let draw = |entry, frame_slots, region_slots| {
             let groups = [&[], SLOTS, frame_slots, region_slots];
@@ -91,7 +91,7 @@ impl Pass {
         }
     }
 
-    /// With the map from pixels of the screen to those of the picture.
+    /// Draws the picture by the map from pixels of the screen to those of the picture.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
@@ -129,7 +129,7 @@ impl Pass {
         fill_parts(&mut render, &beside);
     }
 
-    /// What draws the region, and what it reads.
+    /// The pipeline that draws the region, and its inputs.
     fn of_region(
         &self,
         recorder: &Recorder<'_>,
@@ -145,7 +145,7 @@ impl Pass {
     }
 }
 
-/// The draw of a frame that came as a picture, or as planes.
+/// The draw for a frame in the form of a picture or of planes.
 fn by_form<'a>([of_picture, of_planes]: &'a [Draw; 2], frame: &Frame<'_>) -> &'a Draw {
     match frame {
         Frame::Picture(_) => of_picture,
@@ -160,12 +160,13 @@ fn bind_frame(recorder: &Recorder<'_>, draw: &Draw, frame: &Frame<'_>) -> Group 
     }
 }
 
-/// The pixels of a screen whose centres lie in a rectangle of the picture, if there are any; it may reach beyond the screen.
+/// The pixels of a screen whose centres lie in a rectangle of the picture, if there are any; the
+/// rectangle may extend beyond the screen.
 fn shown_rect(rect: &PixelRect, image_from_screen: &DAffine2) -> Option<PixelRect> {
     let screen_from_image = image_from_screen.inverse();
     let [one, other] = [rect.origin_px, rect.origin_px + rect.size_px]
         .map(|corner| screen_from_image.transform_point2(corner.as_dvec2()));
-    // The first pixel with its centre at a border or beyond it.
+    // The first pixel whose centre is at a border or beyond it.
     let [first, end] = [one.min(other), one.max(other)].map(|corner| (corner - 0.5).ceil().as_uvec2());
     let size_px = end.saturating_sub(first);
     (size_px.min_element() > 0).then_some(PixelRect {

@@ -1,4 +1,5 @@
-//! Marks of things on the device: codes of the picture that they were found in, and where that picture's pixels are in a view.
+//! Marks of objects on the device: codes of the picture in which they were detected, and the
+//! positions of that picture's pixels in a view.
 
 use app_scene::things::{Mark, Things as GivenThings};
 use bytemuck::Zeroable;
@@ -14,13 +15,13 @@ pub(crate) const CODE_BEFORE_TOY: u32 = 2;
 pub(crate) const CODE_WRONG_PLATE: u32 = 3;
 
 shared_struct! {
-    /// Where the marks' pixels are in the region.
+    /// Positions of the marks' pixels in the region.
     pub(crate) struct ThingsView {
         pub marks_px_from_region_px: Mat3Columns,
     }
 }
 
-/// Things on the device.
+/// Objects on the device.
 pub(crate) struct Things {
     given: GivenThings,
     codes: Texture,
@@ -46,7 +47,7 @@ impl Things {
         }
     }
 
-    /// What they were made of.
+    /// The objects from which they were created.
     pub(crate) fn given(&self) -> &GivenThings {
         &self.given
     }
@@ -56,7 +57,8 @@ impl Things {
         self.given.count(Mark::WrongPlate) > 0
     }
 
-    /// Follows the camera to a view and a region of it. Things are taken to lie in the plane of the first receiver.
+    /// Adapts to a camera's view and a region of it. The objects are assumed to lie in the plane of
+    /// the first receiver.
     pub(crate) fn follow(&self, gpu: &Gpu, view: &View, region: &PixelRect, world_from_plane: &DMat4) {
         let image_px_from_region_px = DMat3::from_translation(region.origin_px.as_dvec2());
         let own = View::new(self.given.size_px(), self.given.camera());

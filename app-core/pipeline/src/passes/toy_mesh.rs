@@ -1,4 +1,4 @@
-//! The toy on the device: what never changes, the physical pose, and the pose of the frame.
+//! The toy on the device: its constant data, the physical pose, and the pose of the frame.
 
 mod corners;
 mod runs;
@@ -36,21 +36,21 @@ pub(crate) const LOOK_STREAMS: [Stream; 4] = [
 pub(crate) struct PoseBuffers {
     pub(crate) positions: Buffer,
     pub(crate) normals: Buffer,
-    /// Holds all positions.
+    /// A ball that contains all positions.
     pub(crate) around: Sphere,
-    /// The same on the processor.
+    /// The pose on the processor.
     mesh: PosedMesh,
-    /// Of the camera, and of each light.
+    /// Lists for the camera and for each light.
     lists: Vec<Lists>,
 }
 
 impl PoseBuffers {
-    /// The pixels of a target of `size_px` in which the toy may be seen.
+    /// The pixels of a target of `size_px` in which the toy may be visible.
     pub(crate) fn seen_rect(&self, projection: &dyn Projection, size_px: UVec2) -> Option<PixelRect> {
         seen_rect(&self.mesh.positions, projection, size_px)
     }
 
-    /// With room for lists of so many corners each.
+    /// Buffers with lists for these numbers of corners.
     fn new(gpu: &Gpu, mesh: &PosedMesh, lists: impl Iterator<Item = usize>) -> Self {
         Self {
             positions: gpu.buffer(
@@ -69,7 +69,7 @@ impl PoseBuffers {
         }
     }
 
-    /// Whether it is this pose.
+    /// Whether the buffers hold this pose.
     pub(crate) fn is(&self, mesh: &PosedMesh) -> bool {
         self.mesh == *mesh
     }
@@ -88,20 +88,20 @@ impl PoseBuffers {
 pub enum CasterLod {
     /// The toy's own.
     Own,
-    /// The coarsest that is as near, in units of the toy's file.
+    /// The coarsest shape within this distance, in units of the toy's file.
     Within(f64),
-    /// The finest of as many triangles, or the coarsest.
+    /// The finest shape with at most this number of triangles, or the coarsest.
     AtMost(u32),
 }
 
-/// Corners of a shape near the toy's.
+/// Corners of a shape similar to the toy's.
 struct CasterRange {
-    /// How far it is from the toy's, in units of its file.
+    /// Distance from the toy's shape, in units of its file.
     error: f64,
     indices: Range<u32>,
-    /// Of the corners, those of closed pieces, which come first.
+    /// Number of corners of closed pieces, which come first.
     n_closed: usize,
-    /// Found when first asked for.
+    /// Edges, computed at their first use.
     edges: OnceLock<Vec<Edge>>,
 }
 
@@ -111,21 +111,21 @@ impl CasterRange {
     }
 }
 
-/// How a method draws the toy's shadows.
+/// The way in which a method draws the toy's shadows.
 pub(crate) struct Casting<'a> {
-    /// Shapes that may cast shadows in place of the toy's own.
+    /// Shapes that may cast shadows instead of the toy's own.
     pub(crate) simplified: &'a [Caster],
     /// Whether triangles that face away are left out.
     pub(crate) is_culled: bool,
 }
 
-/// The toy in a pose, as points look at it.
+/// The toy in a pose, with the viewpoints from which it is drawn.
 #[derive(Clone, Copy)]
 pub(crate) struct SeenToy<'a> {
     pub(crate) pose: &'a PoseBuffers,
-    /// Which list of the pose is the points' own.
+    /// The viewpoints' list in the pose.
     pub(crate) side: Option<Side>,
-    /// Homogeneous, in anchor space.
+    /// Viewpoints, homogeneous, in anchor space.
     pub(crate) points: &'a [Vec4],
     pub(crate) lod: CasterLod,
 }
@@ -134,17 +134,17 @@ pub(crate) struct SeenToy<'a> {
 pub(crate) struct ToyMesh {
     indices: Buffer,
     shadow_indices: Buffer,
-    /// The same on the processor.
+    /// Corners of the shadow casters, on the processor.
     shadow_corners: Vec<u32>,
-    /// Within them, ever coarser; at least the first, which is the toy's own shape.
+    /// Ranges of these corners, of ever coarser shapes; the first is the toy's own shape.
     casters: Vec<CasterRange>,
-    /// Whether it is made of closed pieces alone.
+    /// Whether the toy consists of closed pieces alone.
     is_closed: bool,
     uvs: Buffer,
     colors: Buffer,
     runs: Vec<Run>,
     materials: Materials,
-    /// The pose the real toy was made in.
+    /// The pose of the real toy.
     pub(crate) physical: PoseBuffers,
     /// The pose to be shown.
     pub(crate) shown: PoseBuffers,
@@ -156,8 +156,8 @@ impl ToyMesh {
         let (casters, shadow_indices) = casters(toy, casting.simplified);
         let shape = toy.shadow_indices();
         let (runs, indices) = runs(toy, &materials);
-        // Only of closed pieces is anything left out, and shadows of others have no silhouette that pays; the toy's own shape
-        // has the most triangles.
+        // Triangles are left out of closed pieces alone, and for the shadows of other pieces a
+        // silhouette is not worth its cost; the toy's own shape has the most triangles.
         let n_lists = match casting.is_culled {
             true if shape.n_closed > 0 => 1 + MAX_LIGHTS,
             true if shape.indices.len() <= MAX_SILHOUETTE_CORNERS => 1,
@@ -191,14 +191,15 @@ impl ToyMesh {
         self.materials.n()
     }
 
-    /// Group `GROUP_DRAW` of a pipeline, one a look.
+    /// Group `GROUP_DRAW` of a pipeline, one per look.
     pub(crate) fn bind_materials<T>(&self, recorder: &Recorder<'_>, pipeline: &Pipeline<T>) -> Vec<Group> {
         self.materials.bind(recorder, pipeline)
     }
 
-    /// Corners of a shape to draw as points see it. Of closed pieces, and from outside, what faces
-    /// away from all of them hides nothing that others do not: it is left out, where a list of the pose is theirs. Then the
-    /// silhouette is looked for as well, where it is asked for.
+    /// The corners of a shape that must be drawn for viewpoints. In closed pieces, and from
+    /// outside, the triangles that face away from all viewpoints hide nothing that others do not
+    /// hide: they are left out if the pose has a list for the viewpoints. In that case the
+    /// silhouette is determined as well, if requested.
     pub(crate) fn corners<'a>(
         &'a self,
         gpu: &Gpu,
@@ -240,7 +241,8 @@ impl ToyMesh {
         }
     }
 
-    /// Marks the tiles of a target within `reach_px` of where a shape in a pose may be seen.
+    /// Marks the tiles of a target within `reach_px` of the places where a posed shape may be
+    /// visible.
     pub(crate) fn mark_seen(
         &self,
         tiles: &mut Tiles,
@@ -255,7 +257,7 @@ impl ToyMesh {
         }
     }
 
-    /// A shape in a pose, if it is small enough to look for its silhouette.
+    /// A posed shape, if it is small enough for the search for its silhouette.
     fn small_shape<'a>(&'a self, pose: &'a PoseBuffers, lod: CasterLod) -> Option<Shape<'a>> {
         let caster = self.caster(lod)?;
         let [start, end] = [caster.indices.start, caster.indices.end].map(|index| index as usize);
@@ -295,7 +297,7 @@ impl ToyMesh {
         corners.unwrap_or_default()
     }
 
-    /// Corners of the shape of a level of detail, within all.
+    /// Corners of the shape of a level of detail, as a range of all corners.
     fn corners_of(&self, lod: CasterLod) -> Range<u32> {
         self.caster(lod).map_or(0..0, |caster| caster.indices.clone())
     }
@@ -311,9 +313,10 @@ impl ToyMesh {
         }
     }
 
-    /// Draws every part with its material; `streams` are the poses, from slot 2 on, of which the first is seen.
+    /// Draws every part with its material; `streams` are the poses, from slot 2 on, the first of
+    /// which is visible.
     ///
-    /// Of closed pieces, and from outside, only the side that faces the camera shows.
+    /// In closed pieces, and from outside, only the side that faces the camera is drawn.
     pub(crate) fn draw_parts(
         &self,
         render: &mut Render<'_>,
@@ -324,7 +327,7 @@ impl ToyMesh {
         let camera = sided.camera_in_anchor.extend(1.0).as_dvec4();
         let is_inside = streams.first().is_some_and(|pose| pose.around.holds(camera));
         let closed = if is_inside { sided.both } else { sided.culled };
-        // Slots outlive a change of pipelines of the same layout.
+        // Slots persist over a change to a pipeline of the same layout.
         render.begin(closed, sided.groups);
         self.set_streams(render, streams);
         self.draw_runs(render, looks, |run| &run.closed);
@@ -359,7 +362,7 @@ impl ToyMesh {
     }
 }
 
-/// The toy's own shape and those near it, one after the other, and their corners.
+/// The ranges of the toy's own shape and its simplified ones, in sequence, and their corners.
 fn casters(toy: &Toy, simplified: &[Caster]) -> (Vec<CasterRange>, Vec<u32>) {
     let mut all = toy.shadow_indices().indices.clone();
     let mut ranges = vec![CasterRange {

@@ -6,6 +6,8 @@
 use serde::Serialize;
 
 use crate::geometry::rect::PixelRect;
+use app_scene::gloss::Gloss;
+use app_scene::reflection::Reflection;
 use app_scene::sharpness::Sharpness;
 
 /// Facts of a scene that decide its plan.
@@ -36,6 +38,12 @@ pub struct SceneFacts {
     pub sharpness: Sharpness,
     /// Whether this picture, or one before it, is softer than what is laid into it.
     pub is_softened: bool,
+    /// How glossy the toy is.
+    pub gloss: Gloss,
+    /// Angular radius of each light whose shadows are moved, seen from the toy.
+    pub angular_radii_rad: Vec<f64>,
+    /// How the receiver that the toy stands on reflects; none where it is matt.
+    pub reflection: Option<Reflection>,
 }
 
 /// Factor up to which a penumbra's width may change before it counts as another.

@@ -1,4 +1,4 @@
-//! Plates from several cameras: which of them a view's plate is made of.
+//! Plates from several cameras: the choice of those from which a view's plate is composed.
 
 use glam::{DMat4, DVec2, DVec3, UVec2, Vec3};
 
@@ -11,18 +11,20 @@ use crate::passes::plate::{MAX_PLATES, PlateView, PlateViews};
 use crate::plates::sight::{PointOn, Sight};
 use app_scene::scene::{MAX_RECEIVERS, Plate, Scene};
 
-/// Distance of the pixels of the region where it is checked that a plate shows them: no larger gap goes unnoticed.
+/// Distance between the pixels of the region at which the plates' coverage is tested: every larger
+/// gap is detected.
 const COVERED_STEP_PX: u32 = 8;
 
-/// The plates that a view's plate is made of.
+/// The plates from which a view's plate is composed.
 pub(crate) struct PlateChoice {
-    /// Places in the scene's list.
+    /// Indices in the scene's list.
     pub(crate) indices: Vec<usize>,
-    /// The one plate was taken from this very camera.
+    /// Whether the only plate was taken by this very camera.
     pub(crate) is_same_view: bool,
 }
 
-/// Chooses from the scene's plates for a camera that looks at `toy_in_world`; the footprint has `corners_in_world`.
+/// Chooses from the scene's plates for a camera that looks at `toy_in_world`; the footprint has
+/// `corners_in_world`.
 pub(crate) fn choose(
     scene: &Scene,
     view: &View,
@@ -44,7 +46,7 @@ pub(crate) fn choose(
     let mut indices: Vec<usize> = (0..plates.len()).collect();
     indices.sort_by(|a, b| cosines[*b].total_cmp(&cosines[*a]));
     indices.truncate(MAX_PLATES);
-    // In the same order whatever the camera, so that they need not be uploaded anew.
+    // The order does not depend on the camera, so that they need not be uploaded again.
     indices.sort_unstable();
     PlateChoice {
         indices,
@@ -52,7 +54,8 @@ pub(crate) fn choose(
     }
 }
 
-/// Share of what the receivers show in `rect` that the chosen plates show too; 1 where there is no receiver at all.
+/// Share of the receivers' area in `rect` that the chosen plates show too; 1 if there is no
+/// receiver at all.
 pub(crate) fn covered_fraction(
     scene: &Scene,
     layout: &SceneLayout<'_>,
@@ -90,7 +93,7 @@ fn grid_over(rect: &PixelRect) -> impl Iterator<Item = DVec2> {
     positions.map(move |at| origin_px + at.as_dvec2() * size_px / n_steps.as_dvec2())
 }
 
-/// The uniforms of the chosen plates; `gains` are those of all of the scene's.
+/// The uniforms of the chosen plates; `gains` are the gains of all plates of the scene.
 pub(crate) fn plate_views(
     scene: &Scene,
     layout: &SceneLayout<'_>,

@@ -11,17 +11,17 @@ use crate::plates::sight::PointOn;
 use app_scene::geometry::color::linear_of_codes;
 use app_scene::scene::{Plate, Scene};
 
-/// Sample points along each side of a plate, at which its exposure is compared with another's.
+/// Sample points along each side of a plate, for the comparison of its exposure with another's.
 const N_COMPARED: u32 = 48;
-/// Difference between two plates, relative, at which a sample counts half.
+/// Relative difference between two plates at which a sample has half its weight.
 const CAUCHY_SCALE: f64 = 0.05;
 /// Minimum number of samples of a gain.
 const FEWEST_COMPARED: usize = 16;
 /// Steps of the reweighted least squares.
 const N_STEPS: usize = 8;
 
-/// Gain of each plate to the exposure of the first that it is connected with by pairs that share enough, per channel of linear
-/// light: 1 for that one.
+/// Gain of each plate to the exposure of the first plate to which it is connected by pairs with
+/// enough common samples, per channel of linear light; 1 for that plate.
 #[must_use]
 pub fn match_plates(scene: &Scene, receivers: &[AnchoredReceiver]) -> Vec<DVec3> {
     let decoded = linear_of_codes().map(f64::from);
@@ -46,10 +46,12 @@ pub fn match_plates(scene: &Scene, receivers: &[AnchoredReceiver]) -> Vec<DVec3>
     joint_gains(scene.plates.len(), &pairs)
 }
 
-/// Gain of the scene's first plate to the exposure of a frame, per channel of linear light; 1 where they share no
-/// sample. `chosen` are indices of plates that are seen from there, `gains` bring each of the scene's to the first.
+/// Gain of the scene's first plate to the exposure of a frame, per channel of linear light; 1 if
+/// they have no common sample. `chosen` are indices of plates that are visible from the frame's
+/// camera, `gains` convert each of the scene's plates to the first.
 ///
-/// Samples `within`, which contains all of toy and shadows, count only where too few others are shared.
+/// Samples `within`, which contains the whole toy and its shadows, count only if there are too few
+/// others.
 pub(crate) fn match_frame(
     (scene, receivers): (&Scene, &[AnchoredReceiver]),
     frame: &Plate,
@@ -81,7 +83,7 @@ pub(crate) fn match_frame(
         .unwrap_or(DVec3::ONE)
 }
 
-/// A point that a picture shows.
+/// A point that is visible in a picture.
 struct Seen {
     px: DVec2,
     point: PointOn,
@@ -89,7 +91,7 @@ struct Seen {
     color: DVec3,
 }
 
-/// A point that two pictures show.
+/// A point that is visible in two pictures.
 struct Shared {
     /// Its position in the first one.
     px: DVec2,
@@ -98,7 +100,7 @@ struct Shared {
     there: DVec3,
 }
 
-/// Points that a picture shows, at the sample points.
+/// The sample points at which a picture shows a receiver.
 fn seen_places(shot: &Shot<'_>, linear_of_code: &[f64; 256]) -> Vec<Seen> {
     let spacing = shot.size_px() / f64::from(N_COMPARED);
     let places = (0..N_COMPARED * N_COMPARED).map(|k| UVec2::new(k % N_COMPARED, k / N_COMPARED));
@@ -113,7 +115,7 @@ fn seen_places(shot: &Shot<'_>, linear_of_code: &[f64; 256]) -> Vec<Seen> {
     seen.collect()
 }
 
-/// Those that another picture shows too.
+/// Those points that another picture shows too.
 fn shared_places<'a>(
     seen: &'a [Seen],
     other: &'a Shot<'_>,
@@ -129,7 +131,8 @@ fn shared_places<'a>(
     })
 }
 
-/// The gain from the first of each pair to the second, per channel; none where there are too few.
+/// The gain from the first of each pair to the second, per channel; `None` if there are too few
+/// pairs.
 fn gain_of(pairs: &[(DVec3, DVec3)]) -> Option<DVec3> {
     if pairs.len() < FEWEST_COMPARED {
         return None;
@@ -138,8 +141,8 @@ fn gain_of(pairs: &[(DVec3, DVec3)]) -> Option<DVec3> {
     Some(DVec3::from_array(channels))
 }
 
-/// The gain from the first of each pair to the second, by reweighted least squares that start from the median of the
-/// ratios: what is in shadow in one of them does not count.
+/// The gain from the first of each pair to the second, by reweighted least squares that start from
+/// the median of the ratios: samples in shadow in one of the pictures do not count.
 fn robust_gain(pairs: &[(DVec3, DVec3)], channel: usize) -> f64 {
     let mut ratios: Vec<f64> = pairs.iter().map(|(a, b)| b[channel] / a[channel]).collect();
     ratios.sort_unstable_by(f64::total_cmp);

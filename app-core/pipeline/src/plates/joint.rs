@@ -1,4 +1,5 @@
-//! Gains of many plates from gains of pairs, all at once: what pairs along a loop disagree in is spread over them.
+//! Joint solution for the gains of many plates from gains of pairs: the error of closure of a loop
+//! is distributed over its pairs.
 
 use glam::DVec3;
 
@@ -6,7 +7,7 @@ use app_scene::disjoint::DisjointSets;
 
 /// The gain between two plates.
 pub(crate) struct PairGain {
-    /// Indices, of the first of which this is the gain to the second.
+    /// Indices of the plates; the gain is that of the first to the second.
     pub(crate) plates: [usize; 2],
     /// Per channel, positive.
     pub(crate) gain: DVec3,
@@ -14,11 +15,12 @@ pub(crate) struct PairGain {
     pub(crate) n_samples: f64,
 }
 
-/// Gain of each plate to the first that it is connected with, by least squares of logarithms.
+/// Gain of each plate to the first plate to which it is connected, by least squares of logarithms.
 ///
-/// With x the logarithms, every pair asks for x_a - x_b = ln gain_ab with the weight of its samples. The normal equations are
-/// the Laplacian of the graph of pairs, which leaves one constant free for each connected part: the first plate of a part
-/// has x = 0, by a weight of 1 on it, which nothing opposes.
+/// With x the logarithms, every pair has the equation x_a - x_b = ln gain_ab with the weight of its
+/// samples. The normal equations are the Laplacian of the graph of pairs, which leaves one constant
+/// free for each connected part: the first plate of a part has x = 0, by a weight of 1 on it, which
+/// no other equation opposes.
 pub(crate) fn joint_gains(n_plates: usize, pairs: &[PairGain]) -> Vec<DVec3> {
     let mut matrix = vec![0.0; n_plates * n_plates];
     let mut unknowns = vec![DVec3::ZERO; n_plates];
@@ -55,7 +57,7 @@ pub(crate) fn joint_gains(n_plates: usize, pairs: &[PairGain]) -> Vec<DVec3> {
         .collect()
 }
 
-/// The first of the plates that each is connected with, perhaps itself.
+/// The first of the plates to which each is connected, possibly itself.
 fn firsts(n_plates: usize, pairs: &[PairGain]) -> Vec<usize> {
     let mut connected = DisjointSets::new(n_plates);
     for PairGain { plates: [a, b], .. } in pairs {

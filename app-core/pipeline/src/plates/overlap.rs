@@ -1,4 +1,5 @@
-//! Which plates are compared with which: pairs whose number grows with that of the plates, not with its square.
+//! The choice of pairs of plates that are compared: their number grows with that of the plates, not
+//! with its square.
 
 use glam::UVec2;
 
@@ -8,16 +9,19 @@ use crate::plates::sight::PointOn;
 use app_scene::disjoint::DisjointSets;
 use app_scene::scene::Scene;
 
-/// Points of a plate at which it is looked up which others show them.
+/// Points of a plate at which the others that show them are counted.
 const N_POINTS: u32 = 144;
-/// Step along the rows for a step down: no strip of a 144th of the picture, upright or level, is without a point.
+/// Step along the rows for a step down: every upright or level strip of a 144th of the picture
+/// contains a point.
 ///
-/// Source: Korobov 1959 (lattices of good points); in two dimensions neighbouring Fibonacci numbers, Zaremba 1966.
+/// Source: Korobov 1959 (lattices of good points); in two dimensions neighbouring Fibonacci
+/// numbers, Zaremba 1966.
 const LATTICE_STEP: u32 = 89;
-/// Plates that each is compared with, where that many overlap it: they close loops, in which errors of pairs even out.
+/// Number of plates with which each is compared, if that many overlap it: they close loops, in
+/// which errors of pairs average out.
 const N_NEIGHBOURS: usize = 4;
 
-/// Two plates that share something.
+/// Two plates with common points.
 struct Pair {
     /// Indices, the later one first.
     plates: [usize; 2],
@@ -25,11 +29,12 @@ struct Pair {
     distance_m: f64,
 }
 
-/// For each plate the earlier ones that it is compared with.
+/// For each plate the earlier ones with which it is compared.
 ///
-/// Largest overlaps come first, and of those that are alike cameras that stand closer together. A pair is taken where it
-/// connects what no pairs connect so far, or where one of the two has fewer than [`N_NEIGHBOURS`]; so a few plates are all
-/// compared with each other, and of many there are at most five pairs a plate.
+/// The largest overlaps come first, and among equal ones the cameras that are closer together. A
+/// pair is chosen if it connects plates that are not connected yet, or if one of the two has fewer
+/// than [`N_NEIGHBOURS`]. Thus a few plates are all compared with each other, and many plates have
+/// at most five pairs each.
 pub(crate) fn compared(shots: &[Shot<'_>]) -> Vec<Vec<usize>> {
     let mut pairs = overlapping_pairs(shots);
     pairs.sort_by(|a, b| {
@@ -53,7 +58,7 @@ pub(crate) fn compared(shots: &[Shot<'_>]) -> Vec<Vec<usize>> {
     earlier_of
 }
 
-/// The same of a scene.
+/// The same for a scene.
 #[must_use]
 pub fn compared_plates(scene: &Scene, receivers: &[AnchoredReceiver]) -> Vec<Vec<usize>> {
     compared(&shots_of(scene, receivers))
@@ -79,7 +84,7 @@ fn overlapping_pairs(shots: &[Shot<'_>]) -> Vec<Pair> {
     pairs
 }
 
-/// Points of receivers at a lattice over a picture.
+/// Points of receivers on a lattice over a picture.
 fn usable_points(shot: &Shot<'_>) -> Vec<PointOn> {
     let spacing = shot.size_px() / f64::from(N_POINTS);
     let places = (0..N_POINTS).map(|k| UVec2::new(k, k * LATTICE_STEP % N_POINTS));

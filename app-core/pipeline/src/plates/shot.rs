@@ -1,4 +1,4 @@
-//! A picture with its camera: what it shows of the receivers, and in which colours.
+//! A picture with its camera: the receivers that it shows, and their colours.
 
 use glam::{DMat4, DVec2, DVec3};
 
@@ -7,9 +7,9 @@ use crate::plates::choice::view_of;
 use crate::plates::sight::{PointOn, Sight};
 use app_scene::scene::{Image, Plate, Scene};
 
-/// Half the side of the square that is averaged at a point: misaligned plates still agree.
+/// Half the side of the square that is averaged at a point, so that misaligned plates still agree.
 const COMPARED_RADIUS_PX: i64 = 3;
-/// Codes that are neither mostly quantisation nor perhaps clipped.
+/// Codes that are neither dominated by quantisation nor possibly clipped.
 const USABLE_CODES: std::ops::RangeInclusive<u8> = 10..=250;
 
 /// A plate or a frame.
@@ -34,12 +34,12 @@ impl<'a> Shot<'a> {
         DVec2::new(f64::from(self.image.width_px), f64::from(self.image.height_px))
     }
 
-    /// The point that it shows at a pixel; none where that is of no receiver, or of the back of one.
+    /// The point of a receiver at a pixel; `None` if there is no receiver, or only the back of one.
     pub(crate) fn nearest(&self, px: DVec2) -> Option<PointOn> {
         self.sight.nearest(px)
     }
 
-    /// Where it shows a point, be it beyond the picture.
+    /// The image position of a point, possibly outside the picture.
     pub(crate) fn image_px_of(&self, point: PointOn) -> Option<DVec2> {
         self.sight.image_px_of(point)
     }
@@ -50,7 +50,8 @@ impl<'a> Shot<'a> {
         self.usable_codes(x, y).is_some()
     }
 
-    /// Mean linear colour around a pixel; none at the border, or where a code is too dark or too bright.
+    /// Mean linear colour around a pixel; `None` at the border, or if a code is too dark or too
+    /// bright.
     pub(crate) fn mean_color(&self, px: DVec2, linear_of_code: &[f64; 256]) -> Option<DVec3> {
         let centre = pixel(px);
         let side = 2 * COMPARED_RADIUS_PX + 1;
@@ -91,6 +92,6 @@ pub(crate) fn shots_of<'a>(scene: &'a Scene, receivers: &'a [AnchoredReceiver]) 
     reason = "a pixel of an image, or far beyond it"
 )]
 fn pixel(px: DVec2) -> [i64; 2] {
-    // What is infinitely far saturates, and stays beyond the picture.
+    // An infinitely distant position saturates, and stays outside the picture.
     [px.x.floor() as i64, px.y.floor() as i64].map(|at| at.clamp(-1 << 32, 1 << 32))
 }

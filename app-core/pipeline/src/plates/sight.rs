@@ -1,4 +1,4 @@
-//! Which point of which receiver a camera sees at a pixel, and where it sees a point.
+//! The point of a receiver that a camera shows at a pixel, and the image position of a point.
 
 use glam::{DMat3, DVec2};
 
@@ -42,7 +42,7 @@ impl<'a> Sight<'a> {
         }
     }
 
-    /// The point of the nearest receiver at a pixel; none where that is its back.
+    /// The point of the nearest receiver at a pixel; `None` if the pixel shows the receiver's back.
     pub(crate) fn nearest(&self, image_px: DVec2) -> Option<PointOn> {
         let planes = self.planes.iter().zip(self.receivers).enumerate();
         let hits = planes.filter_map(|(receiver, (plane, anchored))| {
@@ -56,7 +56,8 @@ impl<'a> Sight<'a> {
             .filter(|point| self.planes[point.receiver].shows_front)
     }
 
-    /// Where a point is seen, be it beyond the picture; none where another receiver hides it, or its own seen from behind.
+    /// The image position of a point, possibly outside the picture; `None` if another receiver
+    /// hides the point, or if its own receiver is visible from behind.
     pub(crate) fn image_px_of(&self, point: PointOn) -> Option<DVec2> {
         let at = self.planes[point.receiver].image_px_from_plane * point.in_plane.extend(1.0);
         let px = (at.z > 0.0).then(|| at.truncate() / at.z)?;

@@ -1,4 +1,4 @@
-//! The scene's plates on the device: those of the latest view.
+//! The scene's plates on the device, as needed for the latest view.
 
 use bytemuck::Zeroable;
 use glam::{DVec3, UVec2};
@@ -38,12 +38,12 @@ impl PlateStore {
         }
     }
 
-    /// Has all plates uploaded again.
+    /// Makes all plates be uploaded again.
     pub(crate) fn forget(&mut self) {
         self.loaded.fill(None);
     }
 
-    /// Uploads the plates at `indices`, in their order, unless they are there already.
+    /// Uploads the plates at `indices`, in their order, unless they are loaded already.
     pub(crate) fn load(&mut self, gpu: &Gpu, scene: &Scene, indices: &[usize]) {
         for ((layer, slot), index) in (0..).zip(&mut self.loaded).zip(indices) {
             if *slot != Some(*index) {

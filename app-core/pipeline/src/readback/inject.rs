@@ -1,4 +1,4 @@
-//! Injected visibilities, in place of those that the passes compute.
+//! Injected visibilities, which replace those that the passes compute.
 
 use crate::gpu::{Gpu, Texture};
 use crate::readback::FloatMap;
@@ -6,9 +6,9 @@ use crate::readback::FloatMap;
 /// Maps of the work region with the visibility of each light, light 0 in r, each in [0, 1].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InjectedVisibility {
-    /// With the physical toy; none leaves it to the passes.
+    /// Visibility with the physical toy; `None` keeps that of the passes.
     pub physical: Option<FloatMap>,
-    /// With the shown toy; none leaves it to the passes.
+    /// Visibility with the shown toy; `None` keeps that of the passes.
     pub shown: Option<FloatMap>,
 }
 

@@ -6,28 +6,29 @@ use super::FloatMap;
 use super::decoding::Decoding;
 use crate::geometry::rect::PixelRect;
 
-/// Layers of a picture, all of its size, in linear light, by floats of 16 bits where anything is made.
+/// Layers of a picture, all of its size, in linear light, as 16-bit floats where anything is drawn.
 ///
-/// The toy over the product of clean plate and shadow ratio is the picture, but for its grain, which the picture alone has, and for
-/// pixels at the outline of a toy that stands still, where the camera's own are shown.
+/// The toy over the product of clean plate and shadow ratio is the picture, except for the grain,
+/// which the picture alone has, and for pixels at the outline of a toy that stands still, which are
+/// the camera's own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
-    /// The picture without the toy and without its shadow, as far as that is known; alpha is 1.
+    /// The picture without the toy and its shadow, as far as it is known; alpha is 1.
     pub clean_plate: FloatMap,
-    /// Light with the shown shadow over light without it, for each channel; alpha is 1.
+    /// Ratio of the light with the shown shadow to that without it, for each channel; alpha is 1.
     pub shadow_ratio: FloatMap,
-    /// The toy, its colours premultiplied by alpha, which is the part of the pixel that it covers.
+    /// The toy, its colours premultiplied by alpha, the fraction of the pixel that it covers.
     pub toy: FloatMap,
-    /// r the same part; g the part of a light that the toy hides, the most of all lights; b is 1 where a
-    /// receiver is; alpha is 1.
+    /// r is the same fraction; g is the hidden fraction of a light, the largest over all lights; b
+    /// is 1 on a receiver; alpha is 1.
     pub masks: FloatMap,
 }
 
-/// The same of the work region, in the order of the fields.
+/// The same for the work region, in the order of the fields.
 pub(crate) type RegionLayers = [FloatMap; 4];
 
 impl Layers {
-    /// Of a camera's picture in which nothing is made.
+    /// The layers of a camera's picture in which nothing is drawn.
     pub(crate) fn of_camera(camera: FloatMap) -> Self {
         let all = |texel: [f32; 4]| FloatMap {
             texels: vec![texel; camera.texels.len()],
@@ -41,7 +42,7 @@ impl Layers {
         }
     }
 
-    /// Lays those of a region into it.
+    /// Inserts the layers of a region.
     pub(crate) fn lay(&mut self, of_region: &RegionLayers, rect: PixelRect, decoding: &Decoding) {
         let [clean_plate, shadow_ratio, toy, masks] = of_region;
         lay(&mut self.clean_plate, clean_plate, rect, |[r, g, b, _]| {
@@ -60,7 +61,7 @@ impl Layers {
         lay(&mut self.masks, masks, rect, |texel| texel);
     }
 
-    /// Marks where a receiver is, by the centres of pixels.
+    /// Marks the pixels whose centres lie on a receiver.
     pub(crate) fn mark_receivers(&mut self, is_receiver: impl Fn(Vec2) -> bool) {
         let width = self.masks.width.max(1);
         for (index, texel) in (0..).zip(&mut self.masks.texels) {

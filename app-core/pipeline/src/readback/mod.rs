@@ -1,4 +1,4 @@
-//! Intermediate maps, read back for reports and tests.
+//! Readback of intermediate maps, for reports and tests.
 
 pub(crate) mod decoding;
 pub mod inject;
@@ -13,14 +13,15 @@ use app_scene::geometry::color::linear_from_srgb;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Map {
-    /// r is 1 where the frame shows the receiver alone, g where it shows one surface of the toy, b where it shows the
-    /// receiver well clear of the toy.
+    /// r is 1 where the frame shows the receiver alone, g where it shows a single surface of the
+    /// toy, b where it shows the receiver far enough from the toy.
     Validity,
     /// Base colour of the physical toy, linear; alpha is its coverage.
     GbufferBase,
     /// Cosine to each light times its visibility, on the physical toy, light 0 in r.
     GbufferReceived,
-    /// The toy's own colours, linear, carried past its outline; alpha is 1 where there is one.
+    /// The toy's own colours, linear, extrapolated beyond its outline; alpha is 1 where there is
+    /// one.
     Appearance,
     /// Visibility of each light with the physical toy, light 0 in r.
     PhysicalVisibility,
@@ -35,30 +36,32 @@ pub enum Map {
     /// The plate as this camera would have taken it, linear; alpha is 1 where it was photographed, 0 where there is
     /// none.
     Plate,
-    /// The filled grid of residuals on the first receiver in rgb, in plates; alpha is 1.
+    /// The filled grid of residuals on the first receiver in rgb, in units of the plate; alpha is
+    /// 1.
     Residual,
-    /// Direct fraction f of the plate's radiance, of all lights together, in rgb, at the ambient maps' size; 0 beside
-    /// the receiver.
+    /// Direct fraction f of the plate's radiance, of all lights together, in rgb, at the ambient
+    /// maps' size; 0 outside the receiver.
     DirectFraction,
     /// The paper's mask 3a, the physical toy, in r.
     Masks,
-    /// The paper's masks: r labels the shadow to sample from (3c), g is 1 in the real shadow (3b). A label is 16
-    /// times the receiver plus the set of hidden lights, bit i for light i; 0 where there is nothing to sample.
+    /// The paper's masks: r labels the shadow that is sampled (3c), g is 1 in the real shadow (3b).
+    /// A label is 16 times the receiver plus the set of hidden lights, bit i for light i; 0 where
+    /// nothing is sampled.
     Eligible,
-    /// The paper's warp: the position to sample, in region pixels, the occluder's height in metres; alpha is
-    /// coverage. The maps of several lights lie below each other.
+    /// The paper's warp: the sampled position, in region pixels, and the occluder's height in
+    /// metres; alpha is coverage. The maps of several lights follow one another from top to bottom.
     Warp,
-    /// Shadow terms as they were sampled; alpha is the label of their shadow, 0 where there is none.
+    /// Shadow terms before filtering; alpha is the label of their shadow, 0 where there is none.
     Terms,
-    /// Sums of shadow terms over the box; alpha is their number. The maps of several sets of lights, from the set 1
-    /// on, lie below each other.
+    /// Sums of shadow terms over the box; alpha is their number. The maps of several sets of
+    /// lights, from set 1 on, follow one another from top to bottom.
     FilteredTerms,
     /// Number of candidates that the ring search tested, in r; 0 where it was not needed.
     SearchTaps,
 }
 
 impl Map {
-    /// Every map there is.
+    /// All maps.
     pub const ALL: &[Self] = &[
         Self::Validity,
         Self::GbufferBase,
@@ -137,7 +140,7 @@ pub(crate) fn read_texture(gpu: &Gpu, texture: Option<&wgpu::Texture>) -> Result
     })
 }
 
-/// Widens an IEEE 754 half.
+/// Converts an IEEE 754 half to f32.
 fn f32_from_f16(bits: u16) -> f32 {
     let sign = if bits & 0x8000 == 0 { 1.0 } else { -1.0 };
     let exponent = i32::from((bits >> 10) & 0x1f);

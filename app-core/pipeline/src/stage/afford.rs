@@ -94,10 +94,12 @@ impl Stage {
     fn cost(&self, plan: &Plan, footprint: &Footprint, covered: &Covered, divisor: u32) -> Cost {
         let gpu = Gpu::default();
         let globals = globals(&footprint.view, &plan.region, &self.layout())
-            .with_boxes(&plan.toy_box, &plan.physical_box);
+            .with_boxes(&plan.toy_box, &plan.physical_box)
+            .with_reflection(self.reflection_channel());
         let toy = (&self.toy.physical.around, self.toy.n_materials());
         let state = SceneState::new(&gpu, grids_over(&self.reached_rects), plan.n_lights, toy);
-        let mut model = Model::new(&gpu, plan.clone(), &globals, self.light_points(plan), state);
+        let light_points = self.light_points(plan, &footprint.view);
+        let mut model = Model::new(&gpu, plan.clone(), &globals, light_points, state);
         let frame = Texture::target(&gpu, "frame", plan.region.size_px, REGION_FORMAT);
         let pictures = Pictures {
             things: None,

@@ -1,6 +1,7 @@
-//! The camera's picture on the device, in whichever form it came.
+//! The camera's picture on the device, in its original form.
 //!
-//! Planes are read as they are, by the screen and by the model; only who filters light of the whole picture has all of it decoded.
+//! Planes are read directly by the screen and by the model; only a reader that filters light of the
+//! whole picture has all of it decoded.
 
 use std::sync::OnceLock;
 
@@ -15,22 +16,22 @@ use app_scene::camera_frame::{CameraImage, PlanarImage};
 
 pub(crate) struct CameraTexture {
     size_px: UVec2,
-    /// The picture that is there.
+    /// The picture on the device.
     image: Option<CameraImage>,
-    /// All of it: of a picture that came as one, and of one that somebody wanted as one.
+    /// The whole picture: one that came as pixels, or one that was decoded on request.
     whole: OnceLock<SrgbTexture>,
     is_whole_there: bool,
     decoder: OnceLock<camera_planes::Pass>,
-    /// Once planes have come as bytes.
+    /// Own textures for planes, once planes have come as bytes.
     own_planes: Option<Planes>,
-    /// The platform's planes, while they are those of the picture.
+    /// The platform's planes, as long as they are those of the picture.
     lent: Option<[TextureView; 2]>,
 }
 
 /// A picture that is written as codes and read as light.
 struct SrgbTexture {
     texture: Texture,
-    /// View of its codes, not decoded.
+    /// View of the picture's codes, which does not decode them.
     codes: TextureView,
 }
 
@@ -64,7 +65,7 @@ impl CameraTexture {
         }
     }
 
-    /// Takes a picture as it comes, unless it is the one that is there already.
+    /// Uploads a picture in its original form, unless it is already there.
     pub(crate) fn take(&mut self, gpu: &Gpu, image: &CameraImage) {
         if self.image.as_ref().is_some_and(|known| known.is(image)) {
             return;
@@ -91,14 +92,14 @@ impl CameraTexture {
         }
     }
 
-    /// Takes what is there for unknown.
+    /// Treats the picture on the device as unknown.
     pub(crate) fn forget(&mut self) {
         self.image = None;
         self.is_whole_there = false;
         self.lent = None;
     }
 
-    /// The picture in the form that it came in.
+    /// The picture in its original form.
     pub(crate) fn frame(&self, gpu: &Gpu) -> Frame<'_> {
         match self.planes() {
             Some(planes) => Frame::Planes(planes),
@@ -106,7 +107,7 @@ impl CameraTexture {
         }
     }
 
-    /// All of it, decoded.
+    /// The whole picture, decoded.
     pub(crate) fn decoded(&self, recorder: &mut Recorder<'_>) -> Picture<'_> {
         let whole = self.whole(recorder.gpu);
         if !self.is_whole_there {
@@ -115,7 +116,7 @@ impl CameraTexture {
         whole.picture()
     }
 
-    /// The same for who reads it over several frames: decoded once.
+    /// The same for a reader over several frames: decoded once.
     pub(crate) fn keep_decoded(&mut self, recorder: &mut Recorder<'_>) -> Picture<'_> {
         self.decoded(recorder);
         self.is_whole_there = true;

@@ -116,7 +116,7 @@ impl Stage {
             ..self.layout()
         };
         let reach = self.reach.as_ref()?;
-        let on_view = reach.on_view(&view, &layout);
+        let on_view = reach.on_view(&view, &layout, self.reflection_in_use());
         let least_region = on_view.region()?.grown(BORDER_PX, view.image_px);
         let region = least_region.grown(SPARE_PX, view.image_px);
         let plane_rects = on_view.plane_rects();

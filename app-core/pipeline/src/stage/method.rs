@@ -1,4 +1,4 @@
-//! Dispatches to the additive model or to the baseline.
+//! Dispatch to the additive model or to the baseline.
 
 use crate::baseline;
 use crate::baseline::Baseline;
@@ -17,7 +17,7 @@ use crate::readback::inject::InjectedVisibility;
 use crate::readback::{FloatMap, Map};
 use app_scene::scene::Image;
 
-/// Everything that frames with these settings run, to be compiled.
+/// The compilation steps for all passes of frames with these settings.
 pub(crate) fn warm_ups(settings: Settings) -> Vec<WarmUp> {
     let of_method = match settings {
         Settings::Model(_) => [
@@ -31,7 +31,7 @@ pub(crate) fn warm_ups(settings: Settings) -> Vec<WarmUp> {
     [of_method.as_slice(), passes::WARM_UPS].concat()
 }
 
-/// A method at work on a scene.
+/// The method of a scene.
 pub(crate) enum Method {
     /// The additive model of the receivers.
     Model(Box<Model>),
@@ -47,7 +47,7 @@ impl Method {
         }
     }
 
-    /// Whether the targets of the toy hold these pixels of the image, as far as the region goes.
+    /// Whether the toy's targets contain these pixels of the image, within the region.
     pub(crate) fn holds_toy(&self, needed: Option<PixelRect>) -> bool {
         let Self::Model(model) = self else { return true };
         let (region, toy_box) = (self.region(), model.region.plan.toy_box);
@@ -74,7 +74,7 @@ impl Method {
         }
     }
 
-    /// The model, where it is at work.
+    /// The model, if it is the scene's method.
     pub(crate) fn model(&self) -> Option<&Model> {
         match self {
             Self::Model(model) => Some(model),
@@ -82,7 +82,7 @@ impl Method {
         }
     }
 
-    /// Looks for the toy in the picture, where the method goes by that.
+    /// Updates the tiles around the toy in the picture, if the method uses them.
     pub(crate) fn update_coverage_tiles(&mut self, toy: &ToyMesh, delta: FrameDelta) {
         match self {
             Self::Model(model) => model.update_coverage_tiles(toy, delta),
@@ -90,7 +90,7 @@ impl Method {
         }
     }
 
-    /// Encodes the frame path, and before it what the change asks for.
+    /// Encodes the passes of a frame, and before them those that the change requires.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
@@ -112,7 +112,8 @@ impl Method {
         }
     }
 
-    /// Waits for the device and returns a map, where this method makes it; `frame` is the picture that was learned from last.
+    /// Waits for the device and returns a map, if this method makes it; `frame` is the picture from
+    /// which the state was last estimated.
     pub(crate) fn read_map(
         &self,
         gpu: &Gpu,
@@ -125,7 +126,8 @@ impl Method {
         }
     }
 
-    /// Waits for the device and returns what the baseline lacks; the model's warnings come from its fit.
+    /// Waits for the device and returns the baseline's warnings; the model's warnings come from its
+    /// fit.
     pub(crate) fn read_warnings(
         &self,
         gpu: &Gpu,

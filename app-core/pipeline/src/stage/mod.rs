@@ -3,9 +3,11 @@
 mod afford;
 pub(crate) mod camera_texture;
 mod footprint;
+mod gloss;
 pub(crate) mod method;
 mod output;
 mod placement;
+mod reflection;
 mod reuse;
 mod soft;
 mod style;
@@ -38,6 +40,8 @@ use crate::readback::{FloatMap, Map};
 use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
 use app_scene::geometry::bounds::Bounds;
+use app_scene::gloss::Gloss;
+use app_scene::reflection::Reflection;
 use app_scene::scene::{Camera, Image, Scene};
 use app_scene::shadow_style::ShadowStyle;
 use app_scene::sharpness::Sharpness;
@@ -95,6 +99,10 @@ pub(crate) struct Stage {
     reached_rects: Vec<PlaneRect>,
     /// How soft the latest picture is taken to be.
     sharpness: Sharpness,
+    /// How glossy the toy is taken to be.
+    gloss: Gloss,
+    /// How the first receiver reflects, as the latest frame says.
+    reflection: Option<Reflection>,
     /// How the latest frame's shadow is to look.
     shadow_style: ShadowStyle,
     /// How the shadow that was drawn last looks.
@@ -189,6 +197,8 @@ impl Stage {
             state: None,
             reached_rects: Vec::new(),
             sharpness: Sharpness::SHARP,
+            gloss: Gloss::NONE,
+            reflection: None,
             shadow_style: ShadowStyle::TRUE,
             drawn_style: ShadowStyle::TRUE,
             lights_inside: None,
@@ -363,6 +373,7 @@ impl Stage {
         let is_pose_new = self.take_shown_pose(gpu);
         recorder.stages.begin("reuse");
         self.take_things(gpu, input);
+        self.take_gloss(gpu, input);
         let (change, keeps_sharpness) = self.update_method(gpu, input, footprint);
         self.style_shadow(gpu, change);
         report.warnings.extend(self.cost_warning.clone());
@@ -436,6 +447,8 @@ impl Stage {
         report.warnings.extend(self.plate_warning(footprint));
         report.warnings.extend(self.light_warning());
         report.warnings.extend(self.thing_warnings());
+        report.warnings.extend(self.gloss_warning());
+        report.warnings.extend(self.reflection_warning());
         if !self.shows_toy(&footprint.view) {
             report.warnings.push(Warning::ToyOutOfPicture);
         }

@@ -1,4 +1,4 @@
-//! What is made of a frame, for who shows it or reads it back.
+//! The output of a frame, for display or readback.
 
 use glam::UVec2;
 
@@ -12,7 +12,7 @@ use crate::readback::layers::Layers;
 use crate::readback::{FloatMap, read_texture};
 
 impl Stage {
-    /// The latest picture, of which the region's part still has to be laid over the camera image.
+    /// The latest picture; the region's part has yet to be drawn over the camera image.
     pub(crate) fn composed(&self, gpu: &Gpu) -> ComposedFrame<'_> {
         ComposedFrame {
             frame: self.camera.frame(gpu),
@@ -32,7 +32,7 @@ impl Stage {
             })
     }
 
-    /// Draws that picture into a texture of its size: codes.
+    /// Draws that picture into a texture of its size, as codes.
     pub(crate) fn draw_picture(&self, gpu: &Gpu) -> &Texture {
         let output = self
             .output
@@ -45,12 +45,13 @@ impl Stage {
         output
     }
 
-    /// Makes frames that could pass through, too, so that they have layers.
+    /// Processes frames that could pass through, too, so that they have layers.
     pub(crate) fn want_layers(&mut self) {
         self.is_layered = true;
     }
 
-    /// Waits for the device and returns the latest picture in linear light, finer than codes where it is made.
+    /// Waits for the device and returns the latest picture in linear light, with more precision
+    /// than codes in the retargeted pixels.
     pub(crate) fn read_light(&self, gpu: &Gpu) -> Result<FloatMap, GpuError> {
         let mut recorder = Recorder::new(gpu, None);
         let mut overlay = self.overlay();
@@ -65,8 +66,8 @@ impl Stage {
         self.read_in_light(recorder, overlay)
     }
 
-    /// Waits for the device and returns the layers of the latest picture; without any where the camera image passes through, or the
-    /// method is the baseline.
+    /// Waits for the device and returns the layers of the latest picture; empty ones if the camera
+    /// image passes through, or if the method is the baseline.
     pub(crate) fn read_layers(&self, gpu: &Gpu) -> Result<Layers, GpuError> {
         let camera = self.read_in_light(Recorder::new(gpu, None), None)?;
         let mut layers = Layers::of_camera(camera);
@@ -79,7 +80,7 @@ impl Stage {
         Ok(layers)
     }
 
-    /// The camera image with what is laid over it, as light.
+    /// The camera image with the region's picture over it, as light.
     fn read_in_light(
         &self,
         mut recorder: Recorder<'_>,

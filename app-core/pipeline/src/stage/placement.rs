@@ -17,7 +17,7 @@ use app_scene::toy::ToyError;
 const SAME_POSE_PX: f64 = 0.1;
 
 impl Stage {
-    /// Takes over the frame's pose of the object and its lights, where they differ from those that were learned under.
+    /// Takes over the frame's pose of the object, its lights and how its receiver reflects, where they differ from those that were learned under.
     pub(super) fn follow_placement(&mut self, gpu: &Gpu, input: &FrameInput) -> Result<(), ToyError> {
         let mut is_moved = false;
         if !self.is_object_placed || self.is_object_moved(input) {
@@ -29,6 +29,7 @@ impl Stage {
             self.lights = Lights::new(listed, &self.receivers);
             is_moved = true;
         }
+        is_moved |= self.take_reflection(input);
         if is_moved {
             self.reach = None;
             self.reached_rects.clear();

@@ -15,6 +15,7 @@ use crate::baseline::uniform::{Baseline as Uniform, uniform};
 use crate::frame::warning::{Thing, Warning};
 use crate::geometry::displacement::is_same_view;
 use crate::geometry::rect::{PixelRect, PlaneRect};
+use crate::geometry::view::View;
 use crate::governor::QualityStep;
 use crate::gpu::Gpu;
 use crate::model::Model;
@@ -205,8 +206,9 @@ impl Stage {
                 };
                 let plan = Plan::new(&facts, &self.settings(settings));
                 let globals = globals(&footprint.view, &region, &self.layout())
-                    .with_boxes(&plan.toy_box, &plan.physical_box);
-                let light_points = self.light_points(&plan);
+                    .with_boxes(&plan.toy_box, &plan.physical_box)
+                    .with_reflection(self.reflection_channel());
+                let light_points = self.light_points(&plan, &footprint.view);
                 Method::Model(Box::new(model.follow(gpu, plan, &globals, light_points)))
             }
             (Settings::Baseline(settings), Method::Baseline(mut baseline)) => {
@@ -237,7 +239,7 @@ impl Stage {
         self.follow(gpu, footprint, false);
         if let Some(mut state) = self.state.take() {
             if let Method::Model(model) = &mut state.method {
-                let light_points = self.light_points(&model.region.plan);
+                let light_points = self.light_points(&model.region.plan, &footprint.view);
                 model.relocate(gpu, light_points, &self.toy.physical.around);
             }
             state.is_first_view = true;
@@ -296,6 +298,9 @@ impl Stage {
             are_plates_scaled: footprint.plate_views.are_scaled(),
             sharpness: self.sharpness,
             is_softened: soft::is_soft(self.sharpness) || known.is_some_and(|plan| plan.is_softened),
+            gloss: self.gloss,
+            angular_radii_rad: self.angular_radii_rad(),
+            reflection: self.reflection_in_use().copied(),
         }
     }
 
@@ -368,19 +373,21 @@ impl Stage {
 
     fn model(&self, gpu: &Gpu, plan: Plan, footprint: &Footprint) -> Method {
         let globals = globals(&footprint.view, &plan.region, &self.layout())
-            .with_boxes(&plan.toy_box, &plan.physical_box);
+            .with_boxes(&plan.toy_box, &plan.physical_box)
+            .with_reflection(self.reflection_channel());
         let toy = (&self.toy.physical.around, self.toy.n_materials());
         let n_lights = self.lights.used.len();
         let state = SceneState::new(gpu, grids_over(&self.reached_rects), n_lights, toy);
-        let light_points = self.light_points(&plan);
+        let light_points = self.light_points(&plan, &footprint.view);
         Method::Model(Box::new(Model::new(gpu, plan, &globals, light_points, state)))
     }
 
-    /// The points of each light, as many as are planned.
-    pub(super) fn light_points(&self, plan: &Plan) -> Vec<Vec<Vec4>> {
+    /// The points of each light, as many as are planned, then the eyes that see the toy reflected in a view.
+    pub(super) fn light_points(&self, plan: &Plan, view: &View) -> Vec<Vec<Vec4>> {
         let lights = self.lights.used.iter().zip(&plan.n_light_points);
         lights
             .map(|(light, n_points)| self.points_of(light, *n_points))
+            .chain(self.mirrored_eyes(plan, view))
             .collect()
     }
 

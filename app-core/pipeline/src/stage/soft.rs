@@ -1,15 +1,18 @@
-//! How soft a picture is taken to be: as it was measured, where that is seen, and the same as before where it is nearly so.
+//! The softness that is used for a picture: the measured one if it is visible, and the previous one
+//! if it is nearly equal.
 
 use app_scene::sharpness::{Sharpness, Spread};
 
-/// A smaller standard deviation is not seen beside the shape of a pixel, and compression by JPEG alone measures as .36: nothing is softened then.
+/// A smaller standard deviation is not visible beside the extent of a pixel, and JPEG compression
+/// alone measures as .36: nothing is softened below it.
 const LEAST_PX: f64 = 0.5;
-/// A larger one is taken as this: what is farther from the toy is not in its boxes.
+/// A larger standard deviation is limited to this one: the toy's boxes contain nothing farther
+/// away.
 const MOST_PX: f64 = 4.0;
-/// Difference of two standard deviations that is not seen, and may be noise of what measures them.
+/// Difference of two standard deviations that is invisible, and may be noise of their measurement.
 const ALIKE_PX: f64 = 0.15;
 
-/// What of a measured sharpness is taken into account, where `known` is what the picture before had.
+/// The sharpness that is used for a measured one; `known` is that of the previous picture.
 pub(super) fn taken(measured: Sharpness, known: Sharpness) -> Sharpness {
     let measured = Sharpness {
         plate_spread: seen(measured.plate_spread),
@@ -20,7 +23,7 @@ pub(super) fn taken(measured: Sharpness, known: Sharpness) -> Sharpness {
     if is_alike { known } else { measured }
 }
 
-/// Whether there is anything to be made as soft as the picture.
+/// Whether anything must be blurred like the picture.
 pub(super) fn is_soft(sharpness: Sharpness) -> bool {
     sharpness != Sharpness::SHARP
 }
@@ -33,7 +36,8 @@ fn seen(spread: Spread) -> Spread {
     spread.times((MOST_PX / widest_px).min(1.0).powi(2))
 }
 
-/// Whether two differ by no more than is not seen, in any direction. What has begun to be seen is not like what is not.
+/// Whether two blurs differ invisibly in every direction. A blur that is just visible is not equal
+/// to an invisible one.
 fn are_alike(a: Spread, b: Spread) -> bool {
     if a == b || a == Spread::NONE || b == Spread::NONE {
         return a == b;

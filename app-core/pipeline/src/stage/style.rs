@@ -4,6 +4,7 @@ use glam::Vec4;
 
 use super::Stage;
 use super::method::Method;
+use crate::geometry::view::View;
 use crate::gpu::Gpu;
 use crate::model::plan::Plan;
 use crate::plan::Change;
@@ -42,22 +43,24 @@ impl Stage {
         }
         self.drawn_style = self.shadow_style;
         let style = self.shadow_style;
-        let Some(Method::Model(model)) = self.state.as_ref().map(|state| &state.method) else {
+        let Some(state) = &self.state else { return };
+        let Method::Model(model) = &state.method else {
             return;
         };
-        let points = (style.softness != 1.0).then(|| self.softened_points(&model.region.plan));
+        let points = (style.softness != 1.0).then(|| self.softened_points(&model.region.plan, &state.view));
         if let Some(Method::Model(model)) = self.state.as_mut().map(|state| &mut state.method) {
             #[allow(clippy::cast_possible_truncation, reason = "from 0 to 4")]
             model.style_shadow(gpu, style.strength as f32, points);
         }
     }
 
-    /// Points over the lights as the shown shadow has them, receiver by receiver.
-    fn softened_points(&self, plan: &Plan) -> Vec<Vec<Vec4>> {
+    /// Points over the lights as the shown shadow has them, receiver by receiver, and the eyes that see the toy reflected in a view.
+    fn softened_points(&self, plan: &Plan, view: &View) -> Vec<Vec<Vec4>> {
         let lights = self.lights_times(self.shadow_style.softness);
         let lights = lights.iter().zip(&plan.n_light_points);
         lights
             .map(|(light, n_points)| self.points_of(light, *n_points))
+            .chain(self.mirrored_eyes(plan, view))
             .collect()
     }
 

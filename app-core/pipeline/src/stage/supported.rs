@@ -1,4 +1,5 @@
-//! Selects the receivers and lights that a preset can use; the others become warnings that stand for all frames.
+//! Selection of the receivers and lights that a preset can use; the others become warnings that
+//! apply to all frames.
 
 use glam::{DMat4, DVec3};
 
@@ -9,16 +10,17 @@ use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS, Receiver};
 
 /// Supported receivers.
 pub(crate) struct Receivers {
-    /// The [`MAX_RECEIVERS`] nearest to the toy, that one first, anchored near it.
+    /// The [`MAX_RECEIVERS`] nearest to the toy, the nearest first, anchored near it.
     pub(crate) anchored: Vec<AnchoredReceiver>,
     /// Their indices in the scene's list.
     pub(crate) indices: Vec<usize>,
-    /// About those that are left out.
+    /// Warning about those that are left out.
     pub(crate) warning: Option<Warning>,
 }
 
 impl Receivers {
-    /// Selects for a toy around `toy_in_world`, within a box of `corners_in_world`. In which order the receivers are listed makes no difference.
+    /// Selects receivers for a toy around `toy_in_world`, within a box of `corners_in_world`,
+    /// independently of their order in the list.
     pub(crate) fn new(receivers: &[Receiver], toy_in_world: DVec3, corners_in_world: &[DVec3]) -> Self {
         let mut indices = nearest_receivers(receivers, corners_in_world);
         let left_out: Vec<usize> = indices.drain(MAX_RECEIVERS.min(receivers.len())..).collect();
@@ -40,13 +42,13 @@ impl Receivers {
 
 /// Supported lights.
 pub(crate) struct Lights {
-    /// The list that they are taken from: the scene's, or a frame's own.
+    /// The list from which they are selected: the scene's, or a frame's own.
     pub(crate) listed: Vec<Light>,
-    /// The first [`MAX_LIGHTS`] that stand above any receiver.
+    /// The first [`MAX_LIGHTS`] that are above any receiver.
     pub(crate) used: Vec<Light>,
     /// Indices of `used` in `listed`.
     pub(crate) indices: Vec<usize>,
-    /// About those that are left out.
+    /// Warnings about those that are left out.
     pub(crate) warnings: Vec<Warning>,
 }
 

@@ -32,7 +32,8 @@ pub trait LentPlanes: Any + Send + Sync {
 impl PlanarImage {
     /// Copies `planes`, so that the camera's buffer can be returned.
     ///
-    /// # Errors When they do not hold a picture of their size.
+    /// # Errors
+    /// When they do not hold a picture of their size.
     pub fn new(planes: &Planes<'_>) -> Result<Self, PlaneError> {
         Ok(Self {
             size_px: planes.size_px,
@@ -45,7 +46,8 @@ impl PlanarImage {
 
     /// A picture in the platform's memory.
     ///
-    /// # Errors When the size is invalid.
+    /// # Errors
+    /// When the size is invalid.
     pub fn lent(
         size_px: [u32; 2],
         encoding: YcbcrEncoding,

@@ -118,7 +118,8 @@ impl ProbeShape {
 
     /// Refuses an invalid shape; `field` is its place in the session.
     ///
-    /// # Errors When a length is out of range, or facets are too many or out of order.
+    /// # Errors
+    /// When a length is out of range, or facets are too many or out of order.
     pub fn check(&self, field: &str) -> Result<(), InputError> {
         let length = |name: &str, value| {
             InputError::at(&format!("{field}.{name}"), check::number(value, &check::EXTENT_M))
@@ -165,7 +166,8 @@ fn check_facets(field: &str, facets: &[Facet]) -> Result<(), InputError> {
 impl ProbePicture {
     /// Refuses an invalid picture; `field` is its place in the session.
     ///
-    /// # Errors When a value of its camera or its size is out of range.
+    /// # Errors
+    /// When a value of its camera or its size is out of range.
     pub fn check(&self, field: &str) -> Result<(), InputError> {
         check::camera(&format!("{field}.camera"), &self.camera)?;
         let pose = check::rigid(self.world_from_probe.to_cols_array());

@@ -12,7 +12,8 @@ impl Toy {
     /// shorter way at constant speed; all else is linear. A node that was authored as a matrix
     /// stays as it is.
     ///
-    /// # Errors When either pose is none of this toy's.
+    /// # Errors
+    /// When either pose is none of this toy's.
     pub fn blended(&self, a: &Pose, b: &Pose, share: f64) -> Result<Pose, ToyError> {
         let [(from, from_weights), (to, to_weights)] = [self.locals(a)?, self.locals(b)?];
         let pairs = from.iter().zip(&to).enumerate();

@@ -33,7 +33,8 @@ impl Bounds {
 impl Toy {
     /// The box around the toy in one pose, in object space.
     ///
-    /// # Errors As [`Toy::pose`], except that positions may be from -1e12 to 1e12 along each axis.
+    /// # Errors
+    /// As [`Toy::pose`], except that positions may be from -1e12 to 1e12 along each axis.
     pub fn bounds_of_pose(&self, pose: &Pose) -> Result<Bounds, ToyError> {
         let mut bounds = Bounds::EMPTY;
         self.include_pose(pose, &mut bounds)?;
@@ -45,7 +46,8 @@ impl Toy {
     /// It is computed at every key and 30 times per second (less often in clips of more than some
     /// 1000 such moments), so a movement between two of them can reach a little beyond it.
     ///
-    /// # Errors As [`Toy::bounds_of_pose`].
+    /// # Errors
+    /// As [`Toy::bounds_of_pose`].
     pub fn bounds_over_clip(&self, id: ClipId) -> Result<Bounds, ToyError> {
         let mut bounds = Bounds::EMPTY;
         for time_secs in moments_secs(self.clip(id)?) {

@@ -27,7 +27,8 @@ impl Toy {
     /// vertex; missing ones mean no displacement, and vertices that the pose flattens stay.
     /// Triangles, materials and clips are this toy's.
     ///
-    /// # Errors As [`Toy::pose`].
+    /// # Errors
+    /// As [`Toy::pose`].
     pub fn displaced(&self, pose: &Pose, displacements: &[DVec3]) -> Result<Self, ToyError> {
         let rig_pose = self.rig_pose(pose, DAffine3::IDENTITY)?;
         let geometries = self.geometries.iter().enumerate();

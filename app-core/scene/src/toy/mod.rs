@@ -103,8 +103,9 @@ impl Toy {
     /// Only the default scene is drawn, or the first if there is no default. Unused vertices are
     /// dropped.
     ///
-    /// # Errors [`ToyError::Malformed`] if the file violates glTF, if a number is not finite or too
-    /// large, if a required extension is not supported, or if no triangle is left.
+    /// # Errors
+    /// [`ToyError::Malformed`] if the file violates glTF, if a number is not finite or too large,
+    /// if a required extension is not supported, or if no triangle is left.
     pub fn from_glb(file: &str, bytes: &[u8]) -> Result<Self, ToyError> {
         assemble::assemble(file, bytes).map_err(|flaw| flaw.in_file(file))
     }
@@ -121,8 +122,9 @@ impl Toy {
 
     /// Finds a clip by its name, or by `#N`, its number from 0. A name has priority over a number.
     ///
-    /// # Errors [`ToyError::UnknownClip`], which lists the existing names; [`ToyError::BrokenClip`]
-    /// for an unreadable one.
+    /// # Errors
+    /// [`ToyError::UnknownClip`], which lists the existing names; [`ToyError::BrokenClip`] for an
+    /// unreadable one.
     pub fn find_clip(&self, name: &str) -> Result<ClipId, ToyError> {
         let by_name = || {
             self.clips()
@@ -162,7 +164,8 @@ impl Toy {
 
     /// Clamps a time to a clip, and returns whether it was beyond its end.
     ///
-    /// # Errors An id of another toy, or a time that is negative or not finite.
+    /// # Errors
+    /// An id of another toy, or a time that is negative or not finite.
     pub fn clamp_time(&self, id: ClipId, time_secs: f64) -> Result<(f64, bool), ToyError> {
         let end_secs = self.clip(id)?.duration_secs;
         if !time_secs.is_finite() || time_secs < 0.0 {

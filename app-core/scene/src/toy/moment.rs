@@ -52,7 +52,8 @@ impl Pose {
 impl Toy {
     /// Finds a node by its authored name, the first of several.
     ///
-    /// # Errors [`ToyError::UnknownNode`], which lists the existing names.
+    /// # Errors
+    /// [`ToyError::UnknownNode`], which lists the existing names.
     pub fn find_node(&self, name: &str) -> Result<NodeId, ToyError> {
         let names = &self.rig.graph.names;
         let found = names.iter().position(|one| one.as_deref() == Some(name));
@@ -65,7 +66,8 @@ impl Toy {
 
     /// The authored transform of a node; `None` if that is a matrix.
     ///
-    /// # Errors A node of another toy.
+    /// # Errors
+    /// A node of another toy.
     pub fn authored_transform(&self, node: NodeId) -> Result<Option<Trs>, ToyError> {
         Ok(self.node(node)?.rest.decomposed())
     }

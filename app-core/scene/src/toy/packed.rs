@@ -18,7 +18,8 @@ use super::mend::MESHOPT;
 /// between its parts; its error is a text for people. Buffers must exist. Missing pictures are
 /// skipped, with a warning once the toy is read.
 ///
-/// # Errors [`ToyError::Malformed`] if the bytes are no glTF, or a buffer cannot be read.
+/// # Errors
+/// [`ToyError::Malformed`] if the bytes are no glTF, or a buffer cannot be read.
 pub fn packed<'a>(
     file: &str,
     bytes: &'a [u8],
@@ -81,7 +82,8 @@ impl Packing<'_> {
             let name = name.to_owned();
             ToyProblem::Neighbour { name, reason }.at(field)
         };
-        let name = base64::percent_decoded(uri).ok_or_else(|| flaw(uri, "the name is no text".to_owned()))?;
+        let name =
+            base64::percent_decoded(uri).ok_or_else(|| flaw(uri, "the name is not valid text".to_owned()))?;
         let name = name.strip_prefix("./").unwrap_or(&name);
         (self.read)(name).map_err(|reason| flaw(name, reason))
     }

@@ -36,7 +36,8 @@ impl Toy {
     /// Where an animated scale changes sign, normals stay outward, but the triangles' winding is
     /// that at rest; those that a clip mirrors count as open, and are drawn from both sides.
     ///
-    /// # Errors An id of another toy, an invalid time or transform, or a position that is not from
+    /// # Errors
+    /// An id of another toy, an invalid time or transform, or a position that is not from
     /// -1e6 m to 1e6 m along each axis.
     pub fn pose(&self, pose: &Pose, anchor_from_object: &DMat4, out: &mut PosedMesh) -> Result<(), ToyError> {
         let rig_pose = self.rig_pose(pose, DAffine3::from_mat4(*anchor_from_object))?;

@@ -19,7 +19,7 @@ pub enum Stop {
         min_free_bytes: u64,
     },
     /// The device is full; the end of the file is cut.
-    #[error("no room is left on the device")]
+    #[error("no free space is left on the device")]
     Full,
     /// The output reported another error; the end of the file is cut.
     #[error("cannot be written: {0}")]

@@ -3,7 +3,6 @@
 //! A [`Writer`] appends to the caller's output, and a [`Recording`] reads through a [`Source`]:
 //! this module opens no file itself, and times come from the caller.
 //!
-//!
 //! [session format]: crate
 //!
 #![doc = include_str!("../../../doc/recording.md")]

@@ -117,7 +117,8 @@ impl RecordingSender {
     /// Adds an item, or returns it at once if there is no room or no writer: it counts as dropped.
     /// Never waits.
     ///
-    /// # Errors With the item.
+    /// # Errors
+    /// With the item.
     pub fn offer(&self, time_ns: u64, item: Item) -> Result<(), Item> {
         let (n_bytes, is_frame) = (item.n_bytes(), item.is_frame());
         let waiting = &self.counts.waiting_bytes;

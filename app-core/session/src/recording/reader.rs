@@ -34,7 +34,8 @@ pub struct Recording {
 impl Recording {
     /// Opens the recording of `source`, as far as it is intact.
     ///
-    /// # Errors When it cannot be read, is no MCAP file, or no intact chunk of it has a session.
+    /// # Errors
+    /// When it cannot be read, is no MCAP file, or no intact chunk of it has a session.
     pub fn open(source: impl Source + 'static) -> Result<Self, RecordingError> {
         let mut found = scan(&source)?;
         if found.has_two_sessions {

@@ -9,7 +9,8 @@ pub trait Source: Send + Sync {
 
     /// Fills `into` with the bytes from `at` on.
     ///
-    /// # Errors When the system refuses, or the file is shorter.
+    /// # Errors
+    /// When the system refuses, or the file is shorter.
     fn read_at(&self, at: u64, into: &mut [u8]) -> io::Result<()>;
 }
 

@@ -97,7 +97,8 @@ impl<W: Write> Writer<W> {
     /// `session` is the index of the session, JSON, whose `frames` are ignored here. `device` holds
     /// facts about the device: model, system, version of the app.
     ///
-    /// # Errors When `session` is no JSON object, or the sink refuses.
+    /// # Errors
+    /// When `session` is no JSON object, or the sink refuses.
     pub fn new(
         sink: W,
         session: &str,
@@ -137,7 +138,8 @@ impl<W: Write> Writer<W> {
 
     /// Sets the session's index, JSON; the last one applies to the whole recording.
     ///
-    /// # Errors When it is no JSON object, or writing has ended.
+    /// # Errors
+    /// When it is no JSON object, or writing has ended.
     pub fn set_session(&mut self, session: &str) -> Result<(), WriteError> {
         self.check()?;
         let (session, shape) = session_without_frames(session)?;
@@ -149,7 +151,8 @@ impl<W: Write> Writer<W> {
     /// Attaches a file that the session's index names, or any other; `path` is relative to the
     /// session. It is flushed.
     ///
-    /// # Errors When writing has ended, or ends with this call.
+    /// # Errors
+    /// When writing has ended, or ends with this call.
     pub fn file(&mut self, time_ns: u64, path: &str, bytes: &[u8]) -> Result<(), WriteError> {
         self.check()?;
         self.close_chunk()?;
@@ -180,8 +183,9 @@ impl<W: Write> Writer<W> {
     /// Adds a frame: its picture, and its entry of the session's `frames`, JSON. Returns the
     /// picture's number.
     ///
-    /// # Errors When the entry is no JSON object, the picture is too large or was never recorded,
-    /// or writing has ended or ends with this call.
+    /// # Errors
+    /// When the entry is no JSON object, the picture is too large or was never recorded, or writing
+    /// has ended or ends with this call.
     pub fn frame(&mut self, time_ns: u64, picture: Picture, entry: &str) -> Result<u32, WriteError> {
         self.check()?;
         let raw = object("a frame's entry", entry)?;
@@ -222,8 +226,8 @@ impl<W: Write> Writer<W> {
 
     /// Adds a message to one of the channels for arbitrary JSON objects ([`Topic::NOTES`]).
     ///
-    /// # Errors When it is no object, the channel is another, or writing has ended or ends with
-    /// this call.
+    /// # Errors
+    /// When it is no object, the channel is another, or writing has ended or ends with this call.
     pub fn note(&mut self, time_ns: u64, topic: Topic, message: &str) -> Result<(), WriteError> {
         const WHAT: &str = "a message";
         self.check()?;
@@ -240,7 +244,8 @@ impl<W: Write> Writer<W> {
 
     /// Reports the time if no item arrives, and the free space on the device, if known; bytes.
     ///
-    /// # Errors When writing has ended, or ends with this call.
+    /// # Errors
+    /// When writing has ended, or ends with this call.
     pub fn tick(&mut self, time_ns: u64, free_bytes: Option<u64>) -> Result<(), WriteError> {
         self.check()?;
         self.free = free_bytes.map(|free| (free, self.n_bytes)).or(self.free);
@@ -250,7 +255,8 @@ impl<W: Write> Writer<W> {
 
     /// Closes the chunk, so that all added items survive the end of the process.
     ///
-    /// # Errors When writing has ended, or ends with this call.
+    /// # Errors
+    /// When writing has ended, or ends with this call.
     pub fn flush(&mut self) -> Result<Flushed, WriteError> {
         self.check()?;
         self.close_chunk()?;
@@ -273,7 +279,8 @@ impl<W: Write> Writer<W> {
     /// Ends the recording with its summary, for which room is always reserved, and returns the
     /// sink.
     ///
-    /// # Errors When the sink refuses, or has refused before.
+    /// # Errors
+    /// When the sink refuses, or has refused before.
     pub fn finish(mut self) -> Result<(W, Flushed), WriteError> {
         if let Some(Stop::Sink(_) | Stop::Full) = &self.stop {
             self.check()?;

@@ -10,7 +10,7 @@ use app_core::toy::Toy;
 use super::*;
 use crate::video::MOTION_JPEG;
 
-/// How often a platform was asked to keep the app running, and how often no longer.
+/// Number of requests to the platform to keep the app running, and number of their ends.
 static KEPT: AtomicUsize = AtomicUsize::new(0);
 static LET_GO: AtomicUsize = AtomicUsize::new(0);
 
@@ -50,7 +50,7 @@ fn worker_in(folder: Option<&Path>) -> Worker {
     Worker::new(platform(), folders)
 }
 
-/// The next outcome that tells of something else than free space.
+/// The next outcome other than free space.
 fn wait_for(worker: &mut Worker) -> Outcome {
     let begun = Instant::now();
     loop {

@@ -1,4 +1,4 @@
-//! The shim for an emulator: nothing but itself, and C functions that ask it.
+//! The shim for an emulator: only the shim, and C functions that call it.
 
 #![no_std]
 #![allow(missing_docs, reason = "called from mock.c alone")]
@@ -20,7 +20,7 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 /// The control: the same message as Rust would send it by itself.
 ///
 /// # Safety
-/// As the shim's.
+/// As for the shim.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn ask_for_four_without(
     object: *const c_void,
@@ -35,21 +35,21 @@ unsafe extern "C" fn ask_for_four_without(
 }
 
 /// # Safety
-/// As the shim's.
+/// As for the shim.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn ask_for_four(object: *const c_void, selector: *const c_void, to: *mut shim::Columns4) {
     unsafe { *to = shim::columns4(object, selector) };
 }
 
 /// # Safety
-/// As the shim's.
+/// As for the shim.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn ask_for_three(object: *const c_void, selector: *const c_void, to: *mut shim::Columns3) {
     unsafe { *to = shim::columns3(object, selector) };
 }
 
 /// # Safety
-/// As the shim's.
+/// As for the shim.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn hand_over_four(
     object: *const c_void,

@@ -193,8 +193,8 @@ fn frames_of(report: &Report) -> String {
     )
 }
 
-/// What a strict replay refuses: each warning, and each frame that was passed through although it
-/// asks for another pose.
+/// The reasons for which a strict replay fails: each warning, and each frame that was passed
+/// through although it requests another pose.
 fn complaints(reports: &[Report]) -> Vec<String> {
     let mut all = Vec::new();
     for report in reports {

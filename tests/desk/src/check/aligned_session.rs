@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use anyhow::Context;
 use app_core::alignment::{LensAlignment, RatioOutcome};
-use app_core::scene::Light;
+use app_core::scene::{Light, Receiver};
 use app_core::session::record::{LensRecord, LightRecord};
 use app_core::session::{Files, MAX_INDEX_BYTES};
 use serde::Serialize;
@@ -28,14 +28,36 @@ pub enum Assumed {
 /// Writes a session anew, as a folder or as a recording, with the estimates in its index. Returns
 /// the number of corrected frames.
 ///
-/// # Errors When the new one exists already or would lie in the session, or a file is a link or
-/// cannot be read or written.
+/// # Errors
+/// When the new one exists already or would lie in the session, or a file is a link or cannot be
+/// read or written.
 pub fn write(from: &Stored, to: &Path, alignments: &Alignments, assumed: Assumed) -> anyhow::Result<usize> {
     let bytes = from.read(SESSION_FILE, MAX_INDEX_BYTES).context(SESSION_FILE)?;
     let mut index: Value = serde_json::from_slice(&bytes)?;
     let n_corrected = correct(&mut index, alignments, assumed);
     convert::write(from, Some(format!("{index:#}\n").into_bytes()), to)?;
     Ok(n_corrected)
+}
+
+/// Moves the receivers of an index, and adds those that it lacks.
+fn set_receivers(index: &mut Value, receivers: &[Receiver]) {
+    let mut entries = index["receivers"].as_array().cloned().unwrap_or_default();
+    for (place, receiver) in receivers.iter().enumerate() {
+        let world_from_plane = json!(receiver.world_from_plane.to_cols_array());
+        match entries.get_mut(place) {
+            Some(entry) => entry["world_from_plane"] = world_from_plane,
+            None => entries.push(json!({
+                "name": receiver.name,
+                "world_from_plane": world_from_plane,
+                "half_extent": receiver.half_extent_m.to_array(),
+                "surface": "textured",
+            })),
+        }
+    }
+    index["receivers"] = entries.into();
+    if index["uncertainty"].is_object() {
+        index["uncertainty"]["receivers_guessed"] = json!(false);
+    }
 }
 
 fn correct(index: &mut Value, alignments: &Alignments, assumed: Assumed) -> usize {
@@ -46,11 +68,8 @@ fn correct(index: &mut Value, alignments: &Alignments, assumed: Assumed) -> usiz
     for (plate, camera) in alignments.moved_plates() {
         index["backgrounds"][plate]["world_from_camera"] = json!(camera.world_from_camera.to_cols_array());
     }
-    if let Some(receivers) = alignments.laid_receivers() {
-        for (place, receiver) in receivers.iter().enumerate() {
-            index["receivers"][place]["world_from_plane"] = json!(receiver.world_from_plane.to_cols_array());
-        }
-        index["uncertainty"]["receivers_guessed"] = json!(false);
+    if let Some(receivers) = alignments.receivers() {
+        set_receivers(index, receivers);
     }
     let n_frames = index["frames"].as_array().map_or(0, Vec::len);
     for frame in 0..n_frames {

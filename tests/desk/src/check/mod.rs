@@ -46,8 +46,9 @@ pub struct Findings {
 
 /// Checks a session's index, files, numbers and pictures, and draws its predictions into `out`.
 ///
-/// # Errors When folder or recording cannot be opened, or the drawing cannot be written. Mistakes
-/// of the session are no errors.
+/// # Errors
+/// When folder or recording cannot be opened, or the drawing cannot be written. Mistakes of the
+/// session are no errors.
 pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyhow::Result<Findings> {
     let stored = Stored::open(session)?;
     // An old drawing in the folder may be of another session.
@@ -211,6 +212,10 @@ impl Findings {
             self.tell(told, camera.is_applied);
         }
         self.pose(report.pose.as_ref());
+        for plane in &report.planes {
+            self.facts
+                .push(format!("receivers: {plane}, is found by the toy's shadow on it"));
+        }
         for (index, light) in report.lights.iter().enumerate() {
             let size = light.size_ratio.map_or(String::new(), |ratio| {
                 format!(", {ratio:.2} times its angular size")
@@ -316,9 +321,9 @@ fn drawn(capture: &Capture, given: &FrameInput, alignment: &Alignment) -> anyhow
     let scene = capture.scene();
     let aligned = &alignment.applied_to(given);
     let mut picture = Image::clone(given.image.rgba());
-    overlay::receivers(&mut picture, scene, given);
-    overlay::outlines(&mut picture, &Outlines::of(scene, given)?, overlay::GIVEN);
     let shown = alignment.scene.as_deref().unwrap_or(scene);
+    overlay::receivers(&mut picture, shown, given);
+    overlay::outlines(&mut picture, &Outlines::of(scene, given)?, overlay::GIVEN);
     overlay::outlines(&mut picture, &Outlines::of(shown, aligned)?, overlay::ALIGNED);
     gizmo::rays(
         &mut picture,

@@ -25,7 +25,8 @@ pub enum Format {
 
 /// Reads a folder, without its pictures. `object` is the number of the toy among a scene's objects.
 ///
-/// # Errors When a file is missing, or a number in it is invalid.
+/// # Errors
+/// When a file is missing, or a number in it is invalid.
 pub fn read(
     format: Format,
     files: &dyn Files,
@@ -70,7 +71,8 @@ pub fn read(
 /// Reads the files of a format as they are (a COLMAP model's as binary if they are no text), for
 /// tests that change them.
 ///
-/// # Errors As [`read`].
+/// # Errors
+/// As [`read`].
 pub fn parse(format: Format, files: [&[u8]; 2], paths: &[String]) -> Result<Imported, ImportError> {
     let known = &Known::new(paths);
     let texts = || -> Result<[String; 2], ImportError> {

@@ -186,8 +186,9 @@ pub struct Written {
 
 /// Writes a session's folder from a recording, and opens it.
 ///
-/// # Errors When an argument is missing, which is named, `out` exists already, or the result is no
-/// valid session.
+/// # Errors
+/// When an argument is missing, which is named, `out` exists already, or the result is no valid
+/// session.
 pub fn write(
     name: &str,
     files: &Folder,

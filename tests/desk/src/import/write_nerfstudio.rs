@@ -17,7 +17,8 @@ const MAX_FILE_BYTES: u64 = 512 << 20;
 /// Writes a session's frames as a folder with `transforms.json`, which has no place for toy,
 /// receivers, lights and plates.
 ///
-/// # Errors When `out` exists already, the session cannot be read, or the system refuses.
+/// # Errors
+/// When `out` exists already, the session cannot be read, or the system refuses.
 pub fn write_transforms(session: &Stored, out: &Path) -> anyhow::Result<()> {
     anyhow::ensure!(
         !out.exists(),

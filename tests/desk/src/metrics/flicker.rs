@@ -32,7 +32,8 @@ pub struct Errors {
 impl Errors {
     /// The errors of a picture. Alpha is ignored.
     ///
-    /// # Errors When the size of picture or truth differs from the mask's.
+    /// # Errors
+    /// When the size of picture or truth differs from the mask's.
     pub fn new(picture: &Image, truth: &Truth) -> Result<Self, SizeError> {
         let regions = Regions::from_mask(&truth.mask);
         regions.check_size("picture", picture)?;
@@ -47,7 +48,8 @@ impl Errors {
 
     /// The flicker from the frame before to this one.
     ///
-    /// # Errors When their sizes differ.
+    /// # Errors
+    /// When their sizes differ.
     pub fn flicker_from(&self, before: &Self) -> Result<Flicker, SizeError> {
         let [own, other] = [&self.regions, &before.regions];
         if [own.width_px, own.height_px] != [other.width_px, other.height_px] {
@@ -92,8 +94,8 @@ impl Follower {
     /// Takes the picture of frame `index`; returns its flicker if the previous call had the frame
     /// before.
     ///
-    /// # Errors When the size of picture or truth differs from the mask's, or from the frame
-    /// before.
+    /// # Errors
+    /// When the size of picture or truth differs from the mask's, or from the frame before.
     pub fn next(
         &mut self,
         index: usize,

@@ -25,8 +25,9 @@ pub struct OutputFolder {
 impl OutputFolder {
     /// Takes a folder, which is made if it is missing, and removes the files of earlier runs.
     ///
-    /// # Errors When another run writes into it, or a file lies in it that no run wrote or that has
-    /// changed since: nothing is removed then.
+    /// # Errors
+    /// When another run writes into it, or a file lies in it that no run wrote or that has changed
+    /// since: nothing is removed then.
     pub fn take(root: &Path) -> Result<Self, WriteError> {
         refuse_unlisted(root)?;
         let folder = Self::reopen(root)?;
@@ -46,7 +47,8 @@ impl OutputFolder {
 
     /// Takes a folder to continue in it: existing files stay.
     ///
-    /// # Errors When another run writes into it, or the system refuses.
+    /// # Errors
+    /// When another run writes into it, or the system refuses.
     pub fn reopen(root: &Path) -> Result<Self, WriteError> {
         make_folder(root)?;
         let path = root.join(MANIFEST_FILE);

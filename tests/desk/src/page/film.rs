@@ -83,7 +83,8 @@ struct FilmReport<'a> {
 
 /// Writes a picture whose values the page can show; other pictures have none.
 ///
-/// # Errors When the picture's bytes do not fit its size, or the system refuses.
+/// # Errors
+/// When the picture's bytes do not fit its size, or the system refuses.
 pub fn write_picture(output: &OutputFolder, file: &str, picture: &Image) -> Result<(), WriteError> {
     let png = output.write_png(file, picture)?;
     values::write(output, file, &png)
@@ -91,7 +92,8 @@ pub fn write_picture(output: &OutputFolder, file: &str, picture: &Image) -> Resu
 
 /// Writes the page of a film whose pictures are in a folder.
 ///
-/// # Errors When the system refuses.
+/// # Errors
+/// When the system refuses.
 pub fn write(output: &OutputFolder, film: &Film<'_>) -> Result<(), WriteError> {
     let scores: Vec<Scores> = film.frames.iter().filter_map(|frame| frame.scores).collect();
     let mean = Mean {

@@ -8,7 +8,7 @@ function showAlignment() {
   const alignment = entry(data.presets[0]).alignment;
   at("alignment").hidden = !alignment;
   if (!alignment) return;
-  const { focal_length, world_scale, camera, pose, lights, probe, discovered, assumed, is_long, no_light, unexplained, is_relit, n_listed, cpu_ms,
+  const { focal_length, world_scale, camera, pose, lights, probe, discovered, assumed, is_long, no_light, unexplained, is_relit, planes, n_listed, cpu_ms,
     probe_against_listed, discovered_against_listed } = alignment;
   const verdict = found => found.is_held ? "as in a frame before" : found.is_applied || found.outcome === "corrected" ? "corrected" : "left as given";
   const rows = [];
@@ -21,6 +21,9 @@ function showAlignment() {
     `the table by ${camera.moved_px.toFixed(2)} px in the picture`]));
   if (pose) rows.push(row("the toy's pose", [verdict(pose), `${mm(pose.moved_m)}, ${degrees(pose.turned_rad)}`,
     `outline ${pose.given_outline_px.toFixed(2)} px off ${pose.is_held ? "as held" : "as given"}, ${pose.outline_px.toFixed(2)} px as found`]));
+  planes.forEach(({ height_m, tilt_rad, half_extent_m }) => rows.push(row("a plane", ["found by the shadow on it",
+    `${(1e3 * height_m).toFixed(0)} mm above the receiver, tilted by ${degrees(tilt_rad)}`,
+    half_extent_m.map(half => (200 * half).toFixed(0)).join(" x ") + " cm"])));
   const ratios = ({ distance_ratio, size_ratio }) => [distance_ratio && `distance ${times(distance_ratio)}`,
     size_ratio && `angular size ${times(size_ratio)}`].filter(Boolean);
   lights.forEach((light, i) => rows.push(row(`light ${i}`, [verdict(light), degrees(light.turned_rad), ratios(light).join(", ")])));
@@ -35,7 +38,7 @@ function showAlignment() {
     against(discovered_against_listed[i])])));
   if (no_light) rows.push(row("lights", [probe?.lights.length ? "as the probe shows: no shadow shows them" : "none found", no_light, n_listed ? `${n_listed} on the list` : ""]));
   if (assumed) rows.push(row("a light", ["assumed", `${(100 * assumed.share).toFixed(0)} % of the light, far away and wide`,
-    `explains ${(100 * assumed.explained).toFixed(0)} % of what light from all around leaves`]));
+    `explains ${(100 * assumed.explained).toFixed(0)} % of the error with ambient light alone`]));
   if (is_long) rows.push(row("the light", ["long", "shown as a line of four round ones", ""]));
   if (unexplained !== null) rows.push(row("shadows in the picture", ["cast by the lights", `but for ${(100 * unexplained).toFixed(1)} %`,
     is_relit ? "the plates were taken in another light" : ""]));

@@ -128,7 +128,8 @@ impl Film {
 
     /// The preset.
     ///
-    /// # Errors When no preset has that name.
+    /// # Errors
+    /// When no preset has that name.
     pub fn preset(&self) -> anyhow::Result<Preset> {
         self.preset.parse().map_err(anyhow::Error::msg)
     }
@@ -157,7 +158,8 @@ impl Film {
 /// Sizes and checksums of a session's files that a film uses: with the photographs of all frames
 /// for a moving film, else with that of the first.
 ///
-/// # Errors When one cannot be read.
+/// # Errors
+/// When one cannot be read.
 pub fn sources(session: &Stored, is_moving: bool) -> anyhow::Result<Vec<SourceFile>> {
     let index = index_of(session)?;
     let plates = index["backgrounds"].as_array().into_iter().flatten();
@@ -192,7 +194,8 @@ pub fn sources(session: &Stored, is_moving: bool) -> anyhow::Result<Vec<SourceFi
 
 /// Reads a session's index.
 ///
-/// # Errors When it cannot be read, or is no JSON.
+/// # Errors
+/// When it cannot be read, or is no JSON.
 pub fn index_of(session: &Stored) -> anyhow::Result<Value> {
     let index = session.read(SESSION_FILE, MAX_INDEX_BYTES);
     serde_json::from_slice(&index.context(SESSION_FILE)?).context(SESSION_FILE)
@@ -210,7 +213,8 @@ impl FilmFolder {
     /// Takes a new folder, an empty one, or that of a film. Several runs share one if each makes a
     /// part of its frames.
     ///
-    /// # Errors When it has other files, or another run works in it.
+    /// # Errors
+    /// When it has other files, or another run works in it.
     pub fn take(path: &Path, is_shared: bool) -> anyhow::Result<Self> {
         make_folder(path)?;
         // In this order, since another run that takes the same new folder in between makes the
@@ -257,7 +261,8 @@ impl FilmFolder {
 
     /// The film in a folder, if any.
     ///
-    /// # Errors When its file cannot be read as one.
+    /// # Errors
+    /// When its file cannot be read as one.
     pub fn film_in(path: &Path) -> anyhow::Result<Option<Film>> {
         let path = path.join(FILM_FILE);
         match fs::read(&path) {
@@ -279,7 +284,8 @@ impl FilmFolder {
     /// Makes `film` the folder's film: `write_session` makes its session if it is missing, and
     /// pictures that contradict the film are removed.
     ///
-    /// # Errors When something cannot be read, written or removed.
+    /// # Errors
+    /// When something cannot be read, written or removed.
     pub fn begin(
         &self,
         film: &Film,
@@ -367,7 +373,8 @@ impl FilmFolder {
 
     /// Removes partial files of killed runs.
     ///
-    /// # Errors When a file cannot be removed.
+    /// # Errors
+    /// When a file cannot be removed.
     pub fn remove_partial(&self) -> anyhow::Result<()> {
         for entry in fs::read_dir(&self.path)? {
             let path = entry?.path();

@@ -103,7 +103,8 @@ fn known(clips: &[String]) -> String {
 /// Parses a list such as `Look,Step*2@0.5x,hold:12`. A clip without a name of its own, or with a
 /// comma in it, is named by its number from 0, such as `#1`.
 ///
-/// # Errors When an item is invalid; the error names it.
+/// # Errors
+/// When an item is invalid; the error names it.
 pub fn items(text: &str, clips: &[ClipFacts]) -> Result<Vec<Item>, GrammarError> {
     let texts = text.split(',').map(str::trim).enumerate();
     let items: Vec<Item> = texts

@@ -21,7 +21,8 @@ const WARNINGS_FILE: &str = "warnings.txt";
 
 /// Time of each photograph of a session, in seconds since the first.
 ///
-/// # Errors When the index cannot be read, or times decrease.
+/// # Errors
+/// When the index cannot be read, or times decrease.
 pub(super) fn times_secs(session: &Stored) -> anyhow::Result<Vec<f64>> {
     let index = index_of(session)?;
     let frames = index["frames"].as_array().into_iter().flatten();
@@ -67,7 +68,8 @@ pub(super) fn write_aligned(
 
 /// Warnings of the alignment of the photographs of a film in a folder.
 ///
-/// # Errors When the file cannot be read.
+/// # Errors
+/// When the file cannot be read.
 pub(super) fn warnings(folder: &Path) -> anyhow::Result<BTreeSet<String>> {
     let path = folder.join(SESSION_FOLDER).join(WARNINGS_FILE);
     match fs::read_to_string(&path) {
@@ -79,7 +81,8 @@ pub(super) fn warnings(folder: &Path) -> anyhow::Result<BTreeSet<String>> {
 
 /// Notes about photographs that the film does not show, or about their end before the film's.
 ///
-/// # Errors When the index cannot be read.
+/// # Errors
+/// When the index cannot be read.
 pub(super) fn said_of_photographs(session: &Stored, film: &Film) -> anyhow::Result<String> {
     if film.is_moving {
         let end_secs = times_secs(session)?.last().copied().unwrap_or_default();

@@ -38,7 +38,8 @@ const GIF_SPEED: i32 = 10;
 
 /// Writes one line per frame with its clip, time and pose.
 ///
-/// # Errors When it cannot be written.
+/// # Errors
+/// When it cannot be written.
 pub fn write_xsheet(folder: &Path, film: &Film, clips: &[ClipFacts]) -> anyhow::Result<()> {
     let quoted = |clip: usize| {
         let name = clips.get(clip).map_or("", |clip| clip.name.as_str());
@@ -76,7 +77,8 @@ pub fn write_xsheet(folder: &Path, film: &Film, clips: &[ClipFacts]) -> anyhow::
 /// Writes a contact sheet and the playable previews, and returns a text about them. Only one
 /// picture at a time is in memory.
 ///
-/// # Errors When a picture cannot be read, or a file cannot be written.
+/// # Errors
+/// When a picture cannot be read, or a file cannot be written.
 pub fn write_previews(folder: &Path, film: &Film) -> anyhow::Result<String> {
     write_contact(folder, film)?;
     write_apng(folder, film)?;

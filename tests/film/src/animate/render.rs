@@ -66,7 +66,8 @@ pub(super) const WARNING: &str = "warning: ";
 /// for each picture and each new warning to standard output. It may end before all are made. The
 /// process ends when standard input closes, as it does when the parent ends.
 ///
-/// # Errors When the film cannot be read, or a picture cannot be made or written.
+/// # Errors
+/// When the film cannot be read, or a picture cannot be made or written.
 pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> anyhow::Result<()> {
     end_with_stdin();
     let film = FilmFolder::film_in(folder)?.context("there is no film.json")?;

@@ -83,8 +83,9 @@ pub fn clip_facts(toy: &Toy) -> Vec<ClipFacts> {
 
 /// Makes a film, or its missing frames. Returns a text for the user.
 ///
-/// # Errors When the options are invalid, the session cannot be read, or a picture cannot be made
-/// or written.
+/// # Errors
+/// When the options are invalid, the session cannot be read, or a picture cannot be made or
+/// written.
 pub fn run(order: &Order) -> anyhow::Result<String> {
     let named = || order.session.display().to_string();
     let capture = Capture::open(open_session(&order.session)?).with_context(named)?;

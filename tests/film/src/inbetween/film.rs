@@ -129,7 +129,8 @@ impl<'a> Ready<'a> {
 /// Makes the film of a shot on the device of `core`. Reports each step and their number to
 /// `progress`.
 ///
-/// # Errors When a key cannot be used, or a file cannot be written; earlier pictures stay.
+/// # Errors
+/// When a key cannot be used, or a file cannot be written; earlier pictures stay.
 pub fn make(
     shot: &Shot,
     core: &Core,

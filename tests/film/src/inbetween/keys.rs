@@ -93,7 +93,8 @@ struct Sighted {
 impl Keys {
     /// Estimates the differences between keys. Reports each key to `progress`.
     ///
-    /// # Errors When a photograph cannot be read or aligned.
+    /// # Errors
+    /// When a photograph cannot be read or aligned.
     pub fn find(shot: &Shot, mut progress: impl FnMut(usize)) -> Result<Self, InbetweenError> {
         let mut sighted = Vec::new();
         for index in 0..shot.n_keys() {

@@ -23,7 +23,8 @@ pub(super) struct NodeRecord {
 
 /// The pose with these nodes.
 ///
-/// # Errors When the toy has no node of a name.
+/// # Errors
+/// When the toy has no node of a name.
 pub(super) fn pose(toy: &Toy, records: &NodeRecords) -> Result<Pose, ToyError> {
     let node = |(name, record): (&String, &NodeRecord)| {
         let id = toy.find_node(name)?;

@@ -208,7 +208,8 @@ impl Shot {
 
     /// Reads the text of a `shot.json`, whose pictures and toy are among `files`.
     ///
-    /// # Errors As [`Self::open`].
+    /// # Errors
+    /// As [`Self::open`].
     pub fn read(text: &[u8], files: impl Files + 'static) -> Result<Self, ShotError> {
         let at_file = |reason: String| ShotError::Index {
             path: SHOT_FILE.into(),
@@ -257,7 +258,8 @@ impl Shot {
 
     /// A key: its photograph, and the print's pose as the pose to show.
     ///
-    /// # Errors When there is no such key, or its photograph cannot be read.
+    /// # Errors
+    /// When there is no such key, or its photograph cannot be read.
     pub fn key(&self, index: usize) -> Result<SessionFrame, ShotError> {
         let mut frame = self.capture.frame(index).map_err(as_of_shot)?;
         if let Some(pose) = self.node_poses.get(&index) {

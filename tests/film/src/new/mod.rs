@@ -93,8 +93,9 @@ struct Given {
 
 /// Makes a session's folder from photographs.
 ///
-/// # Errors When `out` exists already, a file cannot be read, or the result is uncertain: nothing
-/// is written then.
+/// # Errors
+/// When `out` exists already, a file cannot be read, or the result is uncertain: nothing is written
+/// then.
 pub fn new(wanted: &Wanted, out: &Path) -> anyhow::Result<Made> {
     anyhow::ensure!(
         !out.exists(),

@@ -39,7 +39,7 @@ const FONT: (&str, i32) = ("sans-serif", 14);
 pub struct Off {
     /// Distance of the toy's centre.
     pub pose_mm: f64,
-    /// Of its rotation.
+    /// Error of its rotation.
     pub pose_deg: f64,
     /// Angle of the worst light, seen from the toy's centre; `None` without lights.
     pub light_deg: Option<f64>,
@@ -58,7 +58,8 @@ pub struct Draw {
 
 /// Disturbs and aligns the first frame that many times, each time by a larger amount.
 ///
-/// # Errors When the frame cannot be read or aligned.
+/// # Errors
+/// When the frame cannot be read or aligned.
 pub fn basin(session: &dyn Session, seed: u64, n_draws: u16) -> Result<Vec<Draw>, ReplayError> {
     let scene = session.scene();
     let recorded = FrameInput::from(&session.frame(0)?);
@@ -205,7 +206,8 @@ pub fn basin_table(draws: &[Draw]) -> String {
 /// Results over starts, with the line of no correction, and errors of poses over their claimed
 /// deviations (SVG).
 ///
-/// # Errors The error of the drawing.
+/// # Errors
+/// The error of the drawing.
 pub fn basin_drawing(name: &str, draws: &[Draw]) -> Result<String, String> {
     let mut svg = String::new();
     render(name, draws, &mut svg).map_err(|error| error.to_string())?;

@@ -91,7 +91,8 @@ pub fn front(points: &[Point]) -> Vec<&Point> {
 
 /// Error over time, a panel for each kind of frame, with a line along the front (SVG).
 ///
-/// # Errors The error of the drawing.
+/// # Errors
+/// The error of the drawing.
 pub fn front_drawing(rows: &[Row]) -> Result<String, String> {
     let mut svg = String::new();
     render(rows, &mut svg).map_err(|error| error.to_string())?;

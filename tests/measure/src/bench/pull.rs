@@ -13,7 +13,7 @@ const WITHIN: f64 = 2.0;
 pub struct Pull {
     /// Absolute values.
     pub errors: [f64; 3],
-    /// As reported.
+    /// Reported standard deviations.
     pub claimed: [f64; 3],
 }
 

@@ -41,7 +41,8 @@ pub struct Rebuilt {
 /// Renders every photograph of a session from the shadow of the first one, which alone is read,
 /// also by alignment. `paper` and `flat` do not support this.
 ///
-/// # Errors When a frame cannot be read or made.
+/// # Errors
+/// When a frame cannot be read or made.
 pub fn rebuild(
     session: &Capture,
     core: &mut Core,

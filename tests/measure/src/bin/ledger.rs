@@ -60,7 +60,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let size_px = args.size.unwrap_or(own_px);
     let scene = sized_scene(session.scene(), size_px);
     let first = first_moved(&session)?.context("no frame shows another pose than the physical one")?;
-    let input = observed(&scene, &sized_input(&first, size_px))?;
+    let (scene, input) = observed(&scene, &sized_input(&first, size_px))?;
     let [width, height] = size_px;
     let mut text = String::new();
     for &preset in &args.presets {
@@ -75,12 +75,12 @@ fn run(args: &Args) -> anyhow::Result<()> {
     print(&text)
 }
 
-/// A frame with the other things in its picture, as every program passes it to the core: they cost
-/// something, too.
-fn observed(scene: &Scene, input: &FrameInput) -> anyhow::Result<FrameInput> {
-    let observed = Observer::default().observed(scene, input)?;
+/// Scene and frame with what its picture shows beside toy and table, as every program gives it to the core: that costs, too.
+fn observed(scene: &Scene, input: &FrameInput) -> anyhow::Result<(Scene, FrameInput)> {
+    let mut observer = Observer::default();
+    let observed = observer.observed(scene, input)?;
     let grain = Grain::of(scene, observed.image.rgba(), &observed.camera);
-    Ok(observed.with_grain(grain))
+    Ok((observer.scene(scene), observed.with_grain(grain)))
 }
 
 /// The things in a picture, in words.
@@ -88,7 +88,9 @@ fn in_words(input: &FrameInput) -> String {
     let parts = [
         (input.things.is_some(), "other things"),
         (input.sharpness != Sharpness::SHARP, "softness"),
+        (input.reflection.is_some(), "the toy's reflection"),
         (input.grain.is_some(), "grain"),
+        (!input.gloss.is_none(), "gloss"),
     ];
     let parts = parts.into_iter().filter(|(is_there, _)| *is_there);
     let parts: Vec<&str> = parts.map(|(_, part)| part).collect();

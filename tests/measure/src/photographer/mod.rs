@@ -3,7 +3,8 @@
 //!
 //! From a [`World`] it makes the parts of a session, in memory: the toy as a glTF binary, plate,
 //! camera frame, and the photograph of the toy in its shown pose with the mask that scoring needs.
-//! Light is direct light of spheres and directional lights, a uniform sky, and one diffuse bounce.
+//! Light is direct light of spheres and directional lights, a uniform sky, and one diffuse bounce;
+//! a toy may be glossy.
 //! All is deterministic: rays follow fixed patterns, noise a fixed seed.
 
 mod film;
@@ -14,6 +15,7 @@ mod motion;
 mod paint;
 mod rays;
 pub mod shape;
+mod sheen;
 mod shot;
 mod toy;
 mod transform;
@@ -26,6 +28,7 @@ pub use motion::{Key, Stance};
 pub use paint::Paint;
 pub use rays::Place;
 pub use shape::Shape;
+pub use sheen::Sheen;
 pub use shot::{Films, Photos, Shot};
 pub use toy::{CLIP, STILL_CLIP, ToyFile, toy_glb};
 pub use transform::flipped;

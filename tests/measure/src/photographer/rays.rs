@@ -189,12 +189,22 @@ impl<'a> Place<'a> {
     pub(super) fn look(&self, hit: &Hit, pattern: usize) -> (DVec3, f64) {
         let mut light = self.indirect(hit, pattern);
         let mut smallest = 1.0_f64;
+        let is_toy = matches!(hit.thing, Thing::Body(_));
+        let sheen = self.world.sheen.as_ref().filter(|_| is_toy);
+        let to_camera = (self.world.camera.world_from_camera.w_axis.truncate() - hit.at).normalize();
+        let mut reflected = DVec3::ZERO;
         for lamp in &self.world.lamps {
             let [reached, total] = self.cosines(hit, lamp, pattern);
             light += lamp.color * reached;
+            if let Some(sheen) = sheen {
+                reflected += lamp.color * reached * sheen.of_lamp(hit, to_camera, lamp);
+            }
             smallest = smallest.min(visibility(reached, total));
         }
-        (hit.albedo * light, smallest)
+        if let Some(sheen) = sheen {
+            reflected += sheen.of_place((self, hit), to_camera, pattern);
+        }
+        (hit.albedo * light + reflected, smallest)
     }
 
     /// Light of a lamp at a point, with and without occlusion.
@@ -272,14 +282,24 @@ impl<'a> Place<'a> {
             // Source: Malley 1988.
             let up = (1.0 - at.length_squared()).max(0.0).sqrt();
             let direction = up * hit.normal + at.x * across + at.y * along;
-            match self.nearest(hit.at, direction, Some(hit.thing)) {
-                None => self.world.sky,
-                Some(other) if self.world.bounces => self.thrown_back(&other),
-                Some(_) => DVec3::ZERO,
-            }
+            self.light_along(hit, direction)
         });
         let n_rays = pattern.len() as f64;
         light.sum::<DVec3>() / n_rays
+    }
+
+    /// Light of the sky, or of what another thing throws back, from a direction.
+    pub(super) fn light_along(&self, hit: &Hit, direction: DVec3) -> DVec3 {
+        match self.nearest(hit.at, direction, Some(hit.thing)) {
+            None => self.world.sky,
+            Some(other) if self.world.bounces => self.thrown_back(&other),
+            Some(_) => DVec3::ZERO,
+        }
+    }
+
+    /// One of the patterns of rays into the hemisphere.
+    pub(super) fn sky_pattern(&self, pattern: usize) -> &[DVec2] {
+        &self.sky_pattern[pattern]
     }
 
     /// Light that a surface reflects of the sky and of the lamps' centres.

@@ -87,14 +87,16 @@ impl Photos {
 impl Shot {
     /// Photographs a world and describes it as a session.
     ///
-    /// # Errors When the core refuses the toy's file.
+    /// # Errors
+    /// When the core refuses the toy's file.
     pub fn of(world: &World) -> Result<Self, ToyError> {
         Self::told(world, &Photos::of(world), &ToyFile::default())
     }
 
     /// Describes a world with existing pictures, and with the toy's file written in a variant.
     ///
-    /// # Errors When the core refuses the toy's file.
+    /// # Errors
+    /// When the core refuses the toy's file.
     pub fn told(world: &World, photos: &Photos, file: &ToyFile) -> Result<Self, ToyError> {
         let glb = toy_glb(world, file);
         let toy = Toy::from_glb("toy.glb", &glb)?;

@@ -7,6 +7,7 @@ use super::lamp::Lamp;
 use super::motion::{Key, Stance};
 use super::paint::Paint;
 use super::shape::Shape;
+use super::sheen::Sheen;
 
 /// A toy on its receivers under lights, and the camera that looks at it.
 #[derive(Clone, Debug)]
@@ -27,6 +28,8 @@ pub struct World {
     pub bounces: bool,
     /// The toy.
     pub parts: Vec<Part>,
+    /// How glossy it is, if it is.
+    pub sheen: Option<Sheen>,
     /// Object space to world: a rotation, a translation and one positive scale.
     pub world_from_object: DMat4,
     /// The pose in the truth.
@@ -137,6 +140,7 @@ impl World {
             sky: DVec3::splat(0.35),
             bounces: true,
             parts: vec![body(), arm()],
+            sheen: None,
             world_from_object: DMat4::IDENTITY,
             shown: Shown::At { time_secs: 1.0 },
             sensor: Sensor::default(),

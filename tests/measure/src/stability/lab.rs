@@ -65,7 +65,8 @@ impl Lab {
     /// The reference picture of comparisons, without a planted fault. Many cases start from the
     /// same one, which is then made once.
     ///
-    /// # Errors As for [`Lab::picture`].
+    /// # Errors
+    /// As for [`Lab::picture`].
     pub fn reference(&mut self, shot: &Shot) -> Made {
         if let Some((latest, picture)) = &self.latest_reference
             && is_same(latest, shot)
@@ -82,7 +83,8 @@ impl Lab {
     /// Rows of variations of a shot, with the difference of each picture from the shot's: a bound,
     /// and its measure.
     ///
-    /// # Errors When the core fails, except by refusing a variation.
+    /// # Errors
+    /// When the core fails, except by refusing a variation.
     pub fn compare(
         &mut self,
         label: Label,
@@ -137,14 +139,16 @@ impl Lab {
 
     /// The picture of a shot's frame, after all learning from it.
     ///
-    /// # Errors When the core refuses the shot, or the device is lost.
+    /// # Errors
+    /// When the core refuses the shot, or the device is lost.
     pub fn picture(&mut self, shot: &Shot) -> Made {
         self.picture_by(Preset::Balanced, shot)
     }
 
     /// The same with another preset.
     ///
-    /// # Errors As for [`Lab::picture`].
+    /// # Errors
+    /// As for [`Lab::picture`].
     pub fn picture_by(&mut self, preset: Preset, shot: &Shot) -> Made {
         self.core.set_scene(shot.scene.clone(), preset)?;
         self.next(&shot.input)
@@ -172,7 +176,8 @@ impl Lab {
 
     /// Warnings of the latest picture's frame and of the learning up to it.
     ///
-    /// # Errors When the device is lost.
+    /// # Errors
+    /// When the device is lost.
     pub fn warnings(&self) -> Result<Vec<Warning>, CoreError> {
         if self.is_planted {
             return Ok(Vec::new());
@@ -184,7 +189,8 @@ impl Lab {
     /// The work region of a shot's frame and the visibility of its lights with the real toy there,
     /// or `None` if the frame passes through.
     ///
-    /// # Errors As for [`Lab::next`].
+    /// # Errors
+    /// As for [`Lab::next`].
     pub fn visibility(&mut self, shot: &Shot) -> Result<Option<(PixelRect, FloatMap)>, CoreError> {
         self.core.set_scene(shot.scene.clone(), Preset::Balanced)?;
         let region = self.core.frame(&shot.input)?.region;
@@ -197,7 +203,8 @@ impl Lab {
 
     /// The fits' results in the latest frame.
     ///
-    /// # Errors When the device is lost.
+    /// # Errors
+    /// When the device is lost.
     pub fn fit(&self) -> Result<Option<Fit>, CoreError> {
         let mut fit = self.core.read_fit()?;
         if let Some(fit) = fit.as_mut().filter(|_| self.is_planted) {
@@ -267,7 +274,8 @@ impl Label {
 
     /// A row of a picture's difference from another, or of its refusal.
     ///
-    /// # Errors When the core failed, except by refusing an input.
+    /// # Errors
+    /// When the core failed, except by refusing an input.
     pub fn against(
         self,
         parameter: impl Into<String>,
@@ -293,7 +301,8 @@ impl Label {
 
     /// A row of a refused input.
     ///
-    /// # Errors The error itself when the core failed otherwise.
+    /// # Errors
+    /// The error itself when the core failed otherwise.
     pub fn refused(
         self,
         parameter: impl Into<String>,

@@ -40,7 +40,8 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
 
 /// Runs one case.
 ///
-/// # Errors When the core fails, except by refusing an input.
+/// # Errors
+/// When the core fails, except by refusing an input.
 pub fn run(lab: &mut Lab, case: &Case) -> anyhow::Result<Findings> {
     lab.begin();
     (case.run)(lab, case.label)

@@ -14,7 +14,8 @@ const FONT: (&str, i32) = ("sans-serif", 14);
 
 /// Draws a sweep into a folder, as a file of its name.
 ///
-/// # Errors When the file cannot be written.
+/// # Errors
+/// When the file cannot be written.
 pub fn draw(folder: &Path, sweep: &Sweep) -> Result<(), WriteError> {
     let path = folder.join(format!("{}.svg", sweep.name));
     let svg = drawing(sweep).map_err(|reason| WriteError {

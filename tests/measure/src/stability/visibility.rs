@@ -15,7 +15,7 @@ use reference::occlusion::{Occluder, sample_position};
 use reference::real::Real;
 use reference::visibility::exact_visibility;
 
-/// Of 255, the mean over a grid of pixels: one light point of 64 in every second pixel.
+/// Mean error over a grid of pixels, of 255: one light point of 64 in every second pixel.
 const MEAN_ERROR: Bound = Bound {
     limit: 2.0,
     unit: "1/255",

@@ -1,4 +1,5 @@
-//! What `check` says of a good session and of ones that are wrong, and that `align` rights them.
+//! The output of `check` for a good session and for wrong ones, and the correction of these by
+//! `align`.
 
 mod pictures;
 
@@ -166,13 +167,13 @@ fn a_grey_frame_of_a_coloured_place_is_told() {
     let expected = "frames[0].image: the picture is grey, but a plate has colours";
     let is_told = |wrong: Vec<String>| wrong.iter().any(|line| line.starts_with(expected));
     assert!(is_told(wrong(&session.0)));
-    // Both grey are one camera's.
+    // Two grey pictures belong to the same camera.
     let plate = session.0.join("background_0000.png");
     image::open(&plate).unwrap().into_luma8().save(&plate).unwrap();
     assert!(!is_told(wrong(&session.0)));
 }
 
-/// Keys that are told as unknown in an index without files.
+/// Keys that are reported as unknown in an index without files.
 fn unknown(index: &Value) -> Vec<String> {
     let session = Temporary::new("keys");
     fs::write(session.0.join(SESSION_FILE), index.to_string()).unwrap();
@@ -181,7 +182,7 @@ fn unknown(index: &Value) -> Vec<String> {
     wrong
 }
 
-/// Puts a key into each object of a value; returns where.
+/// Inserts a key into each object of a value; returns the positions.
 fn misspell(value: &mut Value, path: &str) -> Vec<String> {
     match value {
         Value::Object(entries) => {
@@ -220,7 +221,7 @@ fn every_key_of_the_format_is_known_and_no_other() {
     assert_eq!(told, expected);
 }
 
-/// Those of the session, of the plates and of the frames.
+/// Focal lengths of the session, of the plates and of the frames.
 #[test]
 fn an_aligned_session_has_the_focal_length_that_was_found() {
     let lengthen = |index: &mut Value, ratio: f64| {
@@ -262,7 +263,7 @@ fn an_aligned_session_has_the_focal_length_that_was_found() {
 
 #[test]
 fn an_aligned_session_has_the_lights_that_were_found() {
-    // A sun in the list, where the shadow is a bulb's.
+    // A sun in the list, while the shadow is a bulb's.
     let session = changed("sun", |index| {
         index["lights"] = json!([{ "kind": "directional", "direction_to_light": [0.0, 1.0, 0.0], "angular_radius_deg": 1.0 }]);
     });
@@ -320,7 +321,7 @@ fn an_aligned_session_is_right() {
         capture.n_frames()
     );
     assert_eq!(wrong(&out), Vec::<String>::new());
-    // Nothing is written over, nor into the session that is read.
+    // Nothing is overwritten, and nothing is written into the session that is read.
     let inside = session.0.join("inside");
     assert!(
         aligned_session::write(

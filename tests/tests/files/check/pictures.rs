@@ -1,4 +1,5 @@
-//! Files whose pixels are not what the reader takes them for are named, and what sRGB is in other words is not.
+//! Files whose pixels are not in the format that the reader assumes are reported, and other
+//! descriptions of sRGB are accepted.
 
 use std::fs;
 
@@ -10,7 +11,8 @@ use serde_json::json;
 
 use crate::check::wrong;
 
-/// Columns of matrices to XYZ under D50: sRGB's as the profile of IEC 61966-2-1 has them, and Display P3's as Apple's.
+/// Columns of matrices to XYZ under D50: sRGB's as in the profile of IEC 61966-2-1, and Display
+/// P3's as Apple's.
 const SRGB: [[f64; 3]; 3] = [
     [0.4361, 0.2225, 0.0139],
     [0.3851, 0.7169, 0.0971],
@@ -21,7 +23,7 @@ const DISPLAY_P3: [[f64; 3]; 3] = [
     [0.2919, 0.6922, 0.0419],
     [0.1572, 0.0666, 0.7841],
 ];
-/// sRGB's curve, as profiles of version 4 have it: power, then where the line ends.
+/// sRGB's curve as in profiles of version 4: exponent, then the end of the linear part.
 const CURVE: [f64; 5] = [2.4, 1.0 / 1.055, 0.055 / 1.055, 1.0 / 12.92, 0.04045];
 
 fn fixed(value: f64) -> [u8; 4] {
@@ -126,7 +128,7 @@ fn jpeg(profile: Option<Vec<u8>>, exif: Option<&[u8]>) -> Vec<u8> {
     bytes
 }
 
-/// A PNG with chunks in front of its pixels; the last of them comes first.
+/// A PNG with chunks before its pixels; the last of them comes first.
 fn with_chunks(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
     let mut bytes = png(&photo(), None);
     for (name, data) in chunks {
@@ -137,13 +139,14 @@ fn with_chunks(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
             &crc32fast::hash(&named).to_be_bytes(),
         ]
         .concat();
-        // Behind the header.
+        // After the header.
         bytes.splice(33..33, chunk);
     }
     bytes
 }
 
-/// What is said of pictures in a session that has them as its frames, but for what their missing toy brings about.
+/// The warnings for a session with these pictures as its frames, except for those about the missing
+/// toy.
 fn said(pictures: &[(&str, Vec<u8>)]) -> Vec<String> {
     let session = Temporary::new("pictures");
     let frames: Vec<_> = pictures
@@ -208,7 +211,7 @@ fn what_is_srgb_in_other_words_is_not() {
         ("sampled.png", png(&photo(), Some(icc("mine", &SRGB, sampled())))),
         ("power.png", png(&photo(), Some(icc("mine", &SRGB, parametric(&[2.2]))))),
         ("gama.png", with_chunks(&[(b"gAMA", &gama(45_455))])),
-        // What comes first in the order of the specification counts.
+        // The first in the order of the specification counts.
         ("srgb.png", with_chunks(&[(b"gAMA", &gama(100_000)), (b"sRGB", &[0])])),
         ("cicp.png", with_chunks(&[(b"cICP", &[1, 13, 0, 1]), (b"gAMA", &gama(100_000))])),
     ];

@@ -1,4 +1,4 @@
-//! Pictures of 16 bits, and layers, as others read them.
+//! Pictures of 16 bits, and layers, as other readers see them.
 
 use std::fs;
 
@@ -11,7 +11,7 @@ use image::DynamicImage;
 
 const SIZE: [u32; 2] = [7, 5];
 
-/// Other values for each seed, in each texel and channel.
+/// Different values for each seed, texel and channel.
 fn map(seed: f32) -> FloatMap {
     let n = SIZE[0] * SIZE[1];
     let texel =

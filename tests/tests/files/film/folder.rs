@@ -1,4 +1,4 @@
-//! What a film's folder keeps of the film before, and refuses.
+//! The files that a film's folder keeps from the previous film, and the ones it refuses.
 
 use std::fs;
 use std::path::Path;
@@ -62,7 +62,7 @@ fn begin(path: &Path, film: &Film, is_forced: bool) -> anyhow::Result<bool> {
     Ok(is_made)
 }
 
-/// Which of the first three pictures are there.
+/// The first three pictures: whether each exists.
 fn pictures(path: &Path) -> [bool; 3] {
     [1, 2, 3].map(|number| path.join(format!("{number}.png")).exists())
 }
@@ -77,7 +77,7 @@ fn pictures_stay_as_long_as_all_that_decides_on_them_does() {
     write();
     assert!(!begin(path, &first, false).unwrap());
     assert_eq!(pictures(path), [true, false, true]);
-    // Other frames beside them change the part of the picture that is worked on.
+    // Other frames beside them change the retargeted region.
     let longer = film("Look,Step");
     let other_preset = Film {
         preset: "fast".to_owned(),
@@ -97,18 +97,19 @@ fn pictures_stay_as_long_as_all_that_decides_on_them_does() {
         assert_eq!(pictures(path), [true, false, true]);
         assert!(begin(path, &other, true).unwrap());
         assert_eq!(pictures(path), [false; 3]);
-        // Nothing is lost by another film, and so nothing to be asked for.
+        // The other film overwrites nothing, so no confirmation is needed.
         begin(path, &first, false).unwrap();
         begin(path, &other, false).unwrap();
         write();
     }
-    // Nobody knows what these show.
+    // The origin of these is unknown.
     fs::write(path.join("film.json"), "{").unwrap();
     assert!(begin(path, &first, false).is_err());
     assert_eq!(pictures(path), [true, false, true]);
 }
 
-/// Pictures stay where another build goes on with them, and the film says who began them until they are made again.
+/// Pictures stay when another build continues, and the film records the build that began them until
+/// they are made again.
 #[test]
 fn a_film_says_what_began_it() {
     let folder = Temporary::new("film-made-by");
@@ -129,7 +130,7 @@ fn a_film_says_what_began_it() {
     assert!(!path.join("1.png").exists());
 }
 
-/// A frame is made when all of its files are, and layers go with the picture that they are of.
+/// A frame is complete when all of its files exist, and layers belong to their picture.
 #[test]
 fn layers_are_files_of_their_frame() {
     let folder = Temporary::new("film-layers");

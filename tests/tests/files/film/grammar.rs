@@ -30,7 +30,7 @@ fn items_are_clips_with_times_and_speeds_and_holds() {
         ),
         ("Look@-2x", vec![clip(0, 1, -2.0)]),
         ("#1*3", vec![clip(1, 3, 1.0)]),
-        // Marks in a name are the name's.
+        // Marks in a name belong to the name.
         ("a*b@2x", vec![clip(2, 1, 1.0)]),
         ("a*b@2x*3@4x", vec![clip(2, 3, 4.0)]),
         ("hold:3", vec![clip(3, 1, 1.0)]),

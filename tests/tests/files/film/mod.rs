@@ -1,4 +1,4 @@
-//! Films: what their text says, which pose each frame shows, and what their folder keeps.
+//! Films: their grammar, the pose of each frame, and the content of their folder.
 
 mod fine;
 mod folder;

@@ -1,4 +1,4 @@
-//! Which pose each frame shows.
+//! The pose of each frame.
 
 use film::animate::grammar::items;
 use film::animate::timeline::{End, FramePose, Timing, frames, photograph_at};
@@ -19,7 +19,7 @@ fn film(text: &str, timing: &Timing) -> Vec<FramePose> {
     frames(&items(text, &clips).unwrap(), &clips, timing).unwrap()
 }
 
-/// Clip and eighths of a second of each frame.
+/// Clip and eighths of a second for each frame.
 fn moments(text: &str, timing: &Timing) -> Vec<(usize, f64)> {
     let frames = film(text, timing).into_iter();
     frames
@@ -27,7 +27,7 @@ fn moments(text: &str, timing: &Timing) -> Vec<(usize, f64)> {
         .collect()
 }
 
-/// Of one clip.
+/// Moments of one clip.
 fn of(clip: usize, eighths: &[u32]) -> Vec<(usize, f64)> {
     eighths.iter().map(|at| (clip, f64::from(*at))).collect()
 }
@@ -40,7 +40,7 @@ fn clips_follow_one_another_and_the_last_pose_is_shown() {
         ("Step@2x", of(1, &[0, 2, 4])),
         ("Step@-1x", of(1, &[4, 3, 2, 1, 0])),
         ("Step@2x,Look@4x", [of(1, &[0, 2]), of(0, &[0, 4, 8])].concat()),
-        // A hold keeps the last pose as long as it says.
+        // A hold keeps the last pose for the given time.
         ("Step@2x,hold:4", of(1, &[0, 2, 4, 4, 4, 4])),
         ("hold:2,Step@-2x", of(1, &[4, 4, 4, 2, 0])),
     ];
@@ -91,7 +91,7 @@ fn a_start_takes_over_step_by_step_from_the_pose_before_it() {
     };
     let frames = film("Step,hold:1,Look", &blended);
     let shares: Vec<Option<f64>> = frames.iter().map(|frame| Some(frame.after?.share)).collect();
-    // The first clip has nothing before it.
+    // The first clip has no predecessor.
     assert!(shares[..5].iter().all(Option::is_none), "{shares:?}");
     let [Some(a), Some(b), Some(c)] = shares[5..8] else {
         panic!("{shares:?}");
@@ -125,7 +125,7 @@ fn a_film_without_frames_or_with_too_many_is_refused() {
 
 #[test]
 fn a_moving_film_shows_the_photograph_that_had_been_taken_and_the_last_one_to_its_end() {
-    // At 30 a second, rounded as recorders do, and with one that was dropped.
+    // At 30 a second, rounded as recorders do, and with one dropped frame.
     let times_secs = [0.0, 0.033333, 0.1, 0.133333];
     let shown = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(|frame| photograph_at(&times_secs, frame / 30.0));
     assert_eq!(shown, [0, 1, 1, 2, 3, 3]);

@@ -1,4 +1,4 @@
-//! Recordings of other programs: what each format is known to do otherwise, one by one.
+//! Recordings of other programs: the known peculiarities of each format, one by one.
 
 mod models;
 mod phones;

@@ -1,4 +1,4 @@
-//! Models of COLMAP and scenes of BOP: where their cameras see a point of the world, and meshes.
+//! Models of COLMAP and scenes of BOP: the image positions of a point of the world, and meshes.
 
 use app_core::session::Session;
 use app_core::toy::{Pose, Toy};
@@ -10,7 +10,7 @@ use measure::random::Random;
 use crate::imported::small::{Small, grey, lacking};
 
 const POINT: DVec3 = DVec3::new(0.3, -0.2, 0.5);
-/// Of the world in the camera, as COLMAP writes it: w, x, y, z.
+/// Rotation from the world to the camera, in COLMAP's order: w, x, y, z.
 const QUATERNION: [f64; 4] = [0.8, 0.1, 0.55, -0.2];
 const TRANSLATION: [f64; 3] = [0.1, -0.3, 2.0];
 const NUMBERS: [f64; 8] = [600.0, 610.0, 320.5, 238.0, -0.05, 0.01, 0.001, -0.002];
@@ -25,7 +25,7 @@ fn colmap(files: [&[u8]; 2]) -> Imported {
     parse(Format::Colmap, files, &THERE.map(str::to_owned)).unwrap()
 }
 
-/// The same as the texts.
+/// The same in COLMAP's binary format.
 fn binary() -> [Vec<u8>; 2] {
     let floats = |values: &[f64]| {
         values
@@ -64,7 +64,7 @@ fn binary() -> [Vec<u8>; 2] {
     [cameras, [2_u64.to_le_bytes().to_vec(), first, second].concat()]
 }
 
-/// By COLMAP's own formulas: `x = R X + t`, then the numbers of a pinhole.
+/// By COLMAP's own formulas: `x = R X + t`, then the intrinsics of a pinhole.
 fn pixel_by_colmap([w, x, y, z]: [f64; 4], t: [f64; 3]) -> DVec2 {
     let n = (w * w + x * x + y * y + z * z).sqrt();
     let [w, x, y, z] = [w / n, x / n, y / n, z / n];
@@ -111,7 +111,7 @@ fn colmaps_cameras_see_a_point_where_colmap_has_it() {
         let expected = pixel_by_colmap(QUATERNION, TRANSLATION);
         let found = pixel_by_us(&frame.recorded_from_camera, frame.intrinsics, POINT);
         assert!(found.distance(expected) < 1e-9, "{found} {expected}");
-        // Were the pose the other way round, it would be elsewhere.
+        // With an inverted pose it would be elsewhere.
         let inverted = pixel_by_us(&frame.recorded_from_camera.inverse(), frame.intrinsics, POINT);
         assert!(inverted.distance(expected) > 10.0);
         let [_, _, _, _, k1, k2, p1, p2] = NUMBERS;
@@ -195,7 +195,7 @@ fn a_scene_of_bop_is_in_metres_and_says_where_the_toy_is() {
     };
     let written = small.import(Format::Bop, &given).unwrap();
     let (scene, frame) = (written.capture.scene(), written.capture.frame(0).unwrap());
-    // OpenCV's own formula, in millimetres, its first pixel's centre at 0.
+    // OpenCV's own formula, in millimetres, with the centre of the first pixel at 0.
     let point_mm = DVec3::new(12.0, 34.0, -21.0);
     let at = DMat3::from_cols_array(&ROWS).transpose() * point_mm + DVec3::from_array(TRANSLATION_MM);
     let expected = DVec2::new(500.0 * at.x / at.z + 31.5, 510.0 * at.y / at.z + 23.5) + 0.5;
@@ -225,7 +225,7 @@ fn the_toy_of_several_objects_is_asked_for() {
     let error = parse(Format::Bop, [camera.as_bytes(), mirrored.as_bytes()], &there);
     let error = error.err().unwrap().to_string();
     assert_eq!(error, "scene_gt.json (12.cam_R_m2c): the matrix is no rotation");
-    // Of the same volume.
+    // A shear, which keeps the volume.
     let sheared = mirrored.replace("[1,0,0,0,1,0,0,0,-1]", "[1,0.5,0,0,1,0,0,0,1]");
     assert_ne!(sheared, mirrored);
     let error = parse(Format::Bop, [camera.as_bytes(), sheared.as_bytes()], &there);
@@ -288,7 +288,7 @@ fn a_mesh_is_the_same_however_it_is_written() {
         let bounds = toy.bounds_of_pose(&Pose::Authored).unwrap();
         assert_eq!(bounds.min.to_array(), [-10.0, 0.0, -10.0], "{format}");
         assert_eq!(bounds.max.to_array(), [10.0, 25.0, 10.0], "{format}");
-        // Codes are sRGB, the file's colours linear.
+        // Codes are sRGB, but the file's colours are linear.
         let (tree, bin) = chunks(&glb);
         let number = |value: &serde_json::Value| usize::try_from(value.as_u64().unwrap()).unwrap();
         let colors = &tree["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"];
@@ -308,7 +308,7 @@ fn a_mesh_is_the_same_however_it_is_written() {
     assert!(error.contains("a cloud of points is no toy"), "{error}");
 }
 
-/// As MeshLab writes it.
+/// The form in which MeshLab writes it.
 #[test]
 fn a_texture_whose_coordinates_stand_in_the_faces_is_not_lost_silently() {
     let text = "ply\nformat ascii 1.0\ncomment TextureFile skin.png\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 1 0 0 1\n";
@@ -329,7 +329,8 @@ fn a_quaternion_of_colmap_begins_with_its_real_part() {
     assert!(looks.distance(turned) < 1e-12, "{looks} {turned}");
 }
 
-/// Files with bytes changed, cut or doubled by chance: nothing panics, and what is taken is finite.
+/// Files with bytes changed, cut or doubled at random: nothing panics, and all accepted values are
+/// finite.
 #[test]
 fn whatever_is_in_a_model_is_answered() {
     let [cameras, images] = binary();

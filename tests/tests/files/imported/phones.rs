@@ -86,7 +86,7 @@ fn gaps_stay_as_they_are() {
     assert_eq!(gaps, [17.0, 33.0, 50.0]);
 }
 
-/// Half a turn about x is how that program writes a camera that ARKit has unturned.
+/// That program writes a camera of ARKit with half a turn about x.
 #[test]
 fn stray_scanner_has_cameras_that_look_along_z() {
     let imported = stray(ODOMETRY).unwrap();
@@ -130,7 +130,7 @@ fn record3d_has_more_poses_than_pictures_and_columns_first() {
     assert_eq!(imported.up, None, "gravity is lost");
 }
 
-/// Times of a list that ends too early are not mixed with those of `fps`.
+/// Times of a list that ends too early are not mixed with those from `fps`.
 #[test]
 fn record3d_has_times_for_all_frames_or_counts_all() {
     let metadata = METADATA.replace("[0,0.0166,0.05]", "[7]");
@@ -148,7 +148,7 @@ fn record3d_has_times_for_all_frames_or_counts_all() {
 fn matrices_that_are_no_poses_are_refused() {
     let pose = "[[1,0,0,1],[0,0,-1,2],[0,1,0,3],[0,0,0,1]]";
     assert!(nerfstudio(TRANSFORMS).is_ok());
-    // A scale is one of the whole scene, and is left out; four digits are enough.
+    // A scale applies to the whole scene, and is left out; four digits are enough.
     for good in [
         "[[2,0,0,1],[0,0,-2,2],[0,2,0,3],[0,0,0,1]]",
         "[[0.7071,-0.7071,0,1],[0.7071,0.7071,0,2],[0,0,1,3],[0,0,0,1]]",
@@ -182,7 +182,7 @@ fn nerfstudio_has_rows_and_z_up_and_its_own_intrinsics() {
     assert_eq!(imported.frames[1].intrinsics, [510.0, 501.0, 320.0, 240.0]);
     let pose = imported.frames[0].recorded_from_camera;
     assert_eq!(pose.w_axis.truncate(), DVec3::new(1.0, 2.0, 3.0));
-    // It looks along -Z of its own, which is +Y of that world.
+    // The camera looks along its own -Z, which is +Y of that world.
     assert_eq!(pose.transform_vector3(DVec3::NEG_Z), DVec3::Y);
 }
 
@@ -206,7 +206,8 @@ fn errors_name_file_field_and_reason() {
     }
 }
 
-/// Texts with bytes changed, cut or doubled by chance: nothing panics, and what is taken is finite.
+/// Texts with bytes changed, cut or doubled at random: nothing panics, and all accepted values are
+/// finite.
 #[test]
 fn whatever_is_in_a_file_is_answered() {
     let mut random = Random::new(77);
@@ -246,7 +247,7 @@ fn mutated(text: &str, random: &mut Random) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// Out to nerfstudio's format and in again: cameras and pictures are the same.
+/// Export to nerfstudio's format and import again: cameras and pictures are the same.
 #[test]
 fn the_bundled_session_comes_back_from_nerfstudio() {
     let folder = Temporary::new("nerfstudio");

@@ -1,4 +1,5 @@
-//! Pictures of another size than their intrinsics are of, and through lenses that a session cannot say.
+//! Pictures whose size differs from that of their intrinsics, and pictures through lenses that a
+//! session cannot describe.
 
 use app_core::scene::Image;
 use app_core::session::Session;
@@ -16,7 +17,7 @@ fn transforms(camera: &str) -> String {
     format!(r#"{{{camera},"frames":[{frame}]}}"#)
 }
 
-/// The session, and the folder that it is read from.
+/// The session, and the folder from which it is read.
 fn import(name: &str, camera: &str, picture: &Image) -> anyhow::Result<(Written, Small)> {
     let small = Small::new(name);
     small.file("transforms.json", transforms(camera).as_bytes());
@@ -36,7 +37,7 @@ fn intrinsics_are_scaled_to_smaller_pictures() {
         written.notes,
         ["the pictures are 192 x 108 px, the intrinsics of 768 x 432 px: these are scaled by 0.2500"]
     );
-    // As they are, nothing is said.
+    // Without a change there is no note.
     let camera = r#""w":192,"h":108,"fl_x":170,"cx":95,"cy":55"#;
     assert!(
         import("unscaled", camera, &grey(SIZE_PX))
@@ -64,7 +65,7 @@ fn other_pictures_are_refused() {
     }
 }
 
-/// What a pinhole sees at a place: smooth, and another value at each side of it.
+/// A pinhole's view at a position: smooth, and different on each side.
 #[test]
 fn what_cannot_be_a_session_is_refused_and_leaves_no_folder() {
     let camera = r#""w":192,"h":108,"fl_x":170,"cx":95,"cy":55"#;
@@ -129,7 +130,7 @@ fn slope(column: u32, row: u32) -> [f64; 2] {
     ]
 }
 
-/// A picture of whatever is seen at each place.
+/// A picture of a function of the position.
 fn picture(of: impl Fn([f64; 2]) -> f64) -> Image {
     let [width_px, height_px] = SIZE_PX;
     let pixels = (0..height_px).flat_map(|row| (0..width_px).map(move |column| slope(column, row)));
@@ -144,7 +145,8 @@ fn picture(of: impl Fn([f64; 2]) -> f64) -> Image {
     }
 }
 
-/// The place of a pinhole whose light a lens brings to `bent`, by a fixed point of the lens alone.
+/// The pinhole's position of the light that a lens moves to `bent`, by a fixed point of the lens
+/// alone.
 fn straight(bent: [f64; 2], lens: impl Fn([f64; 2]) -> [f64; 2]) -> [f64; 2] {
     let mut at = bent;
     for _ in 0..200 {
@@ -168,7 +170,7 @@ fn difference(made: &Image, expected: &Image) -> u8 {
     largest
 }
 
-/// OpenCV's model as its page has it.
+/// OpenCV's model as in its documentation.
 fn brown([x, y]: [f64; 2]) -> [f64; 2] {
     let [k1, k2, p1, p2, k3] = [-0.12, 0.05, 0.009, -0.006, 0.02];
     let r2 = x * x + y * y;
@@ -179,7 +181,7 @@ fn brown([x, y]: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// OpenCV's fisheye as its page has it.
+/// OpenCV's fisheye model as in its documentation.
 fn fisheye([x, y]: [f64; 2]) -> [f64; 2] {
     let r = x.hypot(y);
     let angle = r.atan();
@@ -218,7 +220,7 @@ fn pictures_through_other_lenses_are_undistorted() {
         let left = difference(&made, &as_pinhole);
         assert!(left <= 2, "{name}: {left} codes are left");
     }
-    // With a wrong sign more is left.
+    // With a wrong sign the residual is larger.
     let photograph = picture(|at| pattern(straight(at, brown)));
     let wrong = brown_keys.replace("0.009", "-0.009");
     let (written, _small) = import("wrong", &format!("{CAMERA},{wrong}"), &photograph).unwrap();

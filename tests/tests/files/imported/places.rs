@@ -1,4 +1,5 @@
-//! Pictures that an index has other names for: of another machine, in another order, counted from 1, or not there.
+//! Pictures that an index names otherwise: on another machine, in another order, counted from 1, or
+//! missing.
 
 use desk::import::{Format, ImportError, Imported, parse};
 
@@ -35,7 +36,7 @@ fn frames_are_in_the_order_of_their_names_as_people_count() {
         images(&imported),
         ["images/1.png", "images/2.png", "images/9.png", "images/10.png"]
     );
-    // Each with its own pose.
+    // Each frame has its own pose.
     let poses: Vec<f64> = imported
         .frames
         .iter()
@@ -87,7 +88,7 @@ fn two_names_of_one_picture_are_refused() {
         error.starts_with("transforms.json (frames[1].file_path): this picture is found at \"1.png\""),
         "{error}"
     );
-    // A still camera's picture may be there twice.
+    // A still camera's picture may occur twice.
     assert_eq!(
         nerfstudio(&["1.png", "1.png"], &["1.png"]).unwrap().frames.len(),
         2
@@ -113,7 +114,7 @@ fn stray(pictures: std::ops::Range<u32>) -> Result<Imported, ImportError> {
     parse(Format::StrayScanner, [odometry.as_bytes(), matrix], &there)
 }
 
-/// Where the camera is that took a picture.
+/// Camera position of each picture.
 fn places(imported: &Imported) -> Vec<(&str, f64)> {
     let frames = imported.frames.iter();
     frames
@@ -139,7 +140,7 @@ fn pictures_are_counted_from_0_or_1_by_how_many_there_are() {
         from_1.notes,
         ["the pictures in rgb/ are counted from 1, the frames from 0"]
     );
-    // The last pictures may be missing where it is known which is the first.
+    // The last pictures may be missing if the first one is known.
     assert_eq!(stray(0..4).unwrap().notes.len(), 1);
     for ambiguous in [1..6, 1..4] {
         let error = stray(ambiguous).err().unwrap().to_string();

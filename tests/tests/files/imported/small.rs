@@ -1,4 +1,4 @@
-//! Small recordings in a temporary folder, and what is said beside them.
+//! Small recordings in a temporary folder, and the data that are given beside them.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use desk::import::{Format, Lacking, Written, read, write};
 use desk::output::write_png;
 use harness::temporary::Temporary;
 
-/// A recording of these files, as a session.
+/// A session from a recording of these files.
 pub(crate) struct Small {
     pub(crate) folder: Temporary,
 }
@@ -55,7 +55,7 @@ pub(crate) fn grey([width_px, height_px]: [u32; 2]) -> Image {
     }
 }
 
-/// All that no format tells.
+/// All data that no format contains.
 pub(crate) fn lacking() -> Lacking {
     Lacking {
         toy: Some(format!("{BUNDLED_SESSION}/toy.glb").into()),

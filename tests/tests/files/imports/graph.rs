@@ -1,4 +1,5 @@
-//! Who imports whom: every path that starts at `crate`, `self` or `super`, resolved to the file that it leads into.
+//! The graph of imports: every path that starts at `crate`, `self` or `super`, resolved to its
+//! target file.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,12 +9,12 @@ use syn::{Item, ItemUse, UseTree};
 
 use super::source::Module;
 
-/// One file names something of another.
+/// An import of one file's name in another.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Import {
     pub(crate) from: String,
     pub(crate) to: String,
-    /// A child names a type that its parent declares.
+    /// Whether a child names a type that its parent declares.
     pub(crate) names_parent: bool,
 }
 
@@ -47,11 +48,11 @@ pub(crate) fn imports(modules: &[Module]) -> Vec<Import> {
             });
         }
     }
-    // Imports that are out of order count even where the same file names a type of the other as well.
+    // Imports that are out of order count even if the same file names a type of the other as well.
     imports.into_iter().collect()
 }
 
-/// Modules that import each other in a circle, those that a child may name left out.
+/// Modules that import each other in a circle, without the imports that are permitted to a child.
 pub(crate) fn circles(imports: &[Import]) -> Vec<Vec<String>> {
     let mut next: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for import in imports.iter().filter(|import| !import.names_parent) {
@@ -103,7 +104,7 @@ fn declared_types(file: &syn::File) -> BTreeSet<String> {
     file.items.iter().filter_map(name).collect()
 }
 
-/// The file that a path leads into, and the name in it; none for paths of other crates.
+/// The target file of a path, and the name in it; `None` for paths of other crates.
 fn resolve(
     from: &str,
     path: &[String],
@@ -149,7 +150,7 @@ impl Visit<'_> for Paths {
         self.add_tree(&item.tree, &mut Vec::new());
     }
 
-    /// Tests within a file may name all of it.
+    /// Tests within a file may name all of its items.
     fn visit_item_mod(&mut self, item: &syn::ItemMod) {
         if item.ident != "tests" {
             visit::visit_item_mod(self, item);
@@ -189,7 +190,7 @@ impl Paths {
         }
     }
 
-    /// Paths that start at `crate` in what a macro is given; `crate` alone is that of `pub(crate)`.
+    /// Paths that start at `crate` in a macro's arguments; `crate` alone is that of `pub(crate)`.
     fn add_tokens(&mut self, tokens: TokenStream) {
         let mut path: Option<Vec<String>> = None;
         for token in tokens {

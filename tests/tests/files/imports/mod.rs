@@ -1,5 +1,6 @@
-//! Imports within the pipeline go one way: from each room only to those that stand after it. And in no crate do they go round in
-//! a circle. Read from the sources, with proof that a wrong import is found.
+//! Imports within the pipeline have one direction: from each layer only to the layers that follow
+//! it. And no crate has a circle of imports. The test reads the sources and proves that it finds a
+//! wrong import.
 
 mod graph;
 mod rooms;
@@ -10,7 +11,7 @@ use rooms::out_of_order;
 use source::{Module, modules};
 
 const PIPELINE: &str = "app-core/pipeline";
-/// All others of what goes on a phone.
+/// All other packages that are part of a phone app.
 const PACKAGES: [&str; 11] = [
     "app-core/scene",
     "app-core/alignment",
@@ -40,7 +41,7 @@ fn in_circles(imports: &[Import]) -> impl Iterator<Item = String> + use<> {
         .map(|circle| format!("circle: {}", circle.join(" -> ")))
 }
 
-/// Modules that are in no room.
+/// Modules that are in no layer.
 fn unplaced(imports: &[Import]) -> impl Iterator<Item = String> + '_ {
     let modules = imports.iter().flat_map(|import| [&import.from, &import.to]);
     let mut unplaced: Vec<&String> = modules.filter(|module| rooms::rank(module).is_none()).collect();
@@ -61,7 +62,7 @@ fn imports_go_one_way() {
 fn no_crate_imports_in_a_circle() {
     let of_package = |package: &str| -> Vec<String> {
         let mut modules = modules(package);
-        // In place of ARCore in tests: one thing in several files.
+        // Replacement of ARCore for tests: one unit in several files.
         modules.retain(|module| !module.path.starts_with("fake"));
         let circles = in_circles(&imports(&modules));
         circles.map(|circle| format!("{package}, {circle}")).collect()
@@ -72,7 +73,7 @@ fn no_crate_imports_in_a_circle() {
 
 #[test]
 fn a_planted_import_is_found() {
-    // A module, a line that is planted in it, and words of the problem.
+    // A module, a line that is inserted into it, and words of the expected problem.
     #[rustfmt::skip] // One fault a line.
     let faults = [
         ("gpu::texture", "use crate::core::Core;", "gpu::texture imports core"),
@@ -96,7 +97,7 @@ use crate::model::state::tints::Tints;\nuse super::super::state::SceneState;",
                 text: line.to_owned(),
             }),
         }
-        // `tints` must lead back for the circle in the state.
+        // `tints` must import it in turn for the circle in the state.
         if path == "model::state::grids" {
             let tints = modules
                 .iter_mut()

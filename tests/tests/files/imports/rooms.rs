@@ -1,10 +1,13 @@
-//! The rooms of the pipeline, and which may import which: cargo keeps crates apart, not the folders of one.
+//! The layers of the pipeline and their permitted imports: cargo separates crates, but not the
+//! folders of one.
 
 use super::graph::Import;
 
-/// From the one that imports all others to those that import none. Each may import those after it, and itself.
+/// From the layer that imports all others to those that import none. Each may import itself and the
+/// layers after it.
 ///
-/// Within the model, both paths read the state; the frame path may read what was captured, never the other way round.
+/// Within the model, both paths read the state; the frame path may read the results of the capture
+/// path, but not the reverse.
 const ROOMS: &[&str] = &[
     "",
     "core",
@@ -31,18 +34,18 @@ const ROOMS: &[&str] = &[
     "geometry",
     "gpu",
 ];
-/// Rooms that never meet, though one stands after the other.
+/// Layers that must not import each other, though one follows the other.
 const APART: &[(&str, &str)] = &[("model", "baseline"), ("model", "plates"), ("baseline", "plates")];
-/// Modules with a right of their own: the model reads its maps from its targets, in a file beside them.
+/// Modules with an exception: the model reads its maps from its targets, in a file beside them.
 const EXEMPT: &[(&str, &str)] = &[("model::readback", "model")];
 
-/// Place of a module's room among all, the most special one that it is in.
+/// Index of a module's layer; the most specific layer counts.
 pub(crate) fn rank(module: &str) -> Option<usize> {
     let rooms = ROOMS.iter().enumerate().filter(|(_, room)| is_in(module, room));
     rooms.max_by_key(|(_, room)| room.len()).map(|(rank, _)| rank)
 }
 
-/// What is wrong with an import.
+/// Problem of an import.
 pub(crate) fn out_of_order(import: &Import) -> Option<String> {
     let Import { from, to, .. } = import;
     let is_backwards = rank(from)? > rank(to)?;

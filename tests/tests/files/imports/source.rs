@@ -5,12 +5,12 @@ use std::path::Path;
 
 /// A file of a crate.
 pub(crate) struct Module {
-    /// Its path below `crate`, such as `model::plan`; empty for the root.
+    /// Path below `crate`, such as `model::plan`; empty for the root.
     pub(crate) path: String,
     pub(crate) text: String,
 }
 
-/// Every file below `src` of a package, which is named by its folder.
+/// All files below `src` of a package, which is named by its folder.
 pub(crate) fn modules(package: &str) -> Vec<Module> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("..")
@@ -26,7 +26,7 @@ fn collect(folder: &Path, path: &str, modules: &mut Vec<Module>) {
     for entry in fs::read_dir(folder).unwrap() {
         let file = entry.unwrap().path();
         let name = file.file_stem().unwrap().to_str().unwrap();
-        // A program is a crate of its own.
+        // A program is a separate crate.
         if name == "bin" {
             continue;
         }

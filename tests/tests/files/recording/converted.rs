@@ -1,4 +1,4 @@
-//! A session that becomes a recording and a session again is the same.
+//! A session that is converted to a recording and back stays the same.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -45,7 +45,7 @@ fn round(session: &Path, folder: &Temporary) -> [Vec<u8>; 2] {
 fn the_bundled_session_comes_back_byte_for_byte() {
     let folder = Temporary::new("recording");
     round(Path::new(BUNDLED_SESSION), &folder);
-    // What is read of either is the same, truths included.
+    // Both are read as the same, ground truth included.
     let given = bundled_session();
     let recorded = Capture::open(Stored::open(folder.0.join("first.mcap")).unwrap()).unwrap();
     assert_eq!(given.n_frames(), recorded.n_frames());
@@ -100,7 +100,7 @@ fn nothing_is_written_over_or_out_of_the_folder() {
     fs::write(&out, "").unwrap();
     assert!(write(&session, None, &out).is_err());
     assert!(fs::read(&out).unwrap().is_empty());
-    // A recording may name whatever it likes.
+    // A recording may contain any names.
     let bytes = small(1).bytes;
     let at = bytes.windows(7).position(|window| window == b"toy.glb").unwrap();
     let mut evil = bytes.clone();

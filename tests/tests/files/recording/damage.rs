@@ -1,4 +1,4 @@
-//! What is read of a recording that is cut, or of which a byte is another.
+//! The readable part of a recording that is cut, or in which a byte is changed.
 
 use app_core::recording::{Loss, RecordingError};
 use app_core::session::Files;
@@ -7,7 +7,8 @@ use measure::random::Random;
 
 use crate::recording::small::{ATTACHMENT, CHUNK, FILE, Small, open, records, small};
 
-/// Frames that must be there of the first `n_bytes` bytes: those of chunks that end before.
+/// Number of frames that must be readable from the first `n_bytes` bytes: those of chunks that end
+/// before.
 fn whole_frames(small: &Small, n_bytes: usize) -> u32 {
     let n_chunks = records(&small.bytes)
         .iter()
@@ -37,7 +38,7 @@ fn cut(small: &Small, n_bytes: usize) {
                 .any(|loss| matches!(loss, Loss::Cut { .. } | Loss::Unfinished { .. }));
             assert_eq!(is_told, n_bytes < small.bytes.len(), "{n_bytes} bytes are left");
         }
-        // The first chunk holds the session.
+        // The first chunk contains the session.
         Err(RecordingError::NoSession { .. } | RecordingError::NotMcap) => {
             assert_eq!(n_frames, 0, "{n_bytes} bytes are left");
         }
@@ -71,7 +72,7 @@ fn a_cut_recording_is_read_up_to_its_last_whole_chunk() {
     cut(&small, small.bytes.len());
 }
 
-/// What is known of a byte's place: the chunk or file that it belongs to, or neither.
+/// The meaning of a byte's position: the chunk or file to which it belongs, or neither.
 fn flip(small: &Small, records: &[(u8, std::ops::Range<usize>)], at: usize) {
     let mut bytes = small.bytes.clone();
     bytes[at] ^= 1 << (at % 8);
@@ -85,7 +86,8 @@ fn flip(small: &Small, records: &[(u8, std::ops::Range<usize>)], at: usize) {
     let is_kept = |frame: &u32| !lost.contains(frame);
     let all = small.flushed.last().unwrap().n_frames;
     let expected: Vec<u32> = (0..all).filter(is_kept).collect();
-    // Times of a chunk serve viewers, and no checksum guards them: the chunk is not lost by those.
+    // Times of a chunk are meant for viewers, and no checksum protects them: wrong ones do not lose
+    // the chunk.
     let is_all = numbers.len() == all as usize;
     assert!(
         numbers == expected || is_all,
@@ -110,7 +112,8 @@ fn flip(small: &Small, records: &[(u8, std::ops::Range<usize>)], at: usize) {
 fn a_flipped_byte_loses_one_chunk_and_says_so() {
     let small = small(60);
     let records = records(&small.bytes);
-    // All bytes around the begins of records, where lengths and kinds stand, and some of all others.
+    // All bytes around the beginnings of records, which hold lengths and kinds, and some of all
+    // others.
     let near = |at: &usize| {
         records
             .iter()
@@ -139,13 +142,13 @@ fn a_damaged_chunk_is_lost_with_its_number() {
         n_chunks: 1,
     };
     assert!(recording.losses().contains(&chunk), "{:?}", recording.losses());
-    // Without any trace of it, too.
+    // Also without any trace of it.
     let gone = [&small.bytes[..place.start], &small.bytes[place.end..]].concat();
     assert_eq!(open(&gone).unwrap().losses(), [chunk]);
     assert!(open(&small.bytes).unwrap().losses().is_empty());
 }
 
-/// The comparison itself: a picture of another frame is found.
+/// Control for the comparison: a picture of another frame is detected.
 #[test]
 fn another_picture_is_found() {
     let small = small(30);
@@ -159,7 +162,7 @@ fn another_picture_is_found() {
     };
     let mut bytes = small.bytes.clone();
     bytes[at(3) + 20] ^= 1;
-    // Its checksum is corrected, as if it had been written so.
+    // Its checksum is corrected, as if it had been written that way.
     let (_, place) = records(&small.bytes)
         .into_iter()
         .find(|(opcode, _)| *opcode == CHUNK)

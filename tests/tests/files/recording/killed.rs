@@ -1,4 +1,4 @@
-//! A writer that is killed leaves all that it said was flushed.
+//! A writer that is killed leaves all data that it reported as flushed.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::recording::small::small;
 
 const RECORDER: &str = env!("CARGO_BIN_EXE_recorder");
 
-/// Kills so many writers, and returns how many frames they had acknowledged.
+/// Kills this number of writers, and returns the number of frames that they had acknowledged.
 fn kill_all(n_tries: u32) -> u32 {
     let folder = Temporary::new("recording");
     let mut random = Random::new(u64::from(n_tries));
@@ -51,7 +51,8 @@ fn what_was_acknowledged_outlives_a_thousand_writers() {
     assert!(kill_all(1000) > 0);
 }
 
-/// The comparison itself: a frame of the middle that is not there is missed, and so is a file that is another.
+/// Control for the comparison: a missing frame in the middle is detected, and so is a different
+/// file.
 #[test]
 fn what_is_missing_is_found() {
     let folder = Temporary::new("recording");

@@ -1,4 +1,5 @@
-//! The crate `mcap` reads what we write, checksums and summary included, and we read what it writes.
+//! The crate `mcap` reads our recordings, checksums and summary included, and our reader reads its
+//! recordings.
 
 use std::io::Cursor;
 
@@ -77,7 +78,8 @@ fn we_read_the_librarys() {
     assert_eq!(recording.device()["model"], "desk");
 }
 
-/// Pictures lie in a Foxglove message as protocol buffers have it: field 2, after a tag and a length.
+/// Pictures are stored in a Foxglove message as a protocol buffer: field 2, after a tag and a
+/// length.
 #[test]
 fn a_picture_is_a_field_of_its_message() {
     let small = small(2);

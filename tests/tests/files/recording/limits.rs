@@ -1,4 +1,5 @@
-//! A writer keeps to its limits, a queue never waits, and a reader takes no memory by what a file says.
+//! A writer observes its limits, a queue never waits, and a reader does not allocate memory on the
+//! word of a file.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -30,7 +31,7 @@ fn filled(limits: Limits, free_bytes: Option<u64>) -> (Stop, Vec<u8>, Flushed) {
         panic!("not stopped");
     };
     assert_eq!(writer.stopped(), Some(&stop));
-    // It stays so.
+    // It stays stopped.
     assert!(writer.tick(0, None).is_err());
     let (bytes, flushed) = writer.finish().unwrap();
     (stop, bytes, flushed)
@@ -63,7 +64,7 @@ fn a_recording_stops_within_its_limits_and_is_whole() {
     }
 }
 
-/// A device that is full all of a sudden, in the middle of a record.
+/// A device that is suddenly full, in the middle of a record.
 struct Full {
     bytes: Arc<std::sync::Mutex<Vec<u8>>>,
 }
@@ -125,7 +126,7 @@ fn a_second_is_flushed_and_a_clock_that_goes_back_as_well() {
     let first = 5 * SECOND;
     assert_eq!(frame(0, first), 0);
     assert_eq!(frame(1, first + SECOND - 1), 0);
-    // What is already there for a second is closed before the next frame begins another chunk.
+    // Content that has waited a second is flushed before the next frame begins another chunk.
     assert_eq!(frame(2, first + SECOND), 2);
     assert_eq!(frame(3, 0), 3);
     writer.tick(SECOND, None).unwrap();
@@ -148,7 +149,7 @@ fn what_is_no_entry_or_names_no_picture_is_refused_and_writes_nothing() {
     assert_eq!(writer.flush().unwrap().n_chunks, 0);
 }
 
-/// A sink that waits until it is let go on.
+/// A sink that waits for permission to continue.
 struct Slow(mpsc::Receiver<()>);
 
 impl Write for Slow {
@@ -215,7 +216,7 @@ fn drops_stand_in_the_recording() {
     assert_eq!(notes[0].message, r#"{"event":"dropped","n_items":2}"#);
 }
 
-/// A file that says it is large, and is nought behind its first bytes. It counts the most that is read at once.
+/// A file that claims to be large, and is zero after its first bytes. It records the largest read.
 struct Vast {
     first: Vec<u8>,
     n_bytes: u64,
@@ -274,7 +275,7 @@ fn no_memory_is_taken_by_a_stated_length() {
             most.load(Ordering::Relaxed)
         );
     }
-    // A picture is no larger than a caller takes.
+    // A picture is limited to the caller's size.
     let recording = open(&small(1).bytes).unwrap();
     let path = entry(0)["image"].as_str().unwrap().to_owned();
     let refused = recording.read(&path, 100);

@@ -1,4 +1,4 @@
-//! Recordings: what they hold, what is left of damaged ones, and how they are written.
+//! Recordings: their content, the readable part of damaged ones, and the writer.
 
 mod converted;
 mod damage;

@@ -1,4 +1,5 @@
-//! Recordings as other programs write them anew: chunks that are compressed, no chunks at all, several recordings in one file.
+//! Recordings as other programs rewrite them: with compressed chunks, without chunks, or several
+//! recordings in one file.
 
 use app_core::recording::{Loss, Recording, RecordingError};
 use app_core::session::Files;
@@ -19,12 +20,12 @@ fn record(opcode: u8, body: &[u8]) -> Vec<u8> {
     [&[opcode], &(body.len() as u64).to_le_bytes()[..], body].concat()
 }
 
-/// Records of a chunk that has no compression.
+/// Records of an uncompressed chunk.
 fn records_of(chunk: &[u8]) -> &[u8] {
     &chunk[HEAD_BYTES + 40..]
 }
 
-/// A chunk with these records, compressed; `n_bytes` are said to come out.
+/// A chunk with these records, compressed; `n_bytes` is the stated size.
 fn chunk(name: &str, records: &[u8], stored: &[u8], n_bytes: u64) -> Vec<u8> {
     let body = [
         &[0; 16][..],
@@ -48,7 +49,7 @@ fn lz4(records: &[u8]) -> Vec<u8> {
     encoder.finish().unwrap()
 }
 
-/// A recording with each chunk made anew. Indices go; they are not needed.
+/// A recording with each chunk made anew. Indices are dropped, since they are not needed.
 fn with_chunks(bytes: &[u8], made: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
     let mut anew = bytes[..8].to_vec();
     for (opcode, place) in records(bytes) {
@@ -168,7 +169,7 @@ fn damage_of_compressed_chunks_is_told() {
     assert!(open(&bytes).unwrap().losses().contains(&Loss::Changed));
 }
 
-/// A length that is stated decides neither how much room is taken nor how much comes out.
+/// A stated length determines neither the allocated memory nor the decompressed size.
 #[test]
 fn lengths_of_compressed_chunks_are_not_believed() {
     let small = small(N_FRAMES);
@@ -182,7 +183,7 @@ fn lengths_of_compressed_chunks_are_not_believed() {
             "{off} bytes more than there are"
         );
     }
-    // Nothing but zeros: a thousand chunks that hold far more than they take.
+    // Zeros: a thousand chunks with far more content than their compressed size.
     let zeros = vec![0; 32 << 20];
     let bomb = chunk("zstd", &zeros, &zstd(&zeros), zeros.len() as u64);
     assert!(bomb.len() < 64 << 10);
@@ -218,7 +219,8 @@ fn sequence_numbers_that_a_program_did_not_keep_are_counted() {
     is_whole(&open(&renumbered(&small.bytes, |kept| kept + 1)).unwrap());
 }
 
-/// Which pictures those behind the gap are is not known without their numbers: none is given to a wrong frame.
+/// Without sequence numbers, the pictures after a gap cannot be identified: none is assigned to a
+/// wrong frame.
 #[test]
 fn without_sequence_numbers_pictures_behind_a_gap_are_left_out() {
     let small = small(N_FRAMES);

@@ -1,4 +1,4 @@
-//! A small recording in memory, and what is known of it without reading it.
+//! A small recording in memory, and its known properties.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -20,7 +20,7 @@ pub(crate) struct Small {
     pub(crate) flushed: Vec<Flushed>,
 }
 
-/// So many frames, finished, a chunk every 25 of them.
+/// A finished recording of this number of frames, with a chunk for every 25.
 pub(crate) fn small(n_frames: u32) -> Small {
     let session = endless::session().to_string();
     let device = BTreeMap::from([("model".to_owned(), "desk".to_owned())]);
@@ -40,7 +40,7 @@ pub(crate) fn open(bytes: &[u8]) -> Result<Recording, RecordingError> {
     Recording::open(bytes.to_vec())
 }
 
-/// Opcode and place of each record that stands by itself.
+/// Opcode and position of each record outside of chunks.
 pub(crate) fn records(bytes: &[u8]) -> Vec<(u8, Range<usize>)> {
     let mut records = Vec::new();
     let mut at = 8;

@@ -1,4 +1,5 @@
-//! The document of the format has the tables of the schema, one for each object, and an example with every key.
+//! The document of the format has the tables of the schema, one for each object, and an example
+//! with every key.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;

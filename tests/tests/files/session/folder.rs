@@ -1,4 +1,4 @@
-//! A folder of the file system gives its own files, and nothing else.
+//! A folder of the file system returns its own files, and nothing else.
 
 use std::fs;
 use std::path::Path;

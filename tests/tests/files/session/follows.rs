@@ -1,8 +1,9 @@
-//! Whether a value follows a schema, as far as the schema of sessions goes; a keyword beyond that is a panic.
+//! Validation of a value against a schema, as far as the schema of sessions needs it; an unknown
+//! keyword is a panic.
 
 use serde_json::Value;
 
-/// What only describes.
+/// Keywords that only describe.
 const REMARKS: &[&str] = &["$schema", "title", "description", "format", "default"];
 
 pub(crate) fn follows(value: &Value, schema: &Value) -> bool {
@@ -18,7 +19,8 @@ pub(crate) fn follows(value: &Value, schema: &Value) -> bool {
         })
 }
 
-/// None where the rule is not one of objects; a rule of objects says nothing on others. As in the functions below.
+/// `None` if the rule is not one for objects; a rule for objects does not apply to other values.
+/// The functions below do the same.
 fn of_object(value: &Value, keyword: &str, rule: &Value) -> Option<bool> {
     let entries = value.as_object();
     let holds = |is_right: &dyn Fn(&serde_json::Map<String, Value>) -> bool| entries.is_none_or(is_right);

@@ -1,4 +1,4 @@
-//! Photographs through a lens are seen as a pinhole's, and only what is changed in them is put back.
+//! Photographs through a lens are converted to a pinhole's, and only changed pixels are put back.
 
 use app_core::scene::Image;
 use app_core::session::{Capture, Session, SessionError};
@@ -19,7 +19,8 @@ fn pattern(u: f64, v: f64) -> f64 {
     130.0 + 60.0 * (0.21 * u).sin() * (0.17 * v + 0.6).cos() + 40.0 * (0.05 * (u - v)).sin()
 }
 
-/// Where a pinhole sees what the photograph has at a place: the documented formula, turned round by bisection.
+/// A pinhole's position for a position in the photograph: the documented formula, inverted by
+/// bisection.
 fn of_pinhole(at_px: [f64; 2]) -> [f64; 2] {
     let [x, y] = [0, 1].map(|axis| (at_px[axis] - CENTRE_PX[axis]) / FOCAL_PX);
     let distorted = x.hypot(y);
@@ -64,7 +65,7 @@ fn open(lens: serde_json::Value) -> Result<Capture, SessionError> {
     parts.open()
 }
 
-/// The largest difference from the pattern, in codes, where the photograph has all that is needed.
+/// The largest difference from the pattern, in codes, where the photograph has all needed pixels.
 fn worst(image: &Image) -> f64 {
     let texels = (0..).zip(image.rgba8.chunks_exact(4));
     let errors = texels.filter_map(|(index, texel): (u32, _)| {
@@ -83,7 +84,7 @@ fn frames_and_plates_are_those_of_a_pinhole() {
     let plate = &capture.scene().plates[0].image;
     assert!(worst(&frame.image) < 1.5, "{}", worst(&frame.image));
     assert!(worst(plate) < 1.5, "{}", worst(plate));
-    // The comparison tells a lens that bends the other way, and none at all.
+    // Control: a lens with the opposite distortion, or none, is detected.
     for wrong in [json!({"k1": -K1, "k2": -K2}), json!(null)] {
         let frame = open(wrong).unwrap().frame(0).unwrap();
         assert!(worst(&frame.image) > 10.0, "{}", worst(&frame.image));
@@ -128,7 +129,7 @@ fn only_what_was_changed_is_put_back() {
     assert!(n_white > 20 && n_kept > 5000, "{n_white}, {n_kept}");
 }
 
-/// A map's pixels lie where the lens shows what they are of, each as it is.
+/// A map's pixels are at the lens's positions, with unchanged values.
 #[test]
 fn a_map_lies_over_the_photograph() {
     let capture = open(json!({"k1": K1, "k2": K2})).unwrap();

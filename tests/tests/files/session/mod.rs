@@ -261,7 +261,7 @@ fn each_damaged_file_is_named() {
     }
 }
 
-/// Looking at the heads of pictures says the same of other kinds as decoding them.
+/// The check of the pictures' headers reports other kinds in the same way as decoding.
 #[test]
 fn heads_of_other_kinds_are_named() {
     let mut parts = Parts::good();
@@ -302,7 +302,7 @@ fn json_that_is_cut_or_not_json_is_named() {
     }
 }
 
-/// Reads all of a spoilt capture, and expects one error that names file, field and reason.
+/// Reads all of a spoilt capture, and expects one error with file, field and reason.
 fn expect_error(parts: Parts, file: &str, field: &str, reason: &str) {
     let error = parts
         .read_all()

@@ -14,7 +14,7 @@ use crate::toy::builder::triangle;
 /// A capture in memory, whose parts the tests spoil.
 pub(crate) struct Parts {
     pub(crate) index: Value,
-    /// Bytes in place of `index`, for what is no JSON.
+    /// Bytes in place of `index`, for content that is not JSON.
     pub(crate) raw_index: Option<Vec<u8>>,
     pub(crate) files: HashMap<String, Vec<u8>>,
 }

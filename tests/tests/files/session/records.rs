@@ -1,4 +1,4 @@
-//! What is written by the records is read as it was.
+//! Written records are read back unchanged.
 
 use app_core::scene::Scene;
 use app_core::session::record::{CaptureRecord, Index};
@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 
 use crate::session::parts::{Parts, good_index};
 
-/// All that a scene is told by, but its pictures; numbers as far as two turns between degrees and radians leave them.
+/// A scene in text form without its pictures; numbers are rounded to survive two conversions
+/// between degrees and radians.
 fn told(scene: &Scene) -> String {
     let plates: Vec<_> = scene.plates.iter().map(|plate| plate.camera).collect();
     let probe = scene.probe.as_ref().unwrap();
@@ -31,7 +32,7 @@ fn told(scene: &Scene) -> String {
 fn a_scene_comes_back() {
     let mut index = good_index();
     index["toy"]["physical_pose"] = json!({ "clip": "Wave", "time": 0.25 });
-    // A lens has a focal length where no facet is told.
+    // A lens has a focal length if no facet is given.
     let mut focal = index.clone();
     focal["probe"]["facets"] = json!([]);
     let mut ball = index.clone();

@@ -1,4 +1,5 @@
-//! The schema of `capture.json`: it is kept, sessions follow it, and it agrees with the reader.
+//! The schema of `capture.json` is up to date, sessions conform to it, and it agrees with the
+//! reader.
 
 use std::fs;
 use std::path::Path;
@@ -29,7 +30,7 @@ fn good_sessions_follow_the_schema() {
     }
 }
 
-/// What is wrong otherwise than what is planted below.
+/// Errors other than those planted below.
 #[test]
 fn wrong_sessions_do_not() {
     let plate = &good_index()["backgrounds"][0];
@@ -46,8 +47,8 @@ fn wrong_sessions_do_not() {
     }
 }
 
-/// Each key is taken out, and each value replaced by ones of other types and sizes: what the schema refuses the reader
-/// refuses, and the other way round.
+/// Each key is removed, and each value replaced by values of other types and sizes: the schema and
+/// the reader refuse the same ones.
 #[test]
 fn schema_and_reader_agree() {
     let (mut n_good, mut n_wrong, mut disagreed) = (0, 0, Vec::new());
@@ -68,7 +69,7 @@ fn schema_and_reader_agree() {
     assert!(n_good > 50 && n_wrong > 1000, "{n_good} good, {n_wrong} wrong");
 }
 
-/// What was changed, and the index then.
+/// The changes, and the changed indices.
 fn changes(good: &Value) -> Vec<(String, Value)> {
     let mut changes = Vec::new();
     for (pointer, schema) in values(good, &schema(), "") {
@@ -88,7 +89,7 @@ fn changes(good: &Value) -> Vec<(String, Value)> {
     changes
 }
 
-/// All values of the index, each with its schema, which is null where there is none.
+/// All values of the index, each with its schema, or null without one.
 fn values(value: &Value, schema: &Value, pointer: &str) -> Vec<(String, Value)> {
     let mut found = Vec::new();
     let mut below = |key: &str, value, schema: &Value| {
@@ -125,7 +126,7 @@ fn replacements(pointer: &str, schema: &Value) -> Vec<Value> {
     if let (Some(min), Some(max)) = (schema["minimum"].as_f64(), schema["maximum"].as_f64()) {
         let beyond = 0.1 * (max - min);
         values.extend([json!(min - beyond), json!(max + beyond)]);
-        // Other rules, too, hold for the entries of a matrix and for the size that the pictures have.
+        // The entries of a matrix and the size of the pictures are also subject to other rules.
         if !pointer.contains("/world_from_") && !["/width", "/height"].contains(&pointer) {
             values.extend([json!(min), json!(max)]);
         }

@@ -1,4 +1,4 @@
-//! A picture that asks to be turned is taken as stored, and said to be.
+//! A picture with an orientation tag is read as stored, and a warning reports that.
 
 use app_core::session::{Session, SessionWarning};
 use image::codecs::{jpeg::JpegEncoder, png::PngEncoder};
@@ -7,7 +7,7 @@ use serde_json::json;
 
 use crate::session::parts::Parts;
 
-/// EXIF of one entry, the orientation, in either order of bytes.
+/// EXIF of one entry, the orientation, in either byte order.
 fn exif(orientation: u8, is_big: bool) -> Vec<u8> {
     let ordered = |mut bytes: Vec<u8>| {
         if !is_big {
@@ -47,7 +47,7 @@ fn jpeg(orientation: u8) -> Vec<u8> {
     bytes
 }
 
-/// A PNG whose tag lies before the pixels or behind them.
+/// A PNG whose tag is before or after the pixels.
 fn png(orientation: u8, is_behind: bool) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = PngEncoder::new(&mut bytes);
@@ -91,7 +91,8 @@ fn a_turned_picture_is_taken_as_stored_and_said_to_be() {
                 field: field.to_owned(),
                 orientation,
             };
-            // Plate and both pictures of the probe, then each frame, whether or not its picture was read for another.
+            // Plate and both pictures of the probe, then each frame, whether or not its picture was
+            // read for another.
             let expected = [
                 turned("plate.jpg", "backgrounds[0].image"),
                 turned("frame.png", "probe.image"),

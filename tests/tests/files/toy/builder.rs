@@ -1,4 +1,4 @@
-//! Small glTF files to start from.
+//! Small glTF files as starting points.
 
 pub(crate) use measure::glb::Glb;
 use serde_json::json;
@@ -16,7 +16,7 @@ pub(crate) fn triangle() -> Glb {
     glb
 }
 
-/// The same, following two joints: node 1 at the origin, node 2 at (0, 0, 4) and bound at (0, 1, 0).
+/// The same, bound to two joints: node 1 at the origin, node 2 at (0, 0, 4), bound at (0, 1, 0).
 pub(crate) fn skinned(joints: impl Fn(&mut Glb) -> usize, weights: impl Fn(&mut Glb) -> usize) -> Glb {
     let mut glb = triangle();
     let (joints, weights) = (joints(&mut glb), weights(&mut glb));
@@ -29,7 +29,7 @@ pub(crate) fn skinned(joints: impl Fn(&mut Glb) -> usize, weights: impl Fn(&mut 
     let mut matrices = [identity, identity].concat();
     matrices[16 + 13] = -1.0;
     let matrices = glb.floats("MAT4", &matrices);
-    // A skinned mesh ignores where its own node stands.
+    // A skinned mesh ignores the position of its own node.
     glb.json["nodes"][0]["translation"] = json!([100.0, 0.0, 0.0]);
     glb.json["nodes"][0]["skin"] = 0.into();
     glb.push("nodes", json!({}));

@@ -1,4 +1,5 @@
-//! Shapes with fewer triangles, which cast shadows in place of the toy's: closed as it is, and as near as they say, in every pose.
+//! Shapes with fewer triangles that cast shadows instead of the toy's: closed like it, and within
+//! their stated distance in every pose.
 
 use std::f64::consts::TAU;
 
@@ -11,11 +12,11 @@ use super::FILE;
 use super::builder::Glb;
 use super::shadow::unmatched;
 
-/// Of the tube's middle around the axis, and of the tube, in metres.
+/// Radius of the tube's centre line around the axis, and of the tube, in metres.
 const RADII: [f64; 2] = [0.03, 0.012];
-/// Triangles around the axis and around the tube, over two.
+/// Half the number of triangles around the axis and around the tube.
 const N: [u32; 2] = [96, 48];
-/// Places that distances are taken from.
+/// Number of points from which distances are measured.
 const N_PLACES: usize = 600;
 
 /// A torus.
@@ -23,7 +24,7 @@ fn torus() -> Toy {
     torus_and(0)
 }
 
-/// A torus over so many squares that lie side by side, of the torus' radius in all.
+/// A torus over this number of adjacent squares, which together have the torus' radius.
 fn torus_and(n_squares: u32) -> Toy {
     let place = |[around, along]: [u32; 2]| {
         let [turn, tilt] =
@@ -84,7 +85,7 @@ fn distance(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     to_edges.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// The largest distance of places within some triangles from others.
+/// The largest distance of points in some triangles from others.
 fn farthest(of: &[u32], from: &[u32], places: &[DVec3]) -> f64 {
     let triangles = |corners: &[u32]| -> Vec<[DVec3; 3]> {
         let chunks = corners.as_chunks::<3>().0.iter();
@@ -145,7 +146,7 @@ fn of_closed_and_open_pieces_it_is_told_which_is_which() {
     }
 }
 
-/// Also at moments that no shape was made for.
+/// Also at moments for which no shape was made.
 #[test]
 fn shapes_are_as_near_in_every_pose() {
     let toy = Toy::from_glb(
@@ -175,7 +176,8 @@ fn the_same_file_gives_the_same_shapes() {
     assert_eq!(torus().casters(), torus().casters());
 }
 
-/// Where one vertex has all triangles around it, only its rim gets simpler, and that in a time that grows as the file does.
+/// If one vertex has all triangles around it, only its rim is simplified, in a time proportional to
+/// the file's size.
 #[test]
 fn a_fan_keeps_its_middle() {
     let n = 60_000;

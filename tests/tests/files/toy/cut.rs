@@ -1,4 +1,5 @@
-//! What alpha cuts out is cut out of the triangles: what is left is there where alpha is, and nothing else.
+//! Alpha cut-outs are cut out of the triangles: the remaining area is where alpha is, and nothing
+//! else.
 
 #![expect(clippy::cast_possible_truncation, reason = "alpha is from 0 to 255")]
 
@@ -15,7 +16,7 @@ use super::extensions::read;
 
 const SIDE_PX: u32 = 64;
 
-/// A picture of a ring, its border as soft as a texel.
+/// A picture of a ring with a border as soft as a texel.
 fn ring() -> Vec<u8> {
     let picture = image::RgbaImage::from_fn(SIDE_PX, SIDE_PX, |x, y| {
         image::Rgba([
@@ -94,7 +95,7 @@ fn what_is_left_is_where_alpha_is() {
         for step in 0..1600_u16 {
             let at_px = Vec2::new(f32::from(step % 40), f32::from(step / 40)) * 1.6 + 0.37;
             let radius = at_px.distance(Vec2::splat(32.0));
-            // The picture is smooth to half a texel there.
+            // The picture is smooth within half a texel there.
             if RADII_PX.iter().any(|border| (radius - border).abs() < 0.5) {
                 continue;
             }
@@ -163,7 +164,8 @@ fn blend_is_cut_at_a_half_and_said() {
     assert_eq!(glass.indices().len(), 6);
     let whole = |toy: &Toy| matches!(toy.warnings(), [ToyWarning::BlendWhole { .. }]);
     assert!(whole(&glass), "{:?}", glass.warnings());
-    // What blends and loses nothing is drawn whole, too, and what is opaque needs no blending.
+    // A blended material without transparent parts is drawn whole, too, and an opaque one needs no
+    // blending.
     for (alpha, is_said) in [(0.7, true), (1.0, false)] {
         let factor = json!({ "baseColorFactor": [1.0, 1.0, 1.0, alpha] });
         let toy = read(&card(
@@ -177,7 +179,7 @@ fn blend_is_cut_at_a_half_and_said() {
     }
 }
 
-/// A clip may make a part large that is small at rest, or not there; the largest place of a shape counts.
+/// A clip may enlarge a part that is small or absent at rest; the largest size of a part counts.
 #[test]
 fn a_part_that_is_small_at_rest_is_cut_as_finely() {
     let material = json!({ "alphaMode": "MASK" });

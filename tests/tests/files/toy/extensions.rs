@@ -1,4 +1,4 @@
-//! Extensions: followed, or refused and warned about by name.
+//! Extensions: supported, or refused and reported by name.
 
 use std::f32::consts::FRAC_PI_2;
 use std::io::Cursor;
@@ -158,7 +158,7 @@ fn what_is_required_and_not_followed_is_refused_with_the_way_out() {
     required("KHR_texture_basisu", &["ktxdecompress"]);
     required("KHR_materials_transmission", &["export"]);
     required("ACME_spikes", &["export"]);
-    // Not required, but the corners are nowhere else.
+    // The extension is not required, but the corners exist nowhere else.
     let mut glb = triangle();
     let draco = json!({ "KHR_draco_mesh_compression": { "bufferView": 0, "attributes": { "POSITION": 0 } } });
     glb.json["meshes"][0]["primitives"][0]["extensions"] = draco;
@@ -169,7 +169,7 @@ fn what_is_required_and_not_followed_is_refused_with_the_way_out() {
         .remove("bufferView");
     let refused = Toy::from_glb(FILE, &glb.bytes()).unwrap_err().to_string();
     assert!(refused.contains("KHR_draco_mesh_compression"), "{refused}");
-    // A texture in a format that is not read is plain, and said.
+    // A texture in an unsupported format is replaced by plain white, with a warning.
     let mut glb = textured(&picture(image::ImageFormat::Png), &UVS);
     glb.json["textures"] = json!([{ "extensions": { "KHR_texture_basisu": { "source": 0 } } }]);
     let toy = read(&glb);

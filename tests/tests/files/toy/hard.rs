@@ -1,4 +1,5 @@
-//! Shapes that are hard on arithmetic: each gives finite corners and unit normals that are right, or is refused.
+//! Numerically difficult shapes: each results in finite corners and correct unit normals, or is
+//! refused.
 
 use std::f32::consts::{PI, TAU};
 
@@ -9,7 +10,7 @@ use serde_json::json;
 use super::FILE;
 use super::builder::{CORNERS, Glb, skinned, triangle};
 
-/// Posed as authored; every number is finite and every normal of length 1.
+/// The toy posed as authored; every number is finite and every normal has length 1.
 fn posed(toy: &Toy) -> PosedMesh {
     let mut posed = PosedMesh::default();
     toy.pose(&Pose::Authored, &DMat4::IDENTITY, &mut posed).unwrap();
@@ -18,7 +19,7 @@ fn posed(toy: &Toy) -> PosedMesh {
     posed
 }
 
-/// A mesh at node 0, with normals where there are any.
+/// A mesh at node 0, with normals if there are any.
 fn mesh(positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]]) -> Toy {
     let mut glb = Glb::new();
     let flat = |vectors: &[Vec3]| vectors.iter().flat_map(Vec3::to_array).collect::<Vec<f32>>();
@@ -36,8 +37,9 @@ fn mesh(positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]]) -> Toy {
 const TETRAHEDRON: [Vec3; 4] = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 const FACES: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
-/// A sphere of radius 1 with `n` rows of faces and twice as many columns, as corners that are normals as well. The seam
-/// and the poles have corners of their own for each column, as texture coordinates need.
+/// A sphere of radius 1 with `n` rows of faces and twice as many columns; its corners are also its
+/// normals. The seam and the poles have separate corners for each column, as texture coordinates
+/// need.
 fn sphere(n: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let fraction =
         |k: u32, of: u32| f32::from(u16::try_from(k).unwrap()) / f32::from(u16::try_from(of).unwrap());
@@ -71,7 +73,7 @@ fn one_triangle_is_a_toy() {
     assert!(toy.warnings().is_empty());
 }
 
-/// Its normals are those of its faces, up to rounding.
+/// The toy's normals are those of its faces, up to rounding.
 fn assert_outward(toy: &Toy) {
     let posed = posed(toy);
     for corners in toy.indices().as_chunks::<3>().0 {
@@ -85,13 +87,13 @@ fn assert_outward(toy: &Toy) {
 
 #[test]
 fn triangles_without_area_do_no_harm() {
-    // Three corners on a line, and two in one place.
+    // Three corners on a line, and two at one position.
     let corners = [Vec3::ZERO, Vec3::X, 2.0 * Vec3::X, Vec3::Y];
     let toy = mesh(&corners, &[], &[[0, 1, 2], [0, 1, 3]]);
     let posed = posed(&toy);
     assert_eq!(posed.normals[3..], [Vec3::Z; 3]);
     let toy = mesh(&corners, &[Vec3::ZERO; 4], &[[0, 1, 2], [0, 1, 3]]);
-    // The corner of the line alone has no face to take a normal from.
+    // Only the corner that belongs to the line alone has no face for a normal.
     assert_eq!(self::posed(&toy).normals, [Vec3::Z, Vec3::Z, Vec3::Y, Vec3::Z]);
 }
 
@@ -143,14 +145,15 @@ fn an_open_surface_is_as_its_triangles_say_and_a_closed_one_as_its_volume_says()
     }
 }
 
-/// Of a sphere of 32 rows, normals from faces are as exact as its faces are small: 5.6 degrees wide.
+/// In a sphere of 32 rows, normals from faces are as exact as its faces are small: 5.6 degrees
+/// wide.
 #[test]
 fn normals_without_length_are_those_of_the_faces_around() {
     const MAX_ANGLE_RAD: f32 = 0.1;
     let (corners, faces) = sphere(32);
     let toy = mesh(&corners, &vec![Vec3::ZERO; corners.len()], &faces);
     let posed = posed(&toy);
-    // Each pole is the corner of a triangle with an area but for one column.
+    // In every column but one, each pole is the corner of a triangle with an area.
     let n_columns = 2 * 32;
     let has_area = |vertex: &usize| *vertex != 0 && *vertex != 32 * (n_columns + 1) + n_columns;
     let angles = (0..posed.positions.len())
@@ -185,7 +188,7 @@ fn a_thousand_joints_move_a_toy() {
     let joints = |glb: &mut Glb| glb.u16s("VEC4", &[N_JOINTS - 1, 0, 0, 0].repeat(3));
     let weights = |glb: &mut Glb| glb.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(3));
     let mut glb = skinned(joints, weights);
-    // A chain, of which each joint stands a millimetre above the one before it.
+    // A chain in which each joint is a millimetre above the previous one.
     let nodes = glb.json["nodes"].as_array_mut().unwrap();
     nodes.truncate(1);
     for joint in 1..=N_JOINTS {

@@ -1,4 +1,4 @@
-//! Files that are a little wrong are toys all the same, and what was mended is said.
+//! Slightly wrong files are accepted as toys, and the corrections are reported.
 
 use app_core::toy::{Pose, PosedMesh, Toy, ToyWarning, packed};
 use glam::{DMat4, Vec3};
@@ -87,7 +87,7 @@ fn neighbours_are_packed_in() {
     let at = index(&view["byteOffset"]);
     assert_eq!(bin[at..at + 3], [1, 2, 3]);
     assert_eq!(asked, ["parts/the toy.bin", "skin.png", "missing.png"]);
-    // What is whole is not touched, and a buffer that is nowhere is named.
+    // An intact file stays unchanged, and a missing buffer is reported by name.
     let own = triangle().bytes();
     assert_eq!(
         packed(FILE, &own, &mut |_| Err(String::new())).unwrap().as_ref(),
@@ -136,7 +136,7 @@ fn a_neighbour_that_is_cut_short_is_not_read_on_into_the_next() {
         refused.contains("buffers[0]: reaches to byte 36, but there are 32"),
         "{refused}"
     );
-    // A length that is wrong itself does not open the way to the next file.
+    // A wrong length does not give access to the next file.
     json["buffers"][0]["byteLength"] = 32.into();
     let refused = pack(&json, 4).unwrap_err();
     assert!(
@@ -145,7 +145,7 @@ fn a_neighbour_that_is_cut_short_is_not_read_on_into_the_next() {
     );
 }
 
-/// As exporters write them that put all into one text.
+/// As in the files of exporters that write everything into one text.
 #[test]
 fn data_in_the_text_does_not_count_as_text() {
     let mut json = tree(DATA);

@@ -1,6 +1,7 @@
-//! Toys whose buffers are compressed by meshopt stand as those that are not.
+//! Toys whose buffers are compressed by meshopt are equal to uncompressed ones.
 //!
-//! Streams that are written out below are of the format's own encoder, meshoptimizer 1.0; those for filters are made here.
+//! The streams that are written out below come from the format's own encoder, meshoptimizer 1.0;
+//! those for filters are made here.
 
 #![expect(clippy::cast_possible_truncation, reason = "fractions of one, in few bits")]
 
@@ -63,7 +64,7 @@ fn corners() -> Vec<u32> {
         .collect()
 }
 
-/// A view of a compressed stream, which stands in a buffer of its own.
+/// A view of a compressed stream, which is in a buffer of its own.
 fn compressed(glb: &mut Glb, stream: &str, (extension, how): (&str, Value)) -> usize {
     if glb.json["buffers"].is_null() {
         glb.json["buffers"] = json!([{ "byteLength": 0 }, { "byteLength": 0, "extensions": { extension: { "fallback": true } } }]);
@@ -114,7 +115,7 @@ fn posed(toy: &Toy) -> Vec<Vec3> {
 fn compressed_buffers_are_those_that_were_compressed() {
     let points = net();
     let expected: Vec<Vec3> = corners().iter().map(|corner| points[*corner as usize]).collect();
-    // The codec may turn the corners of a triangle, and nothing else.
+    // The codec may rotate the corners of a triangle, but change nothing else.
     let whole = |toy: &Toy| {
         let triangles = posed(toy);
         for (found, expected) in triangles.chunks(3).zip(expected.chunks(3)) {
@@ -190,7 +191,7 @@ fn broken_streams_are_refused() {
     }
 }
 
-/// A stream of version 0 without any gain: each byte's difference in eight bits.
+/// A stream of version 0 without any compression: each byte's difference in eight bits.
 fn plain(elements: &[&[u8]]) -> Vec<u8> {
     let stride = elements[0].len();
     let n_groups = elements.len().div_ceil(16);
@@ -211,7 +212,7 @@ fn plain(elements: &[&[u8]]) -> Vec<u8> {
     stream
 }
 
-/// A triangle with an attribute in place of another, of filtered elements.
+/// A triangle with one attribute replaced by one of filtered elements.
 fn filtered(key: &str, filter: &str, accessor: Value, elements: &[&[u8]]) -> Toy {
     let mut glb = triangle();
     let stream = plain(elements);
@@ -230,7 +231,8 @@ fn filtered(key: &str, filter: &str, accessor: Value, elements: &[&[u8]]) -> Toy
 
 #[test]
 fn filters_are_undone() {
-    // Normals (0, 0, 1), (.6, 0, .8) and (0, -.6, -.8): on the octahedron (.6, 0) / 1.4, and the last folded over.
+    // Normals (0, 0, 1), (.6, 0, .8) and (0, -.6, -.8): on the octahedron (.6, 0) / 1.4, and the
+    // last one folded over.
     let byte = |value: f32| ((value * 127.0).round() as i8).cast_unsigned();
     let elements = [[0.0, 0.0, 1.0], [0.6 / 1.4, 0.0, 1.0], [1.0, -(1.0 - 0.0), 1.0]]
         .map(|[x, y, one]: [f32; 3]| [byte(x), byte(y), byte(one), 0]);
@@ -243,7 +245,7 @@ fn filters_are_undone() {
     );
     let mut posed = PosedMesh::default();
     toy.pose(&Pose::Authored, &DMat4::IDENTITY, &mut posed).unwrap();
-    // Two numbers of eight bits are off by half a 127th each.
+    // Two eight-bit numbers have an error of half a 127th each.
     let expected = [Vec3::Z, Vec3::new(0.6, 0.0, 0.8), Vec3::NEG_Z];
     for (normal, expected) in posed.normals.iter().zip(expected) {
         assert!(normal.distance(expected) < 0.012, "{normal}, not {expected}");
@@ -272,7 +274,8 @@ fn filters_are_undone() {
     ];
     assert_eq!(posed.positions, expected);
 
-    // Luma .5 and no colour; pure green; and half of alpha, each in eight bits with all of them in use.
+    // Luma .5 without colour; pure green; and half of alpha, each in eight bits, all of which are
+    // used.
     let elements: [[u8; 4]; 3] = [[127, 0, 0, 255], [127, 0, 127, 255], [0, 0, 0, 192]];
     let views: Vec<&[u8]> = elements.iter().map(<[u8; 4]>::as_slice).collect();
     let toy = filtered(
@@ -294,9 +297,9 @@ fn filters_are_undone() {
 
 #[test]
 fn a_filtered_rotation_turns_a_node() {
-    // A quarter turn about z: x, y and z, of which z and w are the largest, w is left out.
+    // A quarter turn about z, as x, y and z: z and w are the largest, and w is left out.
     let part = |value: f64| ((value * 2.0_f64.sqrt() * 32767.0).round() as i16).to_le_bytes();
-    // The order behind the one that is left out.
+    // The order after the one that is left out.
     let element = [
         part(0.0),
         part(0.0),

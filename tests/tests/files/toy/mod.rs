@@ -1,4 +1,5 @@
-//! Toys against closed forms: where vertices stand, how the toy looks, and which files are refused.
+//! Toys compared with closed forms: the positions of vertices, the look of the toy, and the refused
+//! files.
 
 pub(crate) mod builder;
 mod casters;
@@ -25,7 +26,7 @@ use poses::{Case, cases, turning};
 
 const FILE: &str = "bad.glb";
 
-/// Largest error of a position or normal of size one: a few roundings of 32 bits.
+/// Largest error of a position or normal of size one: a few 32-bit roundings.
 const TOLERANCE: f32 = 1e-6;
 
 #[test]
@@ -74,7 +75,7 @@ fn check_vertices(case: &Case, anchor_from_object: &DMat4, posed: &PosedMesh) {
     }
 }
 
-/// Triangles with an area run counter-clockwise as seen along their normals.
+/// Triangles with an area are counter-clockwise when seen against their normals.
 fn check_winding(case: &Case, posed: &PosedMesh) {
     for triangle in case.indices.chunks(3) {
         let [a, b, c] = [0, 1, 2].map(|i| posed.positions[triangle[i] as usize]);
@@ -151,7 +152,7 @@ fn broken_files_are_refused_with_field_and_reason() {
             assert!(error.contains(word), "{}: no {word:?} in {error:?}", refusal.name);
         }
     }
-    // No prefix of a file is read past its end.
+    // No prefix of a file is read beyond its end.
     let whole = triangle().bytes();
     for n_bytes in 0..whole.len() {
         Toy::from_glb(FILE, &whole[..n_bytes]).unwrap_err();
@@ -179,7 +180,7 @@ fn clips_are_found_and_times_brought_into_them() {
         glb.floats("VEC3", &[0.0, 0.0, 0.0, 4.0, 0.0, 0.0]),
     ];
     glb.animate("walk", "translation", "LINEAR", keys);
-    // From x = 0 back to x = 0, by way of x = 1 half-way.
+    // From x = 0 back to x = 0, through x = 1 half-way.
     let mut arc = [0.0; 18];
     [arc[6], arc[9]] = [4.0, -4.0];
     let keys = [glb.floats("SCALAR", &[0.0, 1.0]), glb.floats("VEC3", &arc)];
@@ -225,7 +226,7 @@ fn clips_are_found_and_times_brought_into_them() {
     assert!(matches!(error, Err(ToyError::PoseOverflow { vertex: 1, .. })));
 }
 
-/// A clip's moment and the same transforms given by name are one pose.
+/// A clip's moment and the same transforms, given by name, are one pose.
 #[test]
 fn a_pose_can_be_given_by_its_nodes() {
     let toy = Toy::from_glb(FILE, &turning().bytes()).unwrap();
@@ -236,7 +237,7 @@ fn a_pose_can_be_given_by_its_nodes() {
     let arm = toy.find_node("arm").unwrap();
     let authored = toy.authored_transform(arm).unwrap().unwrap();
     let turned = Trs {
-        // Of any length.
+        // A quaternion of any length.
         rotation: DQuat::from_rotation_z(FRAC_PI_2) * 3.0,
         ..authored
     };

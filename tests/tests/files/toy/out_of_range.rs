@@ -1,4 +1,4 @@
-//! Numbers that are each in range, and poses of them that are not; colours that glTF clamps.
+//! Numbers that are each in range, and poses of them that are not; and colours that glTF clamps.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use serde_json::json;
 use super::FILE;
 use super::builder::{Glb, triangle};
 
-/// A pose is refused by its file and its vertex, and says the limit.
+/// A pose is refused with its file, its vertex and the limit.
 fn assert_refused(toy: &Toy, pose: &Pose) {
     let error = toy
         .pose(pose, &DMat4::IDENTITY, &mut PosedMesh::default())
@@ -22,7 +22,7 @@ fn assert_refused(toy: &Toy, pose: &Pose) {
     );
 }
 
-/// The triangle at the end of a chain of nodes that each enlarge it.
+/// The triangle at the end of a chain of nodes each of which enlarges it.
 fn chain(n_nodes: usize, scale: f64) -> Glb {
     let mut glb = triangle();
     glb.json["nodes"][0]["scale"] = json!([scale, scale, scale]);
@@ -38,7 +38,7 @@ fn chain(n_nodes: usize, scale: f64) -> Glb {
 
 #[test]
 fn nodes_that_together_leave_the_range_are_refused_when_posed() {
-    // 1e7, beyond 32 bits, and beyond 64 bits, where infinity times 0 is no number.
+    // 1e7, beyond 32 bits, and beyond 64 bits, where infinity times 0 is not a number.
     for (n_nodes, scale) in [(7, 10.0), (5, 1e10), (400, 1e10)] {
         let toy = Toy::from_glb(FILE, &chain(n_nodes, scale).bytes()).unwrap();
         assert_refused(&toy, &Pose::Authored);
@@ -51,7 +51,7 @@ fn nodes_that_together_leave_the_range_are_refused_when_posed() {
 #[test]
 fn a_clip_that_leaves_the_range_between_keys_is_refused_when_posed() {
     let mut glb = triangle();
-    // At both keys the triangle stands at the origin, between them the tangents carry it far away.
+    // At both keys the triangle is at the origin; between them the tangents carry it far away.
     let mut values = [0.0; 18];
     [values[6], values[9]] = [1e11, -1e11];
     let keys = [glb.floats("SCALAR", &[0.0, 1.0]), glb.floats("VEC3", &values)];

@@ -1,4 +1,4 @@
-//! Files with the vertices that they must give, worked out by hand.
+//! Files with their expected vertices, computed by hand.
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::builder::{CORNERS, Glb, skinned, triangle};
 
-/// A posed file and what must come out. A position and a normal for each vertex.
+/// A posed file and the expected result: a position and a normal for each vertex.
 pub(crate) struct Case {
     pub(crate) name: &'static str,
     pub(crate) glb: Glb,
@@ -17,7 +17,7 @@ pub(crate) struct Case {
 
 const Z: [f32; 3] = [0.0, 0.0, 1.0];
 
-/// One triangle with the corners given; the normal is the same at each.
+/// One triangle with the given corners; the normal is the same at each.
 fn one(name: &'static str, glb: Glb, moment: Option<(&'static str, f64)>, corners: [[f32; 3]; 3]) -> Case {
     let expected = corners.map(|corner| (corner, Z)).to_vec();
     Case {
@@ -41,7 +41,7 @@ fn animated(path: &str, interpolation: &str, shape: &str, times: &[f32], values:
     glb
 }
 
-/// Its node, called `arm`, turns by 90 degrees around z in the second that `move` takes.
+/// The file's node, called `arm`, turns by 90 degrees around z in the second that `move` takes.
 pub(crate) fn turning() -> Glb {
     let quarter = [0.0, 0.0, FRAC_1_SQRT_2, FRAC_1_SQRT_2];
     let values = [[0.0, 0.0, 0.0, 1.0], quarter].concat();
@@ -142,7 +142,7 @@ fn skins_and_morphs() -> Vec<Case> {
     let blend = moved([0.0, -0.75, 3.0]);
     let doubled = |glb: &mut Glb| glb.floats("VEC4", &[0.5, 1.5, 0.0, 0.0].repeat(3));
     let nothing = |glb: &mut Glb| glb.floats("VEC4", &[0.0; 12]);
-    // Joints without weight may say anything.
+    // Joints without weight may have any index.
     let byte_joints = |glb: &mut Glb| glb.u8s("VEC4", false, &[0, 1, 200, 0].repeat(3));
     let bytes = |glb: &mut Glb| glb.u8s("VEC4", true, &[51, 204, 0, 0].repeat(3));
     let mut two_sets = skinned(joints, |glb| glb.floats("VEC4", &[0.25, 0.0, 0.0, 0.0].repeat(3)));
@@ -153,7 +153,7 @@ fn skins_and_morphs() -> Vec<Case> {
     let attributes = &mut two_sets.json["meshes"][0]["primitives"][0]["attributes"];
     attributes["JOINTS_1"] = more_joints.into();
     attributes["WEIGHTS_1"] = more_weights.into();
-    // The lowest integer of 16 bits stands for -1 as well.
+    // The lowest 16-bit integer also represents -1.
     let mut by_fractions = morphed();
     let weights = by_fractions.view(&[i16::MIN, i16::MAX, 0, 0].map(i16::to_le_bytes).concat());
     by_fractions.json["accessors"][3] = json!({ "bufferView": weights, "componentType": 5122, "normalized": true, "type": "SCALAR", "count": 4 });
@@ -200,7 +200,7 @@ fn topologies() -> Vec<Case> {
             indices: indices.to_vec(),
         }
     };
-    // A corner at the origin from nothing, the others written over it.
+    // A corner at the origin by default; the others are written over it.
     let mut sparse = triangle();
     let (indices, values) = (sparse.view(&[1, 2]), sparse.view(&bytes_of(&CORNERS[3..])));
     sparse.json["accessors"][0] = json!({ "componentType": 5126, "type": "VEC3", "count": 3, "sparse": {
@@ -225,7 +225,8 @@ fn topologies() -> Vec<Case> {
     ]
 }
 
-/// Two triangles without normals that share an edge at a right angle, turned by i16 fractions about z.
+/// Two triangles without normals with a common edge at a right angle, turned by i16 fractions about
+/// z.
 fn folded() -> Case {
     let mut glb = Glb::new();
     let position = glb.floats("VEC3", &[&CORNERS[..], &[0.0, 0.0, -1.0]].concat());

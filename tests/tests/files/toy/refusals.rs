@@ -1,4 +1,4 @@
-//! Broken files, and what the refusal must say.
+//! Broken files, and the expected refusals.
 
 use std::io::Cursor;
 
@@ -28,7 +28,7 @@ fn changed(name: &'static str, words: &[&'static str], change: impl Fn(&mut Glb)
     broken(name, words, glb)
 }
 
-/// A triangle, with another value at a place of its tree, which is a field's.
+/// A triangle, with another value at a position of its tree, which is a field's.
 fn set(name: &'static str, words: &[&'static str], place: &str, value: Value) -> Refusal {
     changed(name, words, |glb| {
         let (parent, key) = place.rsplit_once('/').unwrap();
@@ -151,7 +151,8 @@ fn numbers() -> Vec<Refusal> {
     ]
 }
 
-/// Finite numbers whose squares or products leave what 32 bits hold, or that glTF does not allow.
+/// Finite numbers whose squares or products exceed the range of 32 bits, or that glTF does not
+/// allow.
 #[rustfmt::skip] // One case a line.
 fn ranges() -> Vec<Refusal> {
     let factor = |name, factor: [f32; 4]| {
@@ -195,7 +196,7 @@ fn moved(name: &'static str, words: &[&'static str], path: &str, [time, value]: 
     })
 }
 
-/// An inverse bind matrix that scales far.
+/// An inverse bind matrix with a large scale.
 fn bound_far() -> Refusal {
     let joints = |glb: &mut Glb| glb.u16s("VEC4", &[0; 12]);
     let weights = |glb: &mut Glb| glb.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(3));
@@ -228,7 +229,7 @@ fn skins() -> Vec<Refusal> {
     ]
 }
 
-/// Files that are toys, and whose only clip, `move`, cannot be read.
+/// Files that are valid toys, but whose only clip, `move`, cannot be read.
 #[rustfmt::skip] // One case a line.
 pub(crate) fn broken_clips() -> Vec<Refusal> {
     let animate = |glb: &mut Glb, times: &[f32], values: &[f32]| {

@@ -1,4 +1,5 @@
-//! The shape that shadows are drawn from: what is welded, and what counts as closed.
+//! The shape from which shadows are drawn: its welded vertices, and the definition of a closed
+//! shape.
 
 use std::collections::{HashMap, HashSet};
 
@@ -9,7 +10,7 @@ use serde_json::json;
 use super::FILE;
 use super::builder::{CORNERS, Glb, triangle};
 
-/// Corners of a tetrahedron, its faces counter-clockwise seen from outside.
+/// Corners of a tetrahedron; its faces are counter-clockwise seen from outside.
 const TETRAHEDRON: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
@@ -28,7 +29,7 @@ fn faceted(faces: &[[usize; 3]]) -> Toy {
     Toy::from_glb(FILE, &glb.bytes()).unwrap()
 }
 
-/// How often each edge is passed one way more than the other.
+/// Number of edges that are passed more often in one direction than in the other.
 pub(crate) fn unmatched(corners: &[u32]) -> usize {
     let mut passes: HashMap<[u32; 2], i32> = HashMap::new();
     for &[a, b, c] in corners.as_chunks().0 {
@@ -51,7 +52,7 @@ fn closed_pieces_come_before_open_ones_and_each_triangle_once() {
     assert_eq!((shadow.indices.len(), shadow.n_closed), (15, 12));
     assert!(!shadow.is_closed());
     assert_eq!(n_corners(&shadow.indices), 4 + 3);
-    // The edges of the triangle beside it alone.
+    // Only the edges of the triangle beside it.
     assert_eq!(unmatched(&shadow.indices[..12]), 0);
     assert_eq!(unmatched(&shadow.indices), 3);
 }
@@ -65,7 +66,7 @@ fn a_piece_whose_faces_look_inwards_is_turned_around() {
     let [ToyWarning::FacesInverted { n_triangles: 4, .. }] = toy.warnings() else {
         panic!("{:?}", toy.warnings());
     };
-    // Its normals, taken from the faces, are those of the piece that was right from the start.
+    // Its normals, from the faces, are those of the piece that was right from the start.
     let posed = |toy: &Toy| {
         let mut posed = PosedMesh::default();
         toy.pose(&Pose::Authored, &DMat4::IDENTITY, &mut posed).unwrap();
@@ -84,7 +85,7 @@ fn what_lacks_a_face_or_has_one_turned_around_is_open() {
     }
 }
 
-/// Two nodes show one mesh in one place, but a clip may part them; so may morph targets.
+/// Two nodes show one mesh at one position, but a clip may separate them; so may morph targets.
 #[test]
 fn what_a_pose_can_part_is_not_welded() {
     let mut glb = triangle();

@@ -1,11 +1,11 @@
-//! Files that are no toys say what they are, and what to do.
+//! Files of other kinds are reported with their kind, and with advice.
 
 use app_core::toy::Toy;
 
 use super::FILE;
 use super::builder::triangle;
 
-/// The head of a ZIP file whose first file has this name.
+/// The header of a ZIP file whose first file has this name.
 fn zip(name: &str) -> Vec<u8> {
     let mut bytes = b"PK\x03\x04".to_vec();
     bytes.resize(26, 0);
@@ -52,7 +52,7 @@ fn the_wrong_file_says_what_it_is_and_what_to_do() {
         let says = |word: &str| refused.contains(word);
         assert!(says(FILE) && says(what) && says(way_out), "{what}: {refused}");
     }
-    // JSON is no OBJ, and what is not known is not guessed at.
+    // JSON is not OBJ, and an unknown kind is not guessed.
     let refused = Toy::from_glb(FILE, b"\x01\x02\x03\x04 nothing")
         .unwrap_err()
         .to_string();

@@ -1,4 +1,4 @@
-//! Every shader in the languages of phones' drivers, and what each needs of them.
+//! Every shader in the languages of phones' drivers, and its requirements.
 
 use std::collections::BTreeSet;
 
@@ -15,12 +15,12 @@ use naga::{
 
 use crate::contract::check::{REQUESTED, parse, validate};
 
-/// Where the table of needs stands, between two lines.
+/// The document with the table of requirements, between two lines.
 const DOCUMENT: &str = include_str!("../../../../app-core/doc/passes.md");
 const BEGIN: &str = "<!-- needs: begin -->\n";
 const END: &str = "<!-- needs: end -->";
 
-/// One entry point in a language, or why it is not.
+/// One entry point in a language, or the reason why it cannot be translated.
 fn translated(module: &Module, info: &ModuleInfo, entry: usize) -> [Result<(), String>; 3] {
     let point = &module.entry_points[entry];
     let (stage, name) = (point.stage, point.name.clone());
@@ -68,7 +68,7 @@ fn translated(module: &Module, info: &ModuleInfo, entry: usize) -> [Result<(), S
     ]
 }
 
-/// All that cannot be said in a language.
+/// All parts that cannot be expressed in a language.
 fn problems(name: &str, source: &str) -> Vec<String> {
     let module = parse(source).unwrap();
     let info = validate(&module, REQUESTED).unwrap();
@@ -86,7 +86,7 @@ fn problems(name: &str, source: &str) -> Vec<String> {
 
 /// Those that naga cannot say in GLSL, which has no way to load a texel of a depth map. The core runs on Vulkan and Metal
 /// alone: on OpenGL ES these would have to read another kind of texture.
-const NOT_IN_GLSL: [&str; 5] = ["validity", "rim", "tint", "appearance", "toy"];
+const NOT_IN_GLSL: [&str; 7] = ["validity", "fit", "rim", "gloss", "tint", "appearance", "toy"];
 
 #[test]
 fn every_shader_can_be_said_in_the_languages_of_phones() {
@@ -117,7 +117,8 @@ fn a_planted_load_that_a_language_lacks_is_found() {
     );
 }
 
-/// What a shader asks of a driver beyond drawing triangles with textures that are loaded or filtered.
+/// Features that a shader needs from a driver beyond drawing triangles with textures that are
+/// loaded or filtered.
 fn needs(shader: &Shader) -> BTreeSet<&'static str> {
     let module = parse(&shader.source()).unwrap();
     let info = validate(&module, REQUESTED).unwrap();
@@ -177,7 +178,7 @@ fn writes_depth(module: &Module, result: &naga::FunctionResult) -> bool {
     is_depth(result.binding.as_ref()) || of_members
 }
 
-/// Whether a function or one that it calls ends without a result.
+/// Whether a function, or one that it calls, ends without a result.
 fn kills(module: &Module, function: &Function) -> bool {
     let called = |expression: &Expression| match expression {
         Expression::CallResult(of) => kills(module, &module.functions[*of]),
@@ -202,7 +203,7 @@ fn has_kill(module: &Module, block: &naga::Block) -> bool {
     })
 }
 
-/// The table of the document: what is needed, and by which passes.
+/// The table of the document: the requirements, and the passes that have them.
 #[test]
 fn the_document_says_what_each_pass_needs() {
     let all: Vec<(&str, BTreeSet<&str>)> = shaders().map(|shader| (shader.name, needs(shader))).collect();

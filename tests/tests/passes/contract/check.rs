@@ -1,4 +1,5 @@
-//! The shaders' side of the contract: everything that is demanded of one joined module, as a list of what is wrong.
+//! The shaders' side of the contract: all requirements for one joined module, as a list of
+//! violations.
 
 use app_pipeline::gpu::context::phone_limits;
 use app_pipeline::gpu::shader::Mirrors;
@@ -11,11 +12,12 @@ use naga::{
 
 use crate::contract::fragment::struct_values;
 
-/// What a shader may use beyond plain WGSL: nothing.
+/// Capabilities that a shader may use beyond plain WGSL: none.
 ///
-/// wgpu derives naga's capabilities from the features asked for and from the downlevel flags of the adapter. The one
-/// feature asked for is `TIMESTAMP_QUERY`, which gives none. The flags could give multisampled shading, arrays of cube
-/// maps and half floats packed in floats where an adapter has them; no phone limit promises any of the three.
+/// wgpu derives naga's capabilities from the requested features and from the downlevel flags of the
+/// adapter. The only requested feature is `TIMESTAMP_QUERY`, which adds none. The flags could add
+/// multisampled shading, arrays of cube maps and half floats packed in floats if an adapter
+/// supports them; no phone limit guarantees any of the three.
 pub(crate) const REQUESTED: Capabilities = Capabilities::empty();
 
 /// Parses a joined module.
@@ -31,7 +33,8 @@ pub(crate) fn validate(module: &Module, capabilities: Capabilities) -> Result<Mo
         .map_err(|error| format!("is not valid for the device: {:?}", error.into_inner()))
 }
 
-/// What is wrong with `source`, of which the host shares `shared`, perhaps with a fault in it.
+/// Violations in `source`, of which the host shares `shared`, and which may contain a planted
+/// fault.
 pub(crate) fn problems(source: &str, shared: &[&Mirrors]) -> Vec<String> {
     let checked = parse(source).and_then(|module| Ok((validate(&module, REQUESTED)?, module)));
     let (info, module) = match checked {
@@ -68,7 +71,7 @@ pub(crate) fn constant(module: &Module, name: &str) -> Option<f64> {
     }
 }
 
-/// Elements of an array variable of the module.
+/// Number of elements of an array variable of the module.
 pub(crate) fn array_length(module: &Module, name: &str) -> Option<u32> {
     let (_, global) = module
         .global_variables
@@ -118,7 +121,7 @@ fn struct_problems(module: &Module, mirrors: &[&Mirror]) -> Vec<String> {
     problems
 }
 
-/// Names of the structs that buffers hold: alone, in arrays, or within others.
+/// Names of the structs in buffers: alone, in arrays, or within others.
 fn shared_structs(module: &Module) -> Vec<String> {
     let is_buffer = |global: &&GlobalVariable| {
         matches!(global.space, AddressSpace::Uniform | AddressSpace::Storage { .. })
@@ -202,7 +205,7 @@ fn entry_point_problems(module: &Module) -> Vec<String> {
     problems
 }
 
-/// What one entry point uses of what the device limits: (what, how much, limit).
+/// An entry point's use of resources that the device limits: (name, number, limit).
 fn counts(module: &Module, entry: &naga::EntryPoint, uses: &FunctionInfo) -> Vec<(&'static str, u32, u32)> {
     let limits = phone_limits();
     let is_used = |handle: Handle<GlobalVariable>| !uses[handle].is_empty();
@@ -223,7 +226,7 @@ fn counts(module: &Module, entry: &naga::EntryPoint, uses: &FunctionInfo) -> Vec
     let workgroup_bytes = used
         .iter()
         .filter(|global| global.space == AddressSpace::WorkGroup)
-        // As wgpu counts them: each variable starts on 16 bytes.
+        // As wgpu counts them: each variable is aligned to 16 bytes.
         .map(|global| inner(global).size(module.to_ctx()).next_multiple_of(16))
         .sum();
     let n_groups = used

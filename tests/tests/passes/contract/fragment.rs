@@ -1,14 +1,15 @@
-//! Fragment shaders hold no structs: drivers of older Adreno keep those at 16 bits, whatever was asked for.
+//! Fragment shaders contain no structs: drivers of older Adreno chips store those in 16 bits,
+//! whatever precision was requested.
 //!
-//! Source: KhronosGroup/WebGL issue 3351. Uniform buffers are read member by member, and outputs of an entry point have to be
-//! a struct where there are several: both are let pass.
+//! Source: KhronosGroup/WebGL issue 3351. Uniform buffers are read member by member, and several
+//! outputs of an entry point must be a struct: both are permitted.
 
 use std::collections::BTreeSet;
 
 use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{Block, Function, Handle, Module, ShaderStage, Statement, Type, TypeInner};
 
-/// Structs as values, arguments or locals in what a fragment shader runs.
+/// Structs as values, arguments or locals in the code of a fragment shader.
 pub(crate) fn struct_values(module: &Module, info: &ModuleInfo) -> Vec<String> {
     let mut problems = BTreeSet::new();
     for (index, entry) in module.entry_points.iter().enumerate() {
@@ -27,7 +28,7 @@ pub(crate) fn struct_values(module: &Module, info: &ModuleInfo) -> Vec<String> {
     problems.into_iter().collect()
 }
 
-/// Every function that one calls, or that these call.
+/// All functions that a function calls, directly or indirectly.
 fn called_by(module: &Module, function: &Function) -> BTreeSet<Handle<Function>> {
     let mut called = BTreeSet::new();
     let mut blocks = vec![&function.body];

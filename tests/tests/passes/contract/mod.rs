@@ -7,6 +7,7 @@ mod fragment;
 use std::fs;
 use std::path::Path;
 
+use app_core::gloss::Gloss;
 use app_core::preset::BALANCED;
 use app_core::sharpness::Sharpness;
 use app_pipeline::geometry::rect::{PixelRect, PlaneRect};
@@ -152,6 +153,9 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
             has_things: false,
             sharpness: Sharpness::SHARP,
             is_softened: false,
+            gloss: Gloss::NONE,
+            angular_radii_rad: vec![0.0],
+            reflection: None,
             region,
             physical_toy: Some(region),
             toy_box: Some(region),

@@ -1,4 +1,4 @@
-//! Colours of a toy where it is plain from which pixel they are.
+//! Colours of a toy in cases where their source pixels are known.
 
 use glam::{DVec3, DVec4, UVec2};
 use reference::appearance::{REACH_PX, Seen, ToyPixel, clean};
@@ -14,7 +14,8 @@ fn pixel(value: f64) -> ToyPixel {
     }
 }
 
-/// A toy at `depth` all over, of which some pixels of known value show one surface; all others would give 9.
+/// A toy at constant `depth`, some pixels of which, with a known value, show a single surface; all
+/// others would give 9.
 fn scene(depth: f64, known: &[(UVec2, f64, f64)]) -> Raster<Seen> {
     Raster::from_fn(SIZE, |at| {
         let found = known.iter().find(|(place, ..)| *place == at);
@@ -60,7 +61,7 @@ fn one_pixel_is_carried_as_far_as_it_reaches() {
             assert_eq!(color(&beside_toy, at), expected, "{at}");
         }
     }
-    // A part of the toy too thin to have such a pixel keeps its own.
+    // A part of the toy that is too thin for such a pixel keeps its own.
     let thin = scene(0.5, &[(middle, 0.25, 0.5)]);
     assert_eq!(color(&thin, UVec2::new(1, 5)), Some(9.0));
 }
@@ -71,12 +72,12 @@ fn the_nearest_counts_of_its_own_surface_first() {
     let at = UVec2::new(8, 5);
     let beside_toy = scene(0.0, &[(near, 0.25, 0.5), (far, 1.0, 0.5)]);
     assert_eq!(color(&beside_toy, at), Some(0.25));
-    // The nearer one is of another surface.
+    // The nearer pixel belongs to another surface.
     let two_surfaces = scene(0.5, &[(near, 0.25, 0.4), (far, 1.0, 0.5)]);
     assert_eq!(color(&two_surfaces, at), Some(1.0));
-    // Where there is no other it will do.
+    // It is used if there is no other.
     assert_eq!(color(&scene(0.5, &[(near, 0.125, 0.4)]), at), Some(0.125));
-    // Of two that are as near the first one.
+    // The first of two equally near ones.
     let opposite = UVec2::new(9, 5);
     let as_near = scene(0.0, &[(opposite, 1.0, 0.5), (near, 0.25, 0.5)]);
     assert_eq!(color(&as_near, at), Some(0.25));

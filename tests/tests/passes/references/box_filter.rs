@@ -1,4 +1,4 @@
-//! Filtered terms that are known: of a constant, of a single one, of a step.
+//! Filtered terms in known cases: a constant, a single term, a step.
 
 use glam::{DVec3, DVec4, UVec2};
 use reference::box_filter::{box_sums, mean};
@@ -15,7 +15,7 @@ fn constant_stays_and_what_has_no_term_does_not_count() {
     let sums = box_sums(&terms, RADIUS_PX);
     for texel in texels_of(SIZE) {
         let mean = mean(sums.at(texel));
-        // A square reaches its radius beyond the shadow's edge.
+        // A square extends beyond the shadow's edge by its radius.
         assert_eq!(mean.is_some(), texel.x < 30 + RADIUS_PX, "{texel}");
         assert!(
             mean.is_none_or(|mean| (mean - value).abs().max_element() < 1e-12),

@@ -1,4 +1,4 @@
-//! The picture where its answer is known: nothing moved, or the toy was taken away.
+//! The picture in cases with a known result: nothing moved, or the toy was taken away.
 
 use glam::{DVec3, DVec4, UVec2};
 use reference::composite::{Shown, inside_border, receiver_color};
@@ -17,7 +17,7 @@ fn colors(seed: u32) -> Raster<DVec3> {
     noise(seed).map(|value| DVec3::new(value, 1.0 - value, 0.5 + 0.5 * value))
 }
 
-/// A frame that no model explains, with nothing moved yet.
+/// A frame that no model explains, in which nothing has moved.
 fn scene() -> (Region, Pictures, Shown) {
     let visibility = noise(2).map(|value| DVec4::new(value, 1.0 - value, 0.0, 0.0));
     let ambient = Raster::from_fn(UVec2::new(9, 6), |at| scatter(at.x + at.y, 3));
@@ -59,7 +59,7 @@ fn beside_the_receiver_only_the_toy_goes() {
     pictures.seen = Raster::from_fn(SIZE, |at| f64::from(1 - at.y % 2));
     let picture = picture(&region, &pictures, &shown);
     for row in 0..SIZE.y {
-        // The receiver ends 10.5 pixels from the middle, which is at 30.5.
+        // The receiver ends 10.5 pixels from the centre, which is at 30.5.
         for column in [19, 41] {
             let at = UVec2::new(column, row);
             let bare = pictures.plate.at(at) * shown.solution.gain;
@@ -93,8 +93,9 @@ fn toy_taken_away_leaves_the_plate_at_the_frames_exposure() {
     }
 }
 
-/// With none of its strength a shadow is no other than that of a toy that was taken away, with half of it a gray receiver loses half as
-/// much, and one of twice the strength is two, one over the other.
+/// A shadow of no strength equals that of a toy that was taken away; with half the strength a gray
+/// receiver loses half as much; and one of twice the strength equals two shadows, one over the
+/// other.
 #[test]
 fn a_weak_shadow_takes_its_share_and_a_strong_one_is_laid_over_itself() {
     let (region, mut pictures, mut shown) = scene();
@@ -121,7 +122,7 @@ fn a_weak_shadow_takes_its_share_and_a_strong_one_is_laid_over_itself() {
 #[test]
 fn border_fades_into_the_frame_at_inner_edges_alone() {
     let (mut region, mut pictures, mut shown) = scene();
-    // The left edge is inside the camera's picture, the others are its own.
+    // The left edge is inside the camera's picture, the others are the picture's own.
     region.border_px = [10.0, 0.0, 0.0, 0.0];
     shown.visibility = Raster::from_fn(SIZE, |_| DVec4::ONE);
     let faded = picture(&region, &pictures, &shown);
@@ -136,7 +137,7 @@ fn border_fades_into_the_frame_at_inner_edges_alone() {
     }
     assert!((inside_border(&region, UVec2::ZERO) - 1.0).abs() < 1e-12);
 
-    // What hides the receiver goes even there.
+    // The toy reaches even there.
     pictures.seen = Raster::from_fn(SIZE, |_| 0.0);
     let whole = picture(&region, &pictures, &shown);
     region.border_px = [10.0, 0.0, 0.0, 0.0];

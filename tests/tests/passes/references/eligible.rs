@@ -1,4 +1,4 @@
-//! Masks of two shadows that overlap, and of a penumbra between them.
+//! Masks of two overlapping shadows, and of a penumbra between them.
 
 use glam::{DVec4, UVec2};
 use reference::census::seen_sets;
@@ -9,13 +9,14 @@ use reference::sets::LightSet;
 const SIZE: UVec2 = UVec2::new(60, 21);
 const MARGIN_PX: i32 = 2;
 
-/// The first light is hidden from column 10 to 40, the second from 30 to 50 with two columns of penumbra before.
+/// The first light is hidden from column 10 to 40, the second from 30 to 50, after two columns of
+/// penumbra.
 fn visibility(at: UVec2) -> DVec4 {
     let first = if (10..40).contains(&at.x) { 0.0 } else { 1.0 };
     let second = match at.x {
         28..30 => 0.5,
         30..50 => 0.0,
-        // Nothing to see for the eye.
+        // Invisible to the eye.
         50..52 => 0.995,
         _ => 1.0,
     };
@@ -37,7 +38,7 @@ fn umbras_are_kept_apart_by_lights_and_away_from_edges() {
         assert_eq!(eligible.at(UVec2::new(x, 5)), expected, "column {x}");
         assert_eq!(shadow.at(UVec2::new(x, 5)), (10..50).contains(&x), "column {x}");
     }
-    // The toy covers the lower rows, and keeps its distance.
+    // The toy covers the lower rows and is excluded with a margin.
     assert_eq!(eligible.at(UVec2::new(30, 18)), none);
     assert_eq!(eligible.at(UVec2::new(34, 13)), none);
     assert_eq!(eligible.at(UVec2::new(34, 12)), both);

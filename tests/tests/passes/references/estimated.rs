@@ -1,4 +1,5 @@
-//! `lit`, `estimate` and `detail` where the frame is what the model says, so that the plate and the residual are known.
+//! `lit`, `estimate` and `detail` for a frame that follows the model, so that plate and residual
+//! are known.
 
 use glam::{DVec3, DVec4, UVec2};
 use reference::detail::{DETAIL, NOISE, separate, told};
@@ -18,7 +19,7 @@ fn is_hidden(at: UVec2) -> bool {
     (20..41).contains(&at.x) && (9..30).contains(&at.y)
 }
 
-/// All light on the left, next to none on the right.
+/// Full light on the left, almost none on the right.
 fn visibility(at: UVec2) -> DVec4 {
     if at.x < 31 {
         DVec4::ONE
@@ -27,7 +28,7 @@ fn visibility(at: UVec2) -> DVec4 {
     }
 }
 
-/// A frame of a place whose plate is `plate`, with `residual` on it, and a toy in the middle.
+/// A frame of a place whose plate is `plate`, with `residual` on it, and a toy in the centre.
 fn scene(plate: impl Fn(UVec2) -> DVec3, residual: impl Fn(UVec2) -> DVec3) -> (Region, Solution, Pictures) {
     let (region, solution) = (region(SIZE, two_bulbs()), truth(2));
     let ambient = 0.95;
@@ -51,7 +52,7 @@ fn texels() -> impl Iterator<Item = UVec2> {
     texels_of(SIZE)
 }
 
-/// A uniform place is found as it is, in the light and in shadow, and under the toy.
+/// A uniform place is recovered unchanged, in the light, in shadow, and under the toy.
 #[test]
 fn a_plate_is_found_again_in_the_frame() {
     let (region, solution, pictures) = scene(|_| PLATE, |_| DVec3::ZERO);
@@ -79,7 +80,7 @@ fn a_plate_is_found_again_in_the_frame() {
     }
 }
 
-/// Where it is seen the texture comes through at last, in shadow as well.
+/// A texture is recovered where it is visible, in shadow as well.
 #[test]
 fn a_texture_is_found_where_it_is_seen() {
     let texture = |at: UVec2| DVec3::splat(0.2 + 0.5 * scatter(at.x + SIZE.x * at.y, 0));
@@ -114,7 +115,7 @@ fn what_was_known_counts_by_its_certainty_and_at_most_as_much_as_is_kept() {
         value: DVec3::splat(0.6),
         certainty,
     };
-    // Three certain sights of 0.2, and one of 0.6: a quarter of the way.
+    // Three certain observations of 0.2, and one of 0.6: a quarter of the way.
     let (cell, accumulated) = accumulate(DVec3::splat(0.6).extend(3.0), fresh(1.0));
     assert!(
         (cell.value - 0.3).abs().max_element() < 1e-12 && cell.certainty == 1.0,
@@ -141,7 +142,7 @@ fn separated(residual: impl Fn(UVec2) -> DVec3, texel: UVec2) -> DVec3 {
     separate(&told, (texel, 0))
 }
 
-/// In the light, in shadow, and in shadow at the border, all clear of the toy.
+/// Positions in the light, in shadow, and in shadow at the border, all clear of the toy.
 const PLACES: [UVec2; 3] = [UVec2::new(8, 18), UVec2::new(50, 18), UVec2::new(60, 0)];
 
 #[test]
@@ -160,7 +161,7 @@ fn a_constant_residual_is_no_noise_and_the_texture_divides_out() {
 
 #[test]
 fn in_shadow_noise_goes_and_detail_stays() {
-    // One pixel stands out of nothing: what is around, itself included, is smoothed to less than this share of it.
+    // A single pixel differs from its surroundings: smoothing leaves less than this share of it.
     let direct_fraction = 0.2;
     for (height, is_noise) in [(0.5 * NOISE, true), (2.0 * DETAIL, false)] {
         for texel in PLACES {

@@ -40,6 +40,7 @@ fn samples(region: &Region, solution: &Solution) -> Vec<ReceiverSample> {
             point: point(in_plane),
             ambient,
             visibility,
+            reflected: DVec3::ZERO,
         }
     };
     (0..N_SAMPLES).map(sample).collect()
@@ -190,6 +191,7 @@ fn lit_toy() -> ([DVec3; 4], Solution, Vec<ToySample>) {
             base,
             normal,
             received,
+            reflected: Vec::new(),
         }
     };
     (lit, known.clone(), (0..N_SAMPLES).map(sample).collect())

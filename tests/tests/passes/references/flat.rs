@@ -1,14 +1,14 @@
-//! A region that looks straight down: one pixel is one centimetre of the receiver.
+//! A region seen from straight above: one pixel is one centimetre of the receiver.
 
 use app_pipeline::geometry::rect::PlaneRect;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 use reference::grid::PlaneGrid;
 use reference::model::{ReceiverPlane, ReceiverPoint, ReceiverSolution, Region, Solution};
 
-/// Metres a pixel.
+/// Metres per pixel.
 pub(crate) const PIXEL_M: f64 = 0.01;
 
-/// The middle of the region lies over the plane's origin.
+/// The centre of the region is over the plane's origin.
 pub(crate) fn region(size_px: UVec2, lights: Vec<DVec4>) -> Region {
     let half_m = 0.5 * PIXEL_M * size_px.as_dvec2();
     let receiver = ReceiverPlane {
@@ -30,10 +30,11 @@ pub(crate) fn region(size_px: UVec2, lights: Vec<DVec4>) -> Region {
         size_px,
         border_px: [0.0; 4],
         lights,
+        reflection: None,
     }
 }
 
-/// A point of the one receiver.
+/// A point of the only receiver.
 pub(crate) fn point(in_plane: DVec2) -> ReceiverPoint {
     ReceiverPoint {
         receiver: 0,
@@ -55,7 +56,7 @@ pub(crate) fn two_bulbs() -> Vec<DVec4> {
     vec![DVec4::new(0.4, 0.6, 0.1, 1.0), DVec4::new(-0.5, 0.8, 0.3, 1.0)]
 }
 
-/// A solution whose channels and lights all differ.
+/// A solution in which all channels and lights differ.
 pub(crate) fn truth(n_lights: usize) -> Solution {
     let direct_fractions = [DVec3::new(0.31, 0.35, 0.42), DVec3::new(0.24, 0.2, 0.11)];
     Solution {
@@ -70,7 +71,7 @@ pub(crate) fn truth(n_lights: usize) -> Solution {
     }
 }
 
-/// What a fit starts from: gain 1, and half of the light from all lights together.
+/// Starting values of a fit: gain 1, and half of the light from all lights together.
 pub(crate) fn start(n_lights: usize) -> Solution {
     let direct_fraction = 0.5 / n_lights as f64;
     Solution {
@@ -85,9 +86,9 @@ pub(crate) fn start(n_lights: usize) -> Solution {
     }
 }
 
-/// Numbers in [0, 1) that look random and are the same in every run: the golden ratio's multiples.
+/// Pseudo-random numbers in [0, 1), the same in every run: multiples of the golden ratio.
 pub(crate) fn scatter(seed: u32, dimension: u32) -> f64 {
-    // Powers of the plastic number's inverse keep the dimensions apart.
+    // Powers of the plastic number's inverse make the dimensions independent.
     let step = 1.324_717_957_244_746_f64.powi(-(1 + i32::try_from(dimension).unwrap()));
     (0.5 + step * f64::from(seed) * f64::from(1 + dimension)).fract()
 }

@@ -1,4 +1,4 @@
-//! The references against closed forms: what geometry and algebra say, not what another program says.
+//! The references compared with closed forms: with geometry and algebra, not with another program.
 
 mod appearance;
 mod box_filter;

@@ -1,4 +1,4 @@
-//! The soft edge of a half plane, level, under a light.
+//! The soft edge of a level half plane under a light.
 
 use glam::{DVec2, DVec4, UVec2};
 use reference::pcss::{Softness, soft_visibility};
@@ -26,7 +26,7 @@ fn bulb() -> Softness {
     }
 }
 
-/// Visibility along the middle row, and how far each of its texels lies beyond the edge.
+/// Visibility along the middle row, and each texel's distance beyond the edge.
 fn across(softness: &Softness) -> impl Iterator<Item = (f64, f64)> {
     let region = flat::region(SIZE, vec![softness.light]);
     let heights_m = Raster::from_fn(SIZE, |at| (at.x < EDGE).then_some(HEIGHT_M));
@@ -44,7 +44,8 @@ fn across(softness: &Softness) -> impl Iterator<Item = (f64, f64)> {
 fn penumbra_of_an_edge_follows_the_circle_segment() {
     for (beyond_px, actual) in across(&bulb()) {
         let expected = 1.0 - disc_beyond(beyond_px / PENUMBRA_PX);
-        // A tap reads a whole texel: it may be off by half of one, of a segment as long as the disc is wide.
+        // A tap reads a whole texel: its error is at most half a texel of a segment as long as the
+        // disc is wide.
         let bound = 0.5 / PENUMBRA_PX * 2.0 / std::f64::consts::PI + 2e-3;
         assert!(
             (actual - expected).abs() < bound,
@@ -76,7 +77,7 @@ fn point_light_keeps_the_edge_within_a_pixel() {
 
 #[test]
 fn light_lower_than_the_toys_top_keeps_its_penumbra() {
-    // The edge lies under the light, the toy's top above it.
+    // The edge is below the light, the toy's top above it.
     let tall = Softness {
         tallest_m: 1.2,
         ..bulb()
@@ -96,7 +97,7 @@ fn disc_across_a_slanted_ray_is_longer_along_it() {
         light: DVec4::new(0.0, 0.5, 0.75_f64.sqrt(), 0.0),
         ..bulb()
     };
-    // At one point of the receiver the same elevation.
+    // The elevation is the same at one point of the receiver.
     let near = Softness {
         light: DVec4::new(0.3, 0.5, 0.75_f64.sqrt(), 1.0),
         ..bulb()
@@ -125,7 +126,7 @@ fn penumbra_grows_with_height_over_what_is_left_to_the_light() {
     for (softness, height_m, expected_m) in [
         (&bulb, 0.5, RADIUS_M),
         (&bulb, 0.8, 4.0 * RADIUS_M),
-        // As high as the light, higher, and so close under it that the disc fills the sky.
+        // As high as the light, higher, and so close below it that the disc fills the sky.
         (&bulb, LIGHT_M, LIGHT_M),
         (&bulb, 1.5, 1.5),
         (&bulb, 0.99, 0.99),

@@ -1,4 +1,5 @@
-//! Plates whose colours are known: of a plane seen straight from above, higher or lower, here or beside.
+//! Plates with known colours: of a plane seen straight from above, higher or lower, at the same
+//! place or beside it.
 
 use app_pipeline::geometry::rect::PlaneRect;
 use glam::{DMat3, DMat4, DVec2, DVec3, UVec2};
@@ -8,7 +9,7 @@ use reference::raster::Raster;
 
 const SIZE: UVec2 = UVec2::new(81, 61);
 
-/// A camera straight over a point of the plane: a pixel is as many metres as it is high times 0.01.
+/// A camera straight over a point of the plane: a pixel covers 0.01 times its height in metres.
 pub(crate) fn above(middle: DVec2, height_m: f64) -> Viewpoint {
     let pixel_m = 0.01 * height_m;
     let corner = middle - 0.5 * pixel_m * SIZE.as_dvec2();
@@ -30,12 +31,13 @@ pub(crate) fn above(middle: DVec2, height_m: f64) -> Viewpoint {
             size_px: SIZE,
             border_px: [0.0; 4],
             lights: Vec::new(),
+            reflection: None,
         },
         centre_in_anchor: DVec3::new(middle.x, height_m, middle.y),
     }
 }
 
-/// Its colour is a slope over the plane.
+/// A colour that varies linearly over the plane.
 pub(crate) fn slope(in_plane: DVec2) -> DVec3 {
     DVec3::new(0.5 + in_plane.x, 0.5 + in_plane.y, 0.3)
 }
@@ -89,15 +91,15 @@ fn of_two_plates_detail_weighs_by_its_power_and_no_more_than_enough() {
         ];
         choose(&view, &plates, UVec2::new(40, 30)).x
     };
-    // From the middle both are 30 px inside: less than the feather, and alike.
+    // From the centre both are 30 px inside: less than the feather, and equal.
     assert!((direct_fraction_of_first([1.0, 1.0]) - 0.5).abs() < 1e-9);
-    // Nearer is no better than the view itself.
+    // A nearer plate is no better than the view's own distance.
     assert!((direct_fraction_of_first([0.5, 1.0]) - 0.5).abs() < 1e-9);
     // A tenth higher shows 1 / 1.21 of the pixels.
     let weight = 1.21_f64.powf(-CHOICE_POWER);
     let expected = 1.0 / (1.0 + weight);
     let found = direct_fraction_of_first([1.0, 1.1]);
     assert!((found - expected).abs() < 1e-6, "{found}, not {expected}");
-    // Twice as high is not looked at, unless there is nothing else.
+    // A plate at twice the height is not used, unless there is no other.
     assert_eq!(direct_fraction_of_first([1.0, 2.0]), 1.0);
 }

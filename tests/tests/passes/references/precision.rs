@@ -1,6 +1,6 @@
-//! What 32-bit rounding costs: rays in both precisions, on a case of another test.
+//! The error of 32-bit rounding: rays in both precisions, in a case of another test.
 //!
-//! A shader that is farther from its reference than these bounds is so by its algorithm.
+//! A shader whose difference from its reference exceeds these bounds differs in its algorithm.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, UVec2};
 use reference::occlusion::Caster;
@@ -11,7 +11,7 @@ use reference::visibility::{exact_visibility, visibility_map};
 use crate::references::flat::region;
 use crate::references::visibility::{bulb, square};
 
-/// A texel counts 256 light points: only a ray within rounding of the edge counts otherwise.
+/// A texel counts 256 light points: the result differs only for a ray within rounding of the edge.
 fn shadow<R: Real>() -> Raster<f64> {
     let light_points = bulb().points_in(&DMat4::IDENTITY, DVec3::ZERO, 256);
     let light_points: Vec<DVec4> = light_points.iter().map(|point| point.as_dvec4()).collect();
@@ -28,7 +28,7 @@ fn shadow_of_a_square() {
     let (narrow, wide) = (shadow::<f32>(), shadow::<f64>());
     let pairs = narrow.texels().iter().zip(wide.texels());
     let n_others = pairs.filter(|(a, b)| a != b).count();
-    // Measured: none of 6400. That a ray is computed in 32 bits at all, the next test tells.
+    // Measured: none of 6400. The next test proves that rays are computed in 32 bits at all.
     assert!(n_others <= 5, "{n_others} texels");
 }
 

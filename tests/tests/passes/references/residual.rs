@@ -1,4 +1,4 @@
-//! Residuals that are known beforehand, pooled and filled.
+//! Known residuals, pooled and filled.
 
 use glam::{DVec3, DVec4, UVec2};
 use reference::fill::fill;
@@ -19,7 +19,7 @@ fn known(residual: DVec3) -> Cell {
     }
 }
 
-/// Whether a cell lies under a toy in the middle.
+/// Whether a cell lies under a toy in the centre.
 fn is_hidden(at: UVec2) -> bool {
     (20..41).contains(&at.x) && (9..30).contains(&at.y)
 }
@@ -28,7 +28,7 @@ fn is_hidden(at: UVec2) -> bool {
 fn constant_residual_is_pooled_as_it_is() {
     let region = region(SIZE, two_bulbs());
     let solution = truth(2);
-    // Within what the weights forgive, or the hidden pixels would pull.
+    // Small enough that the weights stay full, or the hidden pixels would have an effect.
     let residual = DVec3::new(0.004, -0.003, 0.002);
     let visibility = DVec4::new(0.8, 0.4, 0.0, 0.0);
     let texture = |at: UVec2| DVec3::splat(0.3) + 0.4 * scatter(at.x + 61 * at.y, 0);
@@ -84,8 +84,8 @@ fn hidden_patch_of_a_slope_stays_within_its_surroundings() {
             assert!(error.abs().max_element() < 1e-12, "a known cell changed at {at}");
         }
     }
-    // The steepest channel changes by 0.42 across the patch, so that the nearest known cell would be off by 0.21.
-    // Measured: 0.024.
+    // The steepest channel changes by 0.42 across the patch, so that the nearest known cell would
+    // differ by 0.21. Measured: 0.024.
     assert!(worst < 0.05, "off by {worst}");
 }
 

@@ -1,4 +1,4 @@
-//! Searches whose end is known: one eligible texel, a whole ring of them, none.
+//! Searches with a known result: for one eligible texel, for a whole ring of them, and for none.
 
 use glam::{DVec2, DVec3, IVec2, UVec2};
 use reference::raster::Raster;
@@ -49,7 +49,8 @@ fn lone_texel_is_found_on_the_ring_that_it_lies_on() {
 
 #[test]
 fn closest_of_a_ring_wins_and_an_inner_ring_before_it() {
-    // The first ring's four candidates, from (22.3, 21.9) on round; the point is closer to those on the left.
+    // The first ring's four candidates, starting at (22.3, 21.9); the point is closer to those on
+    // the left.
     let at_px = DVec2::new(20.9, 20.5);
     let rings = Rings {
         n_directions: 4,
@@ -77,19 +78,21 @@ fn eligible_texel_costs_no_tap_and_nothing_in_reach_costs_all() {
     let own = search_first(&only(&[IVec2::new(7, 8)]), DVec2::new(7.99, 8.01), &RINGS);
     assert_eq!((own.texel, own.n_taps), (Some(IVec2::new(7, 8)), 0));
     let far = only(&[IVec2::new(7 + 20, 8)]);
-    // Candidates beyond the border are looked at, too, and are none.
+    // Candidates beyond the border are tested, too, and are not eligible.
     let nothing = search_first(&far, DVec2::new(7.5, 8.5), &RINGS);
     assert_eq!((nothing.texel, nothing.n_taps), (None, 96));
 }
 
-/// From the corner the farthest texel is on the ring that the opposite corner is just beyond; from the middle half as far.
+/// From the corner, the farthest texel is on the ring just before the opposite corner; from the
+/// centre it is half as far.
 #[test]
 fn no_ring_is_searched_beyond_the_region() {
     let rings = Rings {
         n_rings: 1000,
         ..RINGS
     };
-    // The diagonal is 71.3 px; 10 px beyond the middle of the left side, the far corners are 73.4 px away.
+    // The diagonal is 71.3 px; from 10 px beyond the centre of the left side, the far corners are
+    // 73.4 px away.
     for (at_px, n_rings) in [
         (DVec2::ZERO, 35),
         (SIZE.as_dvec2(), 35),
@@ -116,7 +119,7 @@ fn term_is_the_shadow_over_the_light_or_its_colour() {
     );
 }
 
-/// Texels of three sets around a texel that both lights' new shadows fall on.
+/// Texels of three sets around a texel in the new shadows of both lights.
 #[test]
 fn overlap_is_sampled_where_the_same_lights_overlap() {
     let [first, second, both] = [&[0][..], &[1], &[0, 1]].map(LightSet::of);
@@ -136,20 +139,22 @@ fn overlap_is_sampled_where_the_same_lights_overlap() {
         let seen: Vec<_> = with.iter().map(|(_, set)| *set).collect();
         search(&scene(with), &seen, &start, &RINGS)
     };
-    // The overlap lies behind both shadows, on the third ring of those with candidates along the axis.
+    // The overlap lies behind both shadows, on the third ring of those with candidates along the
+    // axis.
     let all = [(34, first), (26, second), (42, both)];
     assert_eq!(found(&all, both).texel, Some(at(42)));
     assert_eq!(found(&all, both).n_taps, 2 * 16 * 6, "two sources, six rings");
     assert_eq!(found(&all, first).texel, Some(at(34)));
-    // No overlap is seen: the closest of the two shadows, and not the one of a light too many.
+    // No overlap is visible: the closest of the two shadows is used, but not the one with an
+    // additional light.
     assert_eq!(found(&[(38, first), (26, second)], both).texel, Some(at(26)));
     let third = LightSet::of(&[0, 1, 2]);
     assert_eq!(found(&[(26, third), (38, first)], both).texel, Some(at(38)));
-    // Only the overlap is seen: a hole would be worse.
+    // Only the overlap is visible: a hole would be worse.
     assert_eq!(found(&[(26, both)], first).texel, Some(at(26)));
-    // The overlap is seen but out of reach.
+    // The overlap is visible, but out of reach.
     assert_eq!(found(&[(60, both), (38, first)], both).texel, Some(at(38)));
-    // Nothing to sample anywhere costs nothing.
+    // An empty set of eligible texels has no cost.
     let nothing = Found {
         texel: None,
         n_taps: 0,

@@ -1,4 +1,4 @@
-//! `tint` against what must be so.
+//! `tint` compared with its known properties.
 
 use app_pipeline::model::state::tints::TintGrid;
 use glam::{DVec3, UVec3};
@@ -15,7 +15,7 @@ const GRID: TintGrid = TintGrid {
 const EXPECTED: DVec3 = DVec3::new(0.3, 0.2, 0.1);
 const PAINT: DVec3 = DVec3::new(1.5, 0.5, 1.0);
 
-/// Many pixels in the middle of a cell.
+/// Many pixels in the centre of a cell.
 fn seen(cell: UVec3, material: usize, paint: DVec3) -> Vec<SeenPaint> {
     let corner = DVec3::new(-0.1, 0.0, 0.2);
     let pixel = SeenPaint {

@@ -1,4 +1,4 @@
-//! Shadows that have a formula: of a half plane, of a square and of a disc, all level.
+//! Shadows with a closed form: of a half plane, of a square and of a disc, all level.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,14 +11,14 @@ use reference::visibility::{exact_visibility, visibility_map};
 
 use crate::references::flat;
 
-/// The light stands this high over the middle of the square.
+/// Height of the light over the centre of the square.
 const LIGHT_M: f64 = 1.0;
 const RADIUS_M: f64 = 0.05;
-/// The square hangs this high and reaches this far from its middle.
+/// Height of the square, and half its side.
 const HEIGHT_M: f64 = 0.25;
 const HALF_SIDE_M: f64 = 0.3;
-/// Where the middle of the shadow's edge falls, and half the width of the penumbra there: the light's edge is at
-/// plus and minus R, and the edge at h mirrors it by h / (d - h).
+/// Position of the shadow's edge, and half the width of the penumbra there: the light's edge is at
+/// plus and minus R, and the occluder's edge mirrors it by h / (d - h).
 const EDGE_M: f64 = HALF_SIDE_M * LIGHT_M / (LIGHT_M - HEIGHT_M);
 const HALF_PENUMBRA_M: f64 = RADIUS_M * HEIGHT_M / (LIGHT_M - HEIGHT_M);
 
@@ -40,7 +40,7 @@ pub(crate) fn bulb() -> Light {
     }
 }
 
-/// Share of a disc that lies beyond a straight edge, which is `offset` radii from its centre.
+/// Share of a disc that lies beyond a straight edge at `offset` radii from its centre.
 pub(crate) fn disc_beyond(offset: f64) -> f64 {
     let c = offset.clamp(-1.0, 1.0);
     (c.acos() - c * (1.0 - c * c).sqrt()) / PI
@@ -62,10 +62,10 @@ fn penumbra_of_an_edge_follows_the_circle_segment() {
     for step in -12..=12 {
         let across = f64::from(step) / 10.0;
         let at = DVec2::new(EDGE_M + across * HALF_PENUMBRA_M, 0.01);
-        // Outwards of the edge's middle, the light's far part comes into sight.
+        // Outwards of the edge's centre, the far part of the light becomes visible.
         let expected = 1.0 - disc_beyond(across);
         let from_points = 1.0 - share_hidden(&occluder, at, &points);
-        // A sunflower of n points is off by about n^-3/4.
+        // The error of a sunflower of n points is about n^-3/4.
         assert!(
             (from_points - expected).abs() < 2e-3,
             "{across}: {from_points}, not {expected}"
@@ -81,9 +81,9 @@ fn penumbra_of_a_bulb_follows_its_distance_from_the_plane_through_the_edge() {
         let to_bulb = DVec2::new(-at_m, LIGHT_M);
         let expected = 1.0 - disc_beyond(past_edge.perp_dot(to_bulb) / -RADIUS_M);
         let actual = exact_visibility(&square::<f64>(), DVec2::new(at_m, 0.01), &bulb(), 4096);
-        // The bulb's lower side weighs less by its cosine, which changes by tan 22 degrees times R / d over a radius;
-        // at half shadow the centroids of both halves are 0.42 radii from the middle: 0.5 0.42 0.4 0.05 or 4e-3 in all,
-        // on top of the sunflower's 2e-3.
+        // The bulb's lower side has less weight by its cosine, which changes by tan 22 degrees
+        // times R / d over a radius; at half shadow the centroids of both halves are 0.42 radii
+        // from the centre: 0.5 0.42 0.4 0.05 or 4e-3 in all, in addition to the sunflower's 2e-3.
         assert!(
             (actual - expected).abs() < 6e-3,
             "{at_m} m: {actual}, not {expected}"
@@ -148,8 +148,8 @@ fn disc_hides_its_form_factor_of_the_ambient_light() {
         let directions: Vec<DVec4> = ambient_directions(4096).iter().map(|d| d.as_dvec4()).collect();
         let hidden = share_hidden(&Occluder::new(&corners, &fan), DVec2::ZERO, &directions);
         let expected = radius_m * radius_m / (radius_m * radius_m + height_m * height_m);
-        // The directions of a centred disc are the first ones of the sunflower: off by one of 4096 at most, and the
-        // polygon by 1e-5 of the disc.
+        // The directions of a centred disc are the first ones of the sunflower: the error is at
+        // most one of 4096, and that of the polygon 1e-5 of the disc.
         assert!(
             (hidden - expected).abs() < 3e-4,
             "{radius_m} m at {height_m} m: {hidden}, not {expected}"
@@ -174,7 +174,7 @@ fn map_looks_through_the_four_positions_of_a_pixel() {
         light_points: vec![DVec4::Y; 4],
     };
     let map = visibility_map(&[caster], &region, region.size_px);
-    // The edge is in the middle of column 69: two of four positions lie on each side.
+    // The edge is in the centre of column 69: two of four positions are on each side.
     for (column, expected) in [(68, 0.0), (69, 0.5), (70, 1.0)] {
         let visibility = map.at(UVec2::new(column, 40));
         assert!(

@@ -5,6 +5,7 @@ mod lens;
 mod orders;
 mod phone_check;
 mod phones;
+mod planes;
 mod recorded;
 mod screens;
 mod starts;

@@ -1,4 +1,5 @@
-//! The questions of a new phone: what is drawn for them lies where it should, and the answers are kept.
+//! The questions for a new phone: their drawings are at the correct places, and the answers are
+//! kept.
 
 use app_core::app::{
     App, CheckInk, Notice, PhoneQuestion, PlatformCommand, ShellCommand, ShellEvent, Step, UserAction,
@@ -8,7 +9,7 @@ use glam::{DVec2, DVec3};
 
 use crate::app::world;
 
-/// An app that looks for a table, at its first question, and that has a frame.
+/// An app that searches for a table, at its first question, and with a frame.
 fn asked() -> App {
     let mut app = world::at_ghost();
     let _ = app.event(ShellEvent::User(UserAction::StartOver));
@@ -31,7 +32,7 @@ fn answer(app: &mut App, is_yes: bool) -> Vec<ShellCommand> {
     app.event(ShellEvent::User(UserAction::Answer(is_yes)))
 }
 
-/// Where the frames' camera sees a point of the world, by the pinhole's own formula.
+/// Position of a point of the world in the frames' camera, by the pinhole's own formula.
 fn pixel(point: DVec3) -> DVec2 {
     let eye = DVec3::new(0.0, 0.4, 0.3);
     let (back, right) = (eye.normalize(), DVec3::X);
@@ -44,7 +45,7 @@ fn pixel(point: DVec3) -> DVec2 {
     )
 }
 
-/// Where arrows and ruler stand: the table as it is seen at .35 of the picture's width and .55 of its height.
+/// Position of arrows and ruler: the table at .35 of the picture's width and .55 of its height.
 fn place() -> DVec3 {
     let eye = DVec3::new(0.0, 0.4, 0.3);
     let (back, right) = (eye.normalize(), DVec3::X);
@@ -53,7 +54,7 @@ fn place() -> DVec3 {
     eye - eye.y / ray.y * ray
 }
 
-/// Ends of the lines of an ink, each pair in its order.
+/// Ends of the lines with an ink, each pair in its order.
 fn lines(app: &App, ink: CheckInk) -> Vec<[DVec2; 2]> {
     let lines = app.check_lines_px().into_iter();
     lines.filter(|(of, _)| *of == ink).map(|(_, ends)| ends).collect()
@@ -152,7 +153,7 @@ fn answers_are_kept_and_touches_of_the_picture_mean_nothing_meanwhile() {
             }
         }
     }
-    // Held for the question after «Delay», and free again after it.
+    // Held for the question after «Delay», and released after it.
     assert_eq!(
         locks,
         [(PhoneQuestion::Delay, true), (PhoneQuestion::Held, false)]

@@ -1,4 +1,5 @@
-//! What phones do to an app: nothing leads into a dead end, the way back leads back, and the governor reaches its end.
+//! Effects of phones on an app: no sequence of events ends in a dead end, the way back works, and
+//! the governor reaches its end.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -21,7 +22,7 @@ use glam::DVec2;
 
 use crate::app::world;
 
-/// An app that looks for a table.
+/// An app that searches for a table.
 fn looking() -> App {
     let mut app = world::app();
     for event in world::opening() {
@@ -42,7 +43,7 @@ fn buttons(app: &App) -> Vec<String> {
     buttons.map(|widget| widget.label.clone()).collect()
 }
 
-/// A frame after so many tenths of a second.
+/// A frame after this many tenths of a second.
 fn frame_at(app: &mut App, id: u64, tenths: u32, tracking: Tracking) -> Vec<ShellCommand> {
     let frame = world::frame(id, 100_000_000 * i64::from(tenths), 0, tracking);
     app.event(ShellEvent::Frame(Box::new(frame)))
@@ -107,7 +108,8 @@ fn what_the_platform_says_of_ar_is_read_and_it_can_be_tried_again() {
         )
     });
     assert!(runs && app.ar_words().is_none(), "{commands:?}");
-    // What is being installed is asked for all the same, so that it goes on by itself.
+    // The app requests an AR service that is being installed all the same, so that it continues by
+    // itself.
     let commands = app.event(ShellEvent::ArTrouble(ArSession::Installing, String::new()));
     assert!(commands.is_empty(), "{commands:?}");
     assert!(app.event(ShellEvent::ArSession(ArSession::Able)).is_empty());
@@ -170,7 +172,7 @@ fn the_card_is_looked_for_where_a_person_has_one() {
         finds_card(&app.event(ShellEvent::User(UserAction::UseCard(false)))),
         Some(false)
     );
-    // It was asked for, and the platform does without.
+    // It was requested, but the platform does not support it.
     let _ = app.event(ShellEvent::User(UserAction::UseCard(true)));
     assert_eq!(finds_card(&app.event(ShellEvent::CardRefused)), Some(false));
     assert!(!app.uses_card() && app.notice() == Some(&Notice::CardRefused));
@@ -279,14 +281,15 @@ fn one_maker_is_not_asked_to_keep_pipelines() {
     assert_eq!(fault_of_pipeline_caches(&info("Adreno 610", 0x5143)), None);
 }
 
-/// An app whose toy moves, on a core that draws nothing, and the clock that its pictures are timed by, in milliseconds.
+/// An app whose toy moves, on a core that draws nothing, and the clock for timing its pictures, in
+/// milliseconds.
 struct Moving {
     live: Live,
     now_ms: Arc<AtomicU64>,
-    /// Milliseconds that pass with each look at the clock, as while a picture is made.
+    /// Milliseconds that pass with each reading of the clock, as while a picture is made.
     look_ms: Arc<AtomicU64>,
     n_frames: u64,
-    /// Pictures of the camera for each that is drawn.
+    /// Number of camera pictures for each drawn one.
     n_each: u64,
     jobs: Vec<AlignJob>,
 }
@@ -331,7 +334,7 @@ impl Moving {
         }
     }
 
-    /// The toy moves.
+    /// An app whose toy moves.
     fn playing() -> Self {
         let mut moving = Self::new();
         while moving.live.app().step() != Step::Play {
@@ -341,7 +344,7 @@ impl Moving {
         moving
     }
 
-    /// Pictures until the preset is `fast`; none of so many.
+    /// Number of pictures until the preset is `fast`; `None` if it is not within `n`.
     fn pictures_to_fast(&mut self, n: u32) -> Option<u32> {
         (0..n).find(|_| {
             self.picture();
@@ -349,7 +352,7 @@ impl Moving {
         })
     }
 
-    /// A picture of the camera, drawn.
+    /// Delivers a picture of the camera and draws it.
     fn picture(&mut self) {
         self.n_frames += self.n_each;
         let time_ns = i64::try_from(self.n_frames).unwrap() * 33_000_000;
@@ -377,7 +380,7 @@ fn heat_turns_everything_down_and_then_leads_to_the_fast_preset_and_back() {
     let n_pictures = moving.pictures_to_fast(2000).expect("the fast preset");
     assert!(n_pictures > 900, "steps come first: {n_pictures}");
     assert!(moving.live.app().log().text().contains("preset fast"));
-    // Cool for two minutes, it has its preset back.
+    // After two minutes of low temperature its preset is restored.
     moving.tell(ShellEvent::Thermal(Thermal::Nominal));
     moving.now_ms.fetch_add(121_000, Ordering::SeqCst);
     moving.picture();
@@ -418,7 +421,7 @@ fn a_camera_whose_pictures_are_not_all_seen_counts_as_slow() {
 fn the_shells_own_part_of_a_picture_counts_for_it() {
     let mut moving = Moving::playing();
     let slow = |moving: &mut Moving| {
-        // Reading the camera's picture, then what is drawn.
+        // Time for reading the camera's picture, then for drawing.
         moving.live.begin_picture();
         moving.now_ms.fetch_add(60, Ordering::SeqCst);
         moving.picture();

@@ -1,4 +1,4 @@
-//! What the app records is what it was fed, and is replayed as that is.
+//! The app's recording contains its inputs, and is replayed like them.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -31,7 +31,7 @@ use crate::app::orders::{happen, straight};
 use crate::app::way::{OFF_M, placed};
 use crate::app::world;
 
-/// Poses of the bundled session that are shown, by the numbers of its frames.
+/// The shown poses of the bundled session, by the numbers of its frames.
 const POSES: [usize; 3] = [1, 2, 3];
 
 fn options(toy: &[u8], codec: PictureCodec) -> RecordingOptions<'_> {
@@ -43,7 +43,7 @@ fn options(toy: &[u8], codec: PictureCodec) -> RecordingOptions<'_> {
     }
 }
 
-/// A sink that can still be looked at when its writer has gone.
+/// A sink that can still be read when its writer is gone.
 #[derive(Clone, Default)]
 struct Shared(Arc<std::sync::Mutex<Vec<u8>>>);
 
@@ -65,13 +65,13 @@ fn written(job: RecordingJob, toy: &[u8], codec: PictureCodec) -> (Vec<u8>, Reco
     (bytes, outcome)
 }
 
-/// What the app was fed while it recorded.
+/// The inputs of the app during the recording.
 struct Fed {
     scene: Scene,
     frames: Vec<SessionFrame>,
 }
 
-/// A person records three frames, each with a pose of the bundled session's.
+/// A person records three frames, each with a pose of the bundled session.
 fn fed_and_recorded(codec: PictureCodec) -> (Fed, Vec<u8>) {
     let source = bundled_session();
     let mut person = placed(OFF_M);
@@ -145,7 +145,7 @@ impl Session for Fed {
     }
 }
 
-/// The photographs of the toy that really took those poses.
+/// The photographs of the toy that really had those poses.
 struct Truths(Capture);
 
 impl GroundTruth for Truths {
@@ -165,7 +165,7 @@ fn replayed(session: &dyn Session, core: &mut Core, out: PathBuf) -> (Report, Ve
     (reports.remove(0), pictures.collect())
 }
 
-/// All of a report but times and what is named after files.
+/// A report without times and without everything that is named after files.
 fn untimed(report: &Report) -> serde_json::Value {
     let mut report = serde_json::to_value(report).unwrap();
     strip(&mut report);
@@ -183,7 +183,7 @@ fn strip(value: &mut serde_json::Value) {
     }
 }
 
-/// Where two values differ by more than the last digits that a JSON number may lose.
+/// Paths at which two values differ by more than the last digits that a JSON number may lose.
 fn differing(one: &serde_json::Value, other: &serde_json::Value, at: &str) -> Vec<String> {
     use serde_json::Value;
     match (one, other) {
@@ -233,7 +233,7 @@ fn a_recording_is_replayed_as_what_was_fed() {
     let found = differing(&untimed(&of_fed), &untimed(&of_recorded), "report");
     assert!(found.is_empty(), "{found:#?}");
     assert!(fed_pictures == pictures, "pictures differ");
-    // A frame of another pose would be found.
+    // A frame of another pose would be detected.
     let mut planted = Fed {
         scene: fed.scene.clone(),
         frames: fed.frames.clone(),
@@ -242,7 +242,8 @@ fn a_recording_is_replayed_as_what_was_fed() {
     let (of_planted, _) = replayed(&planted, &mut core, folder.0.join("planted"));
     assert!(!differing(&untimed(&of_fed), &untimed(&of_planted), "report").is_empty());
 
-    // JPEG costs what the page on recordings says of quality 90 without the plate, and no more.
+    // JPEG has the size that the page on recordings states for quality 90 without the plate, and no
+    // more.
     let (_, bytes) = fed_and_recorded(PictureCodec::Jpeg { quality: 90 });
     let lossy = Capture::open(Recording::open(bytes).unwrap()).unwrap();
     let (of_lossy, _) = replayed(&lossy, &mut core, folder.0.join("lossy"));
@@ -262,7 +263,7 @@ fn a_recording_is_replayed_as_what_was_fed() {
 
 #[test]
 fn what_a_platform_cannot_encode_is_encoded_all_the_same() {
-    // Mean absolute difference of the first picture from what was fed, in codes.
+    // Mean absolute difference of the first picture from the input, in codes.
     let off = |encode: fn([u32; 2]) -> Option<Vec<u8>>| {
         let codec = PictureCodec::Platform(Box::new(move |image| encode(image.size_px())));
         let (fed, bytes) = fed_and_recorded(codec);
@@ -287,7 +288,7 @@ fn dark_jpeg([width, height]: [u32; 2]) -> Vec<u8> {
     file
 }
 
-/// A folder of a recording, and a recording of that folder, are the same session.
+/// A recording's folder, and that folder's recording, are the same session.
 fn compare_converted(folder: &Path, path: &Path) {
     let (out, again) = (folder.join("folder"), folder.join("again.mcap"));
     convert::write(&Stored::open(path).unwrap(), None, &out).unwrap();
@@ -323,7 +324,8 @@ fn compare_scenes(given: &Scene, read: &Scene) {
     assert_eq!(given.toy.clip_names(), read.toy.clip_names());
 }
 
-/// Frames that nobody writes: none waits, and what is missing is told to the person and in the recording.
+/// Frames without a writer: none waits, and the loss is reported to the person and in the
+/// recording.
 #[test]
 fn frames_never_wait_and_what_is_missing_is_told() {
     const N: u64 = 400;
@@ -343,7 +345,7 @@ fn frames_never_wait_and_what_is_missing_is_told() {
     });
     let recordings: Vec<_> = recordings.collect();
     let [job] = <[Box<RecordingJob>; 1]>::try_from(recordings).unwrap();
-    // The writer comes late: it takes what waits, and what comes from now on.
+    // The writer comes late: it writes the waiting items, and the new ones.
     let (done, is_done) = mpsc::channel();
     let writer = thread::spawn(move || {
         let toy = world::toy_file();
@@ -351,7 +353,7 @@ fn frames_never_wait_and_what_is_missing_is_told() {
         done.send(()).unwrap();
         ended
     });
-    // Space runs short, which ends it whether or not anybody asks.
+    // Space runs short, which ends it without a request.
     while is_done.try_recv().is_err() {
         let _ = app.event(ShellEvent::FreeSpace(1 << 20));
         thread::yield_now();

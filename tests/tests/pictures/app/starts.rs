@@ -1,4 +1,4 @@
-//! Starts that come to no end lead to the simplest preset, and back from there.
+//! Unfinished starts lead to the simplest preset, and back from there.
 
 use app_core::app::{
     App, LaunchHistory, MAX_FAILED_LAUNCHES, N_GOOD_FRAMES, Notice, Panics, ShellCommand, ShellEvent,
@@ -10,7 +10,7 @@ use app_core::preset::Preset;
 
 use crate::app::world;
 
-/// What is kept, and the app of one start after another.
+/// The stored values, and the apps of successive starts.
 #[derive(Default)]
 struct Phone {
     kept: String,
@@ -61,7 +61,7 @@ fn after_starts_that_fail_in_a_row_the_simplest_preset_is_used_and_said() {
         let mut app = phone.start();
         assert_eq!(app.preset(Preset::Best), Preset::Best, "start {n}");
         assert_eq!(app.notice(), None);
-        // It ends there, short of what makes a good start.
+        // The app ends before the start counts as good.
         phone.draw(&mut app, N_GOOD_FRAMES - 1);
     }
     let mut app = phone.start();
@@ -70,13 +70,13 @@ fn after_starts_that_fail_in_a_row_the_simplest_preset_is_used_and_said() {
         app.notice(),
         Some(&Notice::Simplified(Simplified::FailedLaunches))
     );
-    // It stays so, however good it is, until the person wants it otherwise.
+    // It stays simple, however good it is, until the person wants it otherwise.
     phone.draw(&mut app, N_GOOD_FRAMES);
     let mut app = phone.start();
     assert_eq!(app.preset(Preset::Best), Preset::Flat);
     phone.tell(&mut app, ShellEvent::User(UserAction::RestorePreset));
     assert_eq!((app.preset(Preset::Best), app.simplified()), (Preset::Best, None));
-    // The start that brought it back is one of those that count.
+    // The start that restored it is one of those that count.
     for _ in 1..MAX_FAILED_LAUNCHES {
         assert_eq!(phone.start().simplified(), None);
     }
@@ -94,7 +94,7 @@ fn a_good_start_clears_those_that_failed() {
         assert_eq!(app.simplified(), None);
         phone.draw(&mut app, N_GOOD_FRAMES);
     }
-    // A crash long after is the first of a row.
+    // A crash long afterwards is the first of a series.
     let _ = phone.start();
     assert_eq!(phone.start().simplified(), None);
 }
@@ -105,12 +105,12 @@ fn an_app_that_is_left_has_not_failed() {
     for _ in 0..10 {
         let mut app = phone.start();
         assert_eq!(app.simplified(), None);
-        // There and back, and away for good: the system may end it there.
+        // To the background and back, and finally away: the system may end it there.
         for is_foreground in [false, false, true, true, false] {
             phone.tell(&mut app, ShellEvent::Foreground(is_foreground));
         }
     }
-    // One that has come back to the front can fail as well.
+    // An app that has come back to the foreground can fail as well.
     for _ in 0..MAX_FAILED_LAUNCHES {
         let mut app = phone.start();
         assert_eq!(app.simplified(), None);
@@ -139,7 +139,7 @@ fn a_device_is_tested_once_and_each_time_while_it_fails() {
     phone.draw(&mut app, N_GOOD_FRAMES);
     let mut app = phone.start();
     assert!(!app.wants_self_test("Adreno\n(1)"));
-    // Another driver, which the person trusts against the test.
+    // Another driver, which the person trusts in spite of the test.
     assert!(app.wants_self_test("Adreno (2)"));
     phone.test(&mut app, "Adreno (2)", fault());
     phone.tell(&mut app, ShellEvent::User(UserAction::RestorePreset));
@@ -172,7 +172,7 @@ fn open_live() -> Live {
     Live::new(harness::open_core(), world::toy(), Preset::Balanced)
 }
 
-/// What is kept once an app has compiled its preset.
+/// The stored values once an app has compiled its preset.
 fn kept_after_compiling(mut live: Live, text: &str) -> (Live, Vec<String>) {
     let mut commands = live.event(ShellEvent::Started(LaunchHistory::read(text)));
     for n in 0..100 {
@@ -202,7 +202,7 @@ fn a_device_that_passes_is_remembered_and_not_tested_again() {
     assert!(!live.app().log().text().contains("self-test"));
 }
 
-/// It would fail, and the app would draw simplified.
+/// The test would fail, and the app would draw with the simplest preset.
 #[test]
 fn a_device_with_other_shaders_draws_no_test_picture() {
     let mut live = open_live();

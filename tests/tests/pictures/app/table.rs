@@ -1,10 +1,10 @@
-//! The table of steps, as the documentation has it.
+//! The table of steps in the documentation.
 
 use app_core::app::{Cause, Step};
 
 const DOCUMENT: &str = include_str!("../../../../app-core/doc/app.md");
 
-/// The step after each cause in each step: by the table's words.
+/// The step after each cause in each step, from the table's text.
 fn documented(document: &str) -> Vec<(Step, Cause, Step)> {
     let step = |name: &str| Step::ALL.into_iter().find(|step| format!("{step:?}") == name);
     let rows = document.lines().filter(|line| line.starts_with('|'));
@@ -45,7 +45,7 @@ fn differing(document: &str) -> Vec<(Step, Cause, Step)> {
 #[test]
 fn the_steps_are_those_of_the_documented_table() {
     assert_eq!(differing(DOCUMENT), []);
-    // A wrong cell would be found.
+    // Control: a wrong cell is detected.
     let planted = DOCUMENT.replacen(
         "| ToyFound | | | | | Play | |",
         "| ToyFound | | | | | PlaceToy | |",

@@ -1,4 +1,4 @@
-//! What an app's own profile tells of the camera.
+//! Times of the camera in an app's own profile.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -25,7 +25,7 @@ fn tell(live: &mut Live, event: ShellEvent) {
     }
 }
 
-/// A frame of the camera, so old when it comes.
+/// Delivers a camera frame of this age.
 fn deliver(live: &mut Live, id: u64, age_ms: Option<f64>) {
     let time_ns = i64::try_from(id).unwrap() * 33_000_000;
     let mut frame = world::frame(id, time_ns, 0, Tracking::Normal);
@@ -33,7 +33,7 @@ fn deliver(live: &mut Live, id: u64, age_ms: Option<f64>) {
     tell(live, ShellEvent::Frame(Box::new(frame)));
 }
 
-/// An app whose toy moves, and the clock that it is timed by, in milliseconds.
+/// An app whose toy moves, and its clock, in milliseconds.
 fn playing() -> (Live, Arc<AtomicU64>) {
     let mut live = Live::new(harness::open_core(), world::toy(), Preset::Flat);
     let now_ms = Arc::new(AtomicU64::new(0));
@@ -46,7 +46,7 @@ fn playing() -> (Live, Arc<AtomicU64>) {
     (live, now_ms)
 }
 
-/// Has the toy found by three frames, of which the first has that number.
+/// Makes three frames find the toy; `id` is the number of the first one.
 fn place(live: &mut Live, id: u64) {
     deliver(live, id, None);
     tell(live, ShellEvent::User(UserAction::Tap(DVec2::new(32.0, 24.0))));

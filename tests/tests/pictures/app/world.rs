@@ -1,4 +1,4 @@
-//! A small place for the app: a table with a grid on it, and a toy of boxes.
+//! A small world for the app: a table with a grid on it, and a toy of boxes.
 
 use std::sync::{Arc, OnceLock};
 
@@ -31,7 +31,7 @@ pub(crate) fn app() -> App {
     App::new(toy())
 }
 
-/// A screen that nothing covers, a pixel a point.
+/// An uncovered screen, with one pixel per point.
 pub(crate) const fn screen(width_px: u32, height_px: u32) -> Screen {
     Screen {
         size_px: [width_px, height_px],
@@ -46,7 +46,7 @@ pub(crate) const fn screen(width_px: u32, height_px: u32) -> Screen {
     }
 }
 
-/// What leads to a camera that looks for a table.
+/// The events until a camera searches for a table.
 pub(crate) fn opening() -> [ShellEvent; 4] {
     [
         ShellEvent::Foreground(true),
@@ -71,7 +71,7 @@ pub(crate) fn at_ghost() -> App {
     app
 }
 
-/// A frame of a camera half a metre above the table, which looks down at it.
+/// A frame of a camera half a metre above the table, looking down at it.
 pub(crate) fn frame(id: u64, time_ns: i64, world_epoch: u32, tracking: Tracking) -> CameraFrame {
     let eye = DVec3::new(0.0, 0.4, 0.3);
     let back = eye.normalize();
@@ -122,7 +122,7 @@ pub(crate) fn frame(id: u64, time_ns: i64, world_epoch: u32, tracking: Tracking)
     }
 }
 
-/// A recording that found no room.
+/// A recording that failed for lack of space.
 pub(crate) fn full(job: RecordingJob) -> Recorded {
     Recorded {
         file: "full.mcap".to_owned(),
@@ -130,7 +130,8 @@ pub(crate) fn full(job: RecordingJob) -> Recorded {
     }
 }
 
-/// What alignment would say of an input that is right, with the toy's outline so far from the picture's.
+/// The alignment of a correct input, with this distance between the toy's outline and the
+/// picture's.
 pub(crate) fn alignment(input: &FrameInput, outline_px: Option<f64>) -> Alignment {
     let pose = outline_px.map(|outline_px| PoseAlignment {
         is_applied: false,

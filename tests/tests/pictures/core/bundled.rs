@@ -1,4 +1,5 @@
-//! The bundled session at a quarter of its size, and one core for all tests: a device and its pipelines are made once.
+//! The bundled session at a quarter of its size, and one core for all tests, so that a device and
+//! its pipelines are created once.
 
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 
@@ -10,17 +11,18 @@ use harness::{bundled_session, open_core};
 use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 
-/// The session is this much larger.
+/// Factor by which the session is larger.
 pub(crate) const SHRINK: u32 = 4;
 
 static CORE: LazyLock<Mutex<Core>> = LazyLock::new(|| Mutex::new(open_core()));
 
-/// The core, which no other test uses meanwhile. What a test before left there goes with its own scene.
+/// The core, for exclusive use by one test. State of an earlier test is dropped with that test's
+/// scene.
 pub(crate) fn core() -> MutexGuard<'static, Core> {
     CORE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What the session says of the place.
+/// The scene of the session.
 pub(crate) fn scene() -> Scene {
     SMALL.0.clone()
 }

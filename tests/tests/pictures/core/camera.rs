@@ -1,4 +1,4 @@
-//! A camera's planes in, a screen's picture out, and an effect that fades between.
+//! From a camera's planes to a screen's picture, and an effect that fades in and out.
 
 use app_core::Core;
 use app_core::camera_frame::{CameraImage, CodeRange, Display, Fit, LumaCoefficients, YcbcrEncoding};
@@ -30,9 +30,10 @@ fn planes_are_decoded_on_the_device_as_on_the_processor() {
                 .with_image(image)
                 .with_shown_pose(scene.physical_pose.clone());
             let picture = picture_of(&mut core, &shown);
-            // Half a code of rounding either way.
+            // Half a code of rounding in either direction.
             assert!(worst(&picture, &shown.image.rgba().rgba8) <= 1);
-            // Of the picture that was encoded chroma is coarser; the mean tells another table of coefficients.
+            // The chroma of an encoded picture is coarser; the mean would show another table of
+            // coefficients.
             let pairs = picture.iter().zip(&input.image.rgba().rgba8);
             let sum: u64 = pairs.map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
             assert!(sum < picture.len() as u64, "{coefficients:?} {range:?}: {sum}");
@@ -51,7 +52,7 @@ fn a_frame_of_planes_gives_the_picture_of_its_pixels() {
         let input = input.clone().with_image(image);
         picture_of(&mut core, &input)
     });
-    // A code of the frame may be rounded otherwise; what is made of it differs little more.
+    // A code of the frame may be rounded differently; the result changes little more.
     let pairs = a.iter().zip(&b);
     let far = pairs.filter(|(a, b)| a.abs_diff(**b) > 2).count();
     assert!(far * 1000 < a.len(), "{far} of {} codes", a.len());
@@ -116,7 +117,7 @@ impl App {
         }
     }
 
-    /// What the core draws on a target of a screen's size, red, green, blue and alpha.
+    /// The core's drawing on a target of a screen's size, as red, green, blue and alpha.
     fn shown(&mut self, [width, height]: [u32; 2], display: Display) -> Vec<u8> {
         let size = wgpu::Extent3d {
             width,
@@ -163,7 +164,8 @@ impl App {
     }
 }
 
-/// A screen shows planes as it shows their pixels, with the region over them in whole, in part and not at all.
+/// A screen shows planes like their pixels, with the region over them in full, in part and not at
+/// all.
 #[test]
 fn a_screen_shows_planes_as_their_pixels() {
     let (scene, input) = (scene(), first_input());
@@ -184,7 +186,8 @@ fn a_screen_shows_planes_as_their_pixels() {
                 app.core.frame(&input).unwrap();
                 app.shown(screen_px, Display::default())
             });
-            // A sampler of 8 bits is two codes off in chroma, and planes are filtered as codes rather than as light.
+            // The error of an 8-bit sampler is two codes in chroma, and planes are filtered as
+            // codes rather than as light.
             let pairs = of_planes.iter().zip(&of_pixels);
             let far = pairs.filter(|(a, b)| a.abs_diff(**b) > 3).count();
             let (most, n) = (worst(&of_planes, &of_pixels), of_planes.len());
@@ -196,7 +199,8 @@ fn a_screen_shows_planes_as_their_pixels() {
     }
 }
 
-/// On a screen of its own size a picture is what is read of it, turned or not, whether its effect is shown in whole or in part.
+/// On a screen of its own size a picture equals the one that is read back, rotated or not, with its
+/// effect in full or in part.
 #[test]
 fn a_screen_shows_the_region_over_the_camera_image() {
     let (scene, input) = (scene(), first_input());
@@ -226,20 +230,21 @@ fn a_screen_shows_the_region_over_the_camera_image() {
                 read.rgba8[first..first + 4].to_vec()
             })
             .collect();
-        // Mixed before or after rounding.
+        // Blended before or after rounding.
         let most = worst(&app.shown([width, height], display), &expected);
         assert!(most <= 1, "effect {effect}, {quarter_turns} turns: {most}");
     }
 }
 
-/// In every rotation and fit each point of the screen shows the picture's point that the map says, black beyond it.
+/// In every rotation and fit each point of the screen shows the picture's point given by the map,
+/// and black outside the picture.
 #[test]
 fn a_screen_shows_the_picture_turned_and_cropped() {
     let (scene, input) = (scene(), first_input());
     let mut app = App::open();
     app.core.set_scene(scene.clone(), Preset::Balanced).unwrap();
     let image_px = [scene.width_px, scene.height_px];
-    // A test picture whose red tells the column, whose green the row.
+    // A test picture whose red encodes the column, and whose green encodes the row.
     let rgba8 = (0..image_px[1]).flat_map(|y| (0..image_px[0]).map(move |x| [x, y]));
     let rgba8: Vec<u8> = rgba8
         .flat_map(|[x, y]| [x.min(255) as u8, (2 * y).min(255) as u8, 40, 255])

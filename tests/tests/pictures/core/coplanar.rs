@@ -1,4 +1,4 @@
-//! A part of the toy that lies in its receiver's plane hides nothing of it.
+//! A part of the toy that lies in its receiver's plane hides none of the receiver.
 
 use app_core::preset::Preset;
 use glam::{DVec3, DVec4};
@@ -9,10 +9,11 @@ use crate::core::normals::{is_toy, picture, rmse_where};
 
 /// Half the side of the square, in metres.
 const HALF_M: f32 = 0.05;
-/// Largest difference to the picture without it, on the table beside it, in codes.
+/// Largest difference from the picture without it, on the table beside it, in codes.
 const MAX_RMSE: f64 = 1.0;
 
-/// Whether each pixel shows the table, or what is in front of it, farther from the square than a pixel's footprint.
+/// Whether each pixel shows the table, or something in front of it, farther from the square than a
+/// pixel's footprint.
 fn is_beside() -> Vec<bool> {
     const MARGIN_M: f64 = 0.005;
     let (scene, input) = (scene(), first_input());
@@ -34,7 +35,8 @@ fn is_beside() -> Vec<bool> {
 
 #[test]
 fn a_square_in_the_plane_of_the_table_changes_nothing_beside_it() {
-    // The toy itself learns from the square's pixels, which are the table's: they are no part of a real toy.
+    // The toy's own estimates use the square's pixels, which are the table's: a real toy has no
+    // such part.
     let is_table: Vec<bool> = is_beside()
         .iter()
         .zip(is_toy())
@@ -49,7 +51,7 @@ fn a_square_in_the_plane_of_the_table_changes_nothing_beside_it() {
             )
         };
         let found = rmse_where(&square(0.0), &without, |pixel| is_table[pixel]);
-        // Above the table it hides and shades: the comparison must see that.
+        // Control: above the table it hides and shades, and the comparison must detect that.
         let planted = rmse_where(&square(0.05), &without, |pixel| is_table[pixel]);
         println!("{preset:?}: {found:.3}, planted {planted:.3}");
         assert!(planted > MAX_RMSE, "{planted}");

@@ -7,7 +7,7 @@ use desk::files::BUNDLED_SESSION;
 use measure::glb::{chunks, container};
 use serde_json::{Value, json};
 
-/// The bundled toy's file, whose accessors are packed.
+/// The bundled toy's file with packed accessors.
 pub(crate) struct File {
     json: Value,
     bin: Vec<u8>,
@@ -30,7 +30,7 @@ impl File {
         primitives.iter().map(index).collect()
     }
 
-    /// The bytes of an accessor whose elements take `size` bytes.
+    /// The bytes of an accessor with elements of `size` bytes.
     fn elements(&mut self, accessor: usize, size: usize) -> &mut [u8] {
         let number = |value: &Value| usize::try_from(value.as_u64().unwrap_or(0)).unwrap();
         let accessor = &self.json["accessors"][accessor];
@@ -55,7 +55,7 @@ impl File {
         self
     }
 
-    /// Turns every triangle around.
+    /// Reverses every triangle.
     pub(crate) fn turn_faces(mut self) -> Self {
         for accessor in self.accessors(|primitive| &primitive["indices"]) {
             for [_, b, c] in self

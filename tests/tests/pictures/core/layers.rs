@@ -1,4 +1,4 @@
-//! The picture finer than codes, and in layers.
+//! The picture in more precision than codes, and in layers.
 
 use app_core::preset::Preset;
 use app_core::scene::Image;
@@ -9,7 +9,7 @@ use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 
 use crate::core::bundled::{core, first_input, scene, whole};
 
-/// Codes of a map of light, not rounded.
+/// Unrounded codes of a map of light.
 fn codes(light: &FloatMap) -> Vec<[f64; 3]> {
     let texels = light.texels.iter();
     texels
@@ -21,7 +21,8 @@ fn code_of(image: &Image, index: usize, channel: usize) -> f64 {
     f64::from(image.rgba8[4 * index + channel])
 }
 
-/// What is untouched is the camera's, what is made rounds to the picture of 8 bits, and lies between its codes.
+/// Untouched pixels are the camera's; retargeted ones round to the picture of 8 bits, and lie
+/// between its codes.
 #[test]
 fn light_is_the_picture_before_it_was_rounded() {
     let mut core = core();
@@ -47,8 +48,9 @@ fn light_is_the_picture_before_it_was_rounded() {
         println!(
             "{preset}: {n_made} made, {n_between} between codes, {n_others} round otherwise, {most} codes off at most"
         );
-        // Half a code is rounding; a software driver decodes codes up to .34 of one off, which is taken out of the light alone, and encodes .14
-        // of one off: no larger share of codes then goes to a neighbour.
+        // Half a code is rounding; a software driver decodes codes with an error of up to .34,
+        // which is removed from the light alone, and encodes with an error of .14: at most this
+        // share of codes then moves to a neighbour.
         assert!(most < 1.0, "{preset}: {most} codes");
         assert!(
             3 * n_others < n_made,
@@ -93,8 +95,8 @@ fn what_passes_through_is_the_cameras_code_by_code() {
     }
 }
 
-/// The toy over clean plate times shadow ratio is the picture, whatever the shadow's strength; the clean plate is that of a shadow
-/// without any.
+/// The toy over clean plate times shadow ratio is the picture, for any strength of the shadow; the
+/// clean plate is that of a shadow without strength.
 #[test]
 fn layers_are_laid_together_to_the_picture() {
     let mut core = core();
@@ -116,7 +118,8 @@ fn layers_are_laid_together_to_the_picture() {
             for index in 0..light.texels.len() {
                 let [clean, ratio, toy] =
                     [&layers.clean_plate, &layers.shadow_ratio, &layers.toy].map(|layer| layer.texels[index]);
-                // Where the camera shows the outline of the real toy, its pixel stays if that stands still.
+                // Where the camera shows the outline of the real toy, its pixel stays if the toy
+                // does not move.
                 let width = light.width as usize;
                 let at = [index % width, index / width].map(|side| u32::try_from(side).unwrap());
                 let at = glam::UVec2::from(at);
@@ -141,7 +144,8 @@ fn layers_are_laid_together_to_the_picture() {
                 n_shadow += i32::from(masks[1] > 0.9 && ratio[1] < 0.9);
             }
             println!("{preset}, {strength}: {most} codes apart, bare {most_bare}, {n_shadow} in shadow");
-            // Half floats are .1 of a code; a driver's decoding, of .34 at most, is taken out of each layer by itself.
+            // Half floats have an error of .1 of a code; that of a driver's decoding, .34 at most,
+            // is removed from each layer separately.
             assert!(most < 0.5, "{preset}, {strength}: {most} codes");
             assert!(most_bare < 1.0, "{preset}, {strength}: {most_bare} codes");
             assert!(n_shadow > 100, "{n_shadow}");

@@ -1,4 +1,4 @@
-//! Planes that a platform lends as textures: read where they lie, and copied only for the processor.
+//! Planes that a platform shares as textures: read in place, and copied for the processor alone.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -13,7 +13,7 @@ use measure::planar::{BT601_FULL, planar};
 use crate::core::bundled::{first_input, scene};
 use crate::core::camera::App;
 
-/// A texture of a platform's, with its texels.
+/// A texture of a platform, with its texels.
 fn texture(app: &App, size_px: [u32; 2], format: wgpu::TextureFormat, texels: &[u8]) -> wgpu::Texture {
     let size = wgpu::Extent3d {
         width: size_px[0],
@@ -52,7 +52,7 @@ fn copy(image: &PlanarImage) -> PlanarImage {
     PlanarImage::new(&planes).unwrap()
 }
 
-/// `image` with its planes on the device of `app`, and how often they were copied.
+/// `image` with its planes on the device of `app`, and the number of their copies.
 fn lent(app: &App, image: &Arc<PlanarImage>) -> (Result<PlanarImage, LentError>, Arc<AtomicU32>) {
     let size_px = image.size_px();
     let half_px = size_px.map(|side| side.div_ceil(2));

@@ -1,4 +1,5 @@
-//! A toy with broken normals, or inside out, looks as the one with good normals does, and says what was wrong.
+//! A toy with broken or inverted normals looks like the one with correct normals, and a warning
+//! reports the error.
 
 use std::sync::Arc;
 
@@ -10,7 +11,7 @@ use harness::bundled_session;
 use crate::core::bundled::{SHRINK, core, first_input, picture_of, scene};
 use crate::core::file::File;
 
-/// Largest difference to the picture of good normals inside the toy, in codes.
+/// Largest difference from the picture with correct normals inside the toy, in codes.
 const MAX_RMSE: f64 = 1.0;
 
 fn inverted(normal: [f32; 3]) -> [f32; 3] {
@@ -68,7 +69,7 @@ fn broken_normals_look_as_good_ones_do() {
     ];
     for preset in [Preset::Balanced, Preset::Best] {
         let good = picture(File::open().toy(), preset);
-        // Normals that are wrong and that nothing tells: the comparison must see them.
+        // Control: wrong normals that cannot be detected; the comparison must show them.
         let up = picture(
             File::open().change_normals(all, |_| [0.0, 1.0, 0.0]).toy(),
             preset,

@@ -1,4 +1,4 @@
-//! Drivers with known faults are told by what they say of themselves.
+//! Drivers with known faults are recognised by the properties of their adapters.
 
 use app_core::CoreError;
 use app_core::gpu::{GpuError, fault_on_surfaces};

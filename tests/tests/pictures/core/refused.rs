@@ -1,4 +1,4 @@
-//! What a shell may hand over by mistake: it is refused by name, and nothing that was learned is lost.
+//! Wrong inputs from a shell: they are refused by name, and no estimate is lost.
 
 use app_core::CoreError;
 use app_core::frame::{FrameInput, PassGroup};
@@ -48,7 +48,7 @@ fn pictures_that_do_not_fit_are_refused() {
     assert!(core.frame(&input).unwrap().region.is_some());
 }
 
-/// What a tracker or an app may hand over by mistake is refused by name, and costs nothing that was learned.
+/// Wrong values from a tracker or an app are refused by name, without the loss of any estimate.
 #[test]
 fn values_that_cannot_be_are_refused_by_name() {
     let mut core = core();

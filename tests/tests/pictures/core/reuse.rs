@@ -1,4 +1,4 @@
-//! What of a frame is new decides what is learned anew, and nothing else does.
+//! The changes in a frame determine which estimates are made anew, and nothing else does.
 
 use std::sync::Arc;
 
@@ -78,20 +78,20 @@ fn the_toys_colours_are_those_of_the_latest_picture() {
     assert!(picture_of(&mut core, &second) == expected);
 }
 
-/// How much of what was learned before a frame was reused.
+/// The extent of the estimates that a frame makes anew.
 #[derive(Debug, PartialEq)]
 enum Learned {
-    /// Nothing was learned.
+    /// None.
     Nothing,
     /// The colours of a new picture.
     Picture,
     /// A new view of a known scene: fits are refined.
     View,
-    /// Everything.
+    /// All estimates.
     Scene,
 }
 
-/// What the core learned from a frame.
+/// The estimates that the core made from a frame.
 fn learned(core: &mut Core, input: &FrameInput) -> Learned {
     let report = core.frame(input).unwrap();
     let n_runs = |pass: &str| -> u32 {
@@ -99,7 +99,8 @@ fn learned(core: &mut Core, input: &FrameInput) -> Learned {
         runs.map(|run| run.n_runs).sum()
     };
     let plan = core.plan().unwrap();
-    // The light on one receiver and on the toy is fitted; of a known scene, the intensities as well.
+    // The light on one receiver and on the toy is fitted; for a known scene, the intensities as
+    // well.
     let fits = [
         2 * plan.n_fit_steps,
         2 * plan.n_refine_steps + plan.n_intensity_steps,
@@ -118,7 +119,7 @@ fn first_frame(core: &mut Core) -> FrameInput {
     input
 }
 
-/// What a core makes of a frame that never saw another.
+/// The picture of a frame by a core without previous frames.
 fn fresh_picture(core: &mut Core, scene: Scene, input: &FrameInput) -> Image {
     core.set_scene(scene, Preset::Balanced).unwrap();
     core.frame(input).unwrap();
@@ -132,7 +133,8 @@ fn rms([expected, actual]: [&Image; 2]) -> f64 {
     (difference.per_texel.iter().map(|d| d * d).sum::<f64>() / n_pixels).sqrt()
 }
 
-/// Measured: 0.05 where the frame was followed, for the region has another size; 6 and more where it was not.
+/// Measured: 0.05 if the frame was followed, since the region has another size; 6 and more if it
+/// was not.
 const MAX_RMS: f64 = 0.3;
 
 #[test]
@@ -144,13 +146,13 @@ fn an_object_that_was_moved_is_learned_anew_where_it_stands() {
             .clone()
             .with_world_from_object(first.world_from_object * DMat4::from_rotation_y(degrees.to_radians()))
     };
-    // Of a toy of some 15 cm, 40 cm away, 0.1 px are some 0.07 mm.
+    // For a toy of some 15 cm, 40 cm away, 0.1 px are some 0.07 mm.
     assert_eq!(learned(&mut core, &turned(0.005)), Learned::Nothing);
     let wrong = turned(10.0);
     assert_eq!(learned(&mut core, &wrong), Learned::Scene);
     let not_followed = core.read_picture().unwrap();
     assert_eq!(learned(&mut core, &wrong), Learned::Nothing);
-    // The photograph shows the toy where it stood at first.
+    // The photograph shows the toy at its first position.
     assert_eq!(learned(&mut core, &first), Learned::Scene);
     let followed = core.read_picture().unwrap();
     let fresh = fresh_picture(&mut core, scene(), &first);
@@ -161,7 +163,7 @@ fn an_object_that_was_moved_is_learned_anew_where_it_stands() {
     );
 }
 
-/// Larger and farther by as much, the toy looks the same, but not its shadow.
+/// A toy that is larger and equally farther away looks the same, but its shadow does not.
 #[test]
 fn motion_that_only_the_shadow_shows_is_learned_from() {
     let mut core = core();
@@ -249,7 +251,7 @@ fn as_soft_as(input: &FrameInput, deviation_px: f64) -> FrameInput {
     })
 }
 
-/// As sharp as pixels are, however little is measured.
+/// The picture is as sharp as its pixels, however small the measured blur is.
 #[test]
 fn a_softness_that_is_not_seen_changes_nothing() {
     let mut core = core();
@@ -289,7 +291,7 @@ fn a_focus_that_breathes_is_no_new_scene() {
         (input, maps(&core))
     });
     first_frame(&mut core);
-    // What depends on it has no targets yet.
+    // The passes for softness have no targets yet.
     assert_eq!(learned(&mut core, &as_soft_as(&first, 2.0)), Learned::View);
     assert_eq!(learned(&mut core, &as_soft_as(&first, 2.05)), Learned::Nothing);
     for (input, fresh) in &of_softness {
@@ -324,7 +326,8 @@ fn an_exposure_that_is_told_stands_where_no_pixel_tells_it() {
         (gain(&core) / before - doubled).abs() < 1e-5,
         "the exposure stayed"
     );
-    // Told late, of a picture that was learned from: it counts from the next picture on.
+    // The exposure of a picture that was already used arrives late: it counts from the next picture
+    // on.
     let late = still.with_exposure(4.0);
     assert_eq!(learned(&mut core, &late), Learned::Nothing);
     assert_eq!(learned(&mut core, &again(4.0)), Learned::Picture);
@@ -335,7 +338,8 @@ fn an_exposure_that_is_told_stands_where_no_pixel_tells_it() {
     );
 }
 
-/// A scene and a frame whose toy fills a small part of the picture; what that shows is the plate alone.
+/// A scene and a frame whose toy fills a small part of the picture; all other pixels show the
+/// plate.
 fn from_afar() -> (Scene, FrameInput) {
     let (mut scene, mut input) = whole();
     let cameras = scene.plates.iter_mut().map(|plate| &mut plate.camera);
@@ -347,7 +351,7 @@ fn from_afar() -> (Scene, FrameInput) {
     (scene, input)
 }
 
-/// The region is that of the poses seen so far; one that reaches farther is not cut off.
+/// The region is that of the previous poses; a pose that reaches farther is not cut off.
 #[test]
 fn the_region_grows_with_a_pose_that_reaches_beyond_it() {
     let mut core = core();
@@ -364,7 +368,7 @@ fn the_region_grows_with_a_pose_that_reaches_beyond_it() {
     };
     core.set_scene(scene.clone(), Preset::Balanced).unwrap();
     let mut before = core.frame(&lifted(0.0)).unwrap().region.unwrap();
-    // Far beyond the grids over the receivers, what is known on these does not serve any longer.
+    // Far beyond the grids over the receivers, their estimates are no longer usable.
     for (height_m, expected) in [(0.012, Learned::View), (0.08, Learned::Scene)] {
         let high = lifted(height_m);
         assert_eq!(learned(&mut core, &high), expected);
@@ -378,7 +382,8 @@ fn the_region_grows_with_a_pose_that_reaches_beyond_it() {
     assert!(followed < MAX_RMS, "{followed}");
 }
 
-/// What is injected belongs to one view: another view goes on from what was learned, and so does the one after that.
+/// Injected maps belong to one view: the next view continues from the estimates, and so does the
+/// one after it.
 #[test]
 fn views_after_an_injection_forget_nothing() {
     let mut core = core();

@@ -1,4 +1,4 @@
-//! A world in other units, or of another size, is the same picture.
+//! A world in other units, or of another size, results in the same picture.
 
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
@@ -58,7 +58,7 @@ fn scaled(scale: f64) -> (Scene, FrameInput) {
     (scene, input)
 }
 
-/// Of 14,400 pixels some ten have a sample that falls to the other side of an edge.
+/// Of 14,400 pixels some ten have a sample that falls on the other side of an edge.
 #[test]
 fn the_scale_of_the_world_changes_nothing() {
     let mut core = core();

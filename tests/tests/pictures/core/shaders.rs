@@ -1,4 +1,4 @@
-//! Shaders that are changed while a core runs.
+//! Replacement of shaders while a core runs.
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +13,7 @@ use crate::core::bundled::{first_input, picture_of, scene};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../shaders");
 
-/// Draws with one file in place of that which is built in.
+/// Draws with one file in place of the built-in one.
 fn replace_one(core: &mut Core, path: &str, text: &str) -> Result<(), CoreError> {
     core.replace_shaders([(path.to_owned(), text.to_owned())].into_iter().collect())
 }

@@ -1,4 +1,4 @@
-//! The shown shadow stronger, weaker, harder and softer than it is.
+//! Shown shadows that are stronger, weaker, harder or softer than the true one.
 
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
@@ -15,14 +15,15 @@ fn styled(input: &FrameInput, strength: f64, softness: f64) -> FrameInput {
         .with_shadow_style(ShadowStyle { strength, softness })
 }
 
-/// Nothing of a style stays in the picture of another, whatever else is kept, and the true one is as if there were none.
+/// No effect of a style remains in a picture with another, although other state is kept, and the
+/// true style equals no style.
 #[test]
 fn a_style_is_that_of_its_frame() {
     let mut core = core();
     let input = first_input();
     for preset in [Preset::Fast, Preset::Balanced, Preset::Best] {
         core.set_scene(scene(), preset).unwrap();
-        // What is wider reaches farther, and is looked for once.
+        // A wider shadow reaches farther, and its region is determined once.
         core.frame(&styled(&input, 1.0, 1.5)).unwrap();
         let styles = [(1.0, 1.0), (0.5, 1.0), (1.0, 0.3), (1.0, 1.5), (2.0, 1.0)];
         let mut made = |order: [usize; 5]| {
@@ -73,7 +74,8 @@ fn a_style_out_of_range_is_refused_by_name() {
     }
 }
 
-/// Codes of the pixels that show neither toy, by the session's coverage; the rest is 0.
+/// Codes of the pixels that show the toy in neither pose, by the session's coverage; the others are
+/// 0.
 fn of_receiver(picture: &[u8], plate: &Image, is_shown: impl Fn(usize) -> bool) -> Vec<[f64; 3]> {
     assert_eq!(picture.len(), plate.rgba8.len());
     let pixels = picture
@@ -86,7 +88,8 @@ fn of_receiver(picture: &[u8], plate: &Image, is_shown: impl Fn(usize) -> bool) 
         .collect()
 }
 
-/// Without its shadow the toy stands on the plate, which the session's camera took in the same light.
+/// Without its shadow the toy stands on the plate, which the session's camera took in the same
+/// light.
 #[test]
 fn without_strength_the_receiver_is_the_clean_plate() {
     let mut core = core();
@@ -126,7 +129,7 @@ fn without_strength_the_receiver_is_the_clean_plate() {
     assert!(true_rms > 5.0, "with a shadow it is {true_rms}");
 }
 
-/// Pixels whose light is hidden in part, and how much of it is hidden in all.
+/// Number of pixels whose light is partly hidden, and the sum of their hidden shares.
 fn penumbra(visibility: &FloatMap) -> [f64; 2] {
     let hidden = || visibility.texels.iter().map(|texel| 1.0 - f64::from(texel[0]));
     let n_partly = hidden().filter(|hidden| (0.05..0.95).contains(hidden)).count();
@@ -138,7 +141,7 @@ fn a_softer_shadow_has_a_wider_penumbra_and_hides_as_much() {
     let mut core = core();
     let (scene, input) = whole();
     core.set_scene(scene, Preset::Balanced).unwrap();
-    // All in the region of the widest.
+    // All in the region of the widest shadow.
     let mut of_softness = |softness| {
         core.frame(&styled(&input, 1.0, softness)).unwrap();
         let physical = core.read_map(Map::PhysicalVisibility).unwrap().unwrap();

@@ -1,4 +1,4 @@
-//! The toy is shown elsewhere than where it stands.
+//! Showing the toy in a place other than its own.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use glam::{DMat4, DQuat, DVec3};
 
 use crate::core::bundled::{core, first_input, picture_of, scene};
 
-/// 20 mm beside and turned by 15 degrees about where it stands.
+/// 20 mm aside and turned by 15 degrees about the toy's own position.
 fn beside(world_from_object: &DMat4) -> DMat4 {
     let at = world_from_object.w_axis.truncate();
     let motion = DMat4::from_translation(at + DVec3::new(0.02, 0.0, 0.005))
@@ -56,7 +56,7 @@ fn a_place_beside_is_the_same_as_a_root_that_is_moved_there() {
             pairs.filter(|(a, b)| a.abs_diff(**b) > 1).count()
         };
         let [near, far] = [&root, &still].map(|other| differing(other));
-        // Positions are rounded to 32 bits on two ways, which shows in some pixels at an edge.
+        // Positions are rounded to 32 bits in two ways, which is visible in some pixels at an edge.
         assert!(100 * near < far, "{preset}: {near} of {far}");
     }
 }

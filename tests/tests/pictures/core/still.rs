@@ -1,4 +1,4 @@
-//! A pose that is all but the physical one shows what the camera saw.
+//! A pose almost equal to the physical one shows the camera's pixels.
 
 use app_core::preset::Preset;
 use app_core::scene::Pose;
@@ -7,7 +7,8 @@ use harness::compare::Pair;
 use crate::core::bundled::{core, first_input, scene};
 
 const CLIP: &str = "Look";
-/// The clip begins with the physical pose: no vertex is farther from it then than rounding in 32 bits.
+/// The clip begins with the physical pose: at this time no vertex is farther from it than rounding
+/// in 32 bits.
 const JUST_BEGUN_SECS: f64 = 1e-9;
 
 #[test]
@@ -16,7 +17,7 @@ fn a_clip_that_has_just_begun_is_the_camera_picture() {
     let clip = scene.toy.find_clip(CLIP).unwrap();
     let at = |time_secs| input.clone().with_shown_pose(Pose::Clip { clip, time_secs });
     let mut core = core();
-    // `best` takes the noise out of the real shadow, whatever moves.
+    // `best` removes the noise from the real shadow, whatever moves.
     core.set_scene(scene, Preset::Balanced).unwrap();
     let [just_begun, later] = [JUST_BEGUN_SECS, 0.5].map(|time_secs| {
         core.frame(&at(time_secs)).unwrap();
@@ -27,7 +28,8 @@ fn a_clip_that_has_just_begun_is_the_camera_picture() {
         };
         pair.difference().unwrap().max_abs
     });
-    // Without the same light for both poses it is up to 61 codes, at folds and at shadows on the toy.
+    // Without the same light for both poses the difference is up to 61 codes, at folds and at
+    // shadows on the toy.
     assert!(just_begun <= 1.0, "{just_begun} codes");
     assert!(later > 30.0, "nothing moves: {later} codes");
 }

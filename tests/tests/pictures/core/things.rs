@@ -1,4 +1,5 @@
-//! Things that stand in the picture stay as the camera saw them, before the toy or behind it; a plate that is wrong is not used.
+//! Objects in the picture stay as the camera saw them, in front of the toy or behind it; a wrong
+//! plate is not used.
 
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
@@ -11,12 +12,12 @@ use glam::UVec2;
 
 use super::bundled::{core, first_input, picture_of, scene};
 
-/// Pixels of the small picture: its first, and that after its last.
+/// Pixels of the small picture: the first, and the one after the last.
 type Rect = [UVec2; 2];
 
-/// Where the shadow falls, clear of the toy.
+/// In the shadow, away from the toy.
 const IN_SHADOW: Rect = [UVec2::new(95, 50), UVec2::new(123, 76)];
-/// Over what the toy covers in either pose.
+/// In the area that the toy covers in either pose.
 const OVER_TOY: Rect = [UVec2::new(56, 40), UVec2::new(72, 56)];
 
 fn with(input: &FrameInput, marked: &[(Mark, Rect)]) -> FrameInput {
@@ -64,7 +65,7 @@ fn things_stay_as_the_camera_saw_them() {
     for rect in [IN_SHADOW, OVER_TOY] {
         assert_eq!(apart(&with_things, &input, rect), 0, "{rect:?}");
     }
-    // The toy is drawn over a thing that is not before it.
+    // The toy is drawn over an object that is not in front of it.
     let behind = picture_of(&mut core, &with(&input, &[(Mark::Thing, OVER_TOY)]));
     assert!(apart(&behind, &input, OVER_TOY) > 10);
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use app_core::Core;
 use app_core::frame::{FrameInput, Warning};
+use app_core::gloss::{Gloss, N_GLOSSES};
 use app_core::preset::Preset;
 use app_core::scene::{FieldError, Image, Light, Receiver, Scene};
 use app_core::toy::ToyError;
@@ -48,6 +49,14 @@ impl Case {
 
     fn lit_by(mut self, lights: Vec<Light>) -> Self {
         self.scene.lights = lights;
+        self
+    }
+
+    fn made_glossy(mut self, roughness: f32, strength: f32) -> Self {
+        self.input.gloss = Gloss {
+            roughness,
+            strengths: [strength; N_GLOSSES],
+        };
         self
     }
 
@@ -178,6 +187,8 @@ fn broken_input_is_told_by_its_cause() {
         // The shadow in the picture is then that of a light that is not listed.
         Case::new("light inside the toy", &["LightsInsideToy", "Outlier(Shadow)"])
             .lit_by(vec![bulb(toy_middle())]),
+        Case::new("a toy like a mirror", &["TooGlossy"]).made_glossy(0.02, 1.0),
+        Case::new("a toy of metal", &["TooGlossy"]).made_glossy(0.2, 4.0),
         Case::new("a second light inside the toy", &["LightsInsideToy"])
             .lit_by(vec![bundled, bulb(toy_middle())]),
         Case::new("light where there is none", &["NoShadow", "Outlier(Shadow)"])

@@ -1,4 +1,4 @@
-//! Budgets of frames, held on the ledger: it has no noise and needs no device.
+//! Budgets of frames, tested on the ledger, which has no noise and needs no device.
 
 use app_core::Core;
 use app_core::camera_frame::Display;
@@ -15,12 +15,12 @@ use measure::ball::{SCREEN_PX, ball, lifted, phone};
 use measure::bench::{FRAME_KINDS, FrameKind, with_new};
 use measure::count::{Counted, count, ledgers};
 
-/// On that screen.
+/// A scene on that screen.
 fn scene_of(toy: Toy, n_lights: u32) -> (Scene, FrameInput) {
     measure::ball::scene_of(toy, n_lights, (phone(), SCREEN_PX))
 }
 
-/// A square at each place, its corners counted from there, two triangles each.
+/// A square at each place, with its corners relative to it, of two triangles each.
 fn squares(places: impl Iterator<Item = DVec3>, corners: [[f64; 2]; 4]) -> Toy {
     let at = |place: DVec3| corners.map(|[x, z]| (place + DVec3::new(x, 0.0, z)).as_vec3().to_array());
     let positions: Vec<f32> = places.flat_map(at).flatten().collect();
@@ -31,7 +31,7 @@ fn squares(places: impl Iterator<Item = DVec3>, corners: [[f64; 2]; 4]) -> Toy {
     lifted(&positions, &normals, &indices.collect::<Vec<_>>())
 }
 
-/// Squares of 80 mm, a hair's breadth one above the other.
+/// Squares of 80 mm, slightly above one another.
 fn sheets(n: u32) -> Toy {
     let places = (0..n).map(|sheet| 1e-6 * f64::from(sheet) * DVec3::Y);
     squares(
@@ -40,7 +40,8 @@ fn sheets(n: u32) -> Toy {
     )
 }
 
-/// Squares of 1.1 millimetres over each other in rows of 400: no shape with much fewer triangles is near them.
+/// Squares of 1.1 millimetres over each other in rows of 400: no shape with far fewer triangles is
+/// near them.
 fn grains(n: u32) -> Toy {
     let step = |k: u32| 2e-4 * f64::from(k) - 0.04;
     let places = (0..n).map(|grain| DVec3::new(step(grain % 400), 0.0, step(grain / 400)));
@@ -56,9 +57,10 @@ fn counted(n_lights: u32, preset: Preset) -> Vec<Counted> {
     count(&scene, (preset, &[]), &input).unwrap()
 }
 
-/// The most that a new pose, picture and view may take: triangles, copies of the screen. What they take is a little less; the aims
-/// of the target design are 300,000 triangles and 2.3 copies for a new picture of one light, 3.5 for a new view. Lists of the
-/// processor took two MiB more than without them, and a third of the triangles less.
+/// Limits for a new pose, picture and view: triangles, copies of the screen. The actual cost is
+/// slightly lower; the goals of the target design are 300,000 triangles and 2.3 copies for a new
+/// picture with one light, 3.5 for a new view. The processor's lists cost two MiB, and save a third
+/// of the triangles.
 type Budgets = [(u64, f64); 3];
 
 fn assert_held(n_lights: u32, preset: Preset, budgets: Budgets, peak_mib: f64) {
@@ -82,13 +84,14 @@ fn assert_held(n_lights: u32, preset: Preset, budgets: Budgets, peak_mib: f64) {
 
 #[test]
 fn frames_stay_within_their_budgets() {
-    #[rustfmt::skip] // One preset and number of lights a line.
+    #[rustfmt::skip] // One preset and number of lights per line.
     let budgets = [
         (1, Preset::Balanced, [(222_000, 1.52), (222_000, 1.80), (392_000, 2.69)], 34.0),
         (2, Preset::Balanced, [(332_000, 1.76), (332_000, 2.05), (609_000, 3.10)], 37.5),
         (1, Preset::Fast, [(101_000, 1.39), (101_000, 1.67), (171_000, 2.47)], 32.0),
         (2, Preset::Fast, [(135_000, 1.56), (135_000, 1.84), (239_000, 2.74)], 35.0),
-        // Its `retarget` looks anywhere in the picture, so that planes are kept beside what all of them decode to.
+        // Its `retarget` reads anywhere in the picture, so that planes are kept beside their
+        // decoded picture.
         (1, Preset::Paper, [(20_100, 4.7), (20_100, 5.9), (40_100, 7.1)], 63.0),
     ];
     for (n_lights, preset, budgets, peak_mib) in budgets {
@@ -96,7 +99,8 @@ fn frames_stay_within_their_budgets() {
     }
 }
 
-/// In a picture of 2 px of defocus: a new pose and a new picture of the same softness, and one whose focus has moved on.
+/// In a picture with 2 px of defocus: a new pose and a new picture of the same softness, and one
+/// whose focus has changed.
 #[test]
 fn soft_pictures_stay_within_their_budgets() {
     const COPIES: [f64; 2] = [1.56, 2.0];
@@ -134,7 +138,7 @@ fn soft_pictures_stay_within_their_budgets() {
     }
 }
 
-/// A row of the ledger that costs more is found.
+/// A more expensive row of the ledger is detected.
 #[test]
 #[should_panic(expected = "copies")]
 fn a_planted_budget_is_broken() {
@@ -145,7 +149,7 @@ fn a_planted_budget_is_broken() {
 #[test]
 fn settings_are_turned_down_and_up_again_with_what_was_learned_kept() {
     let (mut scene, input) = scene_of(ball(100, 51), 1);
-    // As wide as to have all points to begin with.
+    // So wide that it has all points from the start.
     scene.lights = vec![Light::Sphere {
         position_in_world: DVec3::new(0.9, 1.6, 0.4),
         radius_m: 0.5,

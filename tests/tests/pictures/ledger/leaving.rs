@@ -1,4 +1,5 @@
-//! A toy that leaves the picture and comes back, while another pose of it is shown: targets wait for it.
+//! A toy that leaves the picture and comes back, while another pose of it is shown: targets keep
+//! their size for it.
 
 use std::sync::Arc;
 
@@ -11,7 +12,8 @@ use app_pipeline::core::inspect::Inspect;
 use glam::{DMat4, DQuat, DVec3};
 use measure::ball::{SCREEN_PX, ball, phone, scene_of};
 
-/// Turn to the left after which the real toy is beyond the picture's right side, and the shown one still in it.
+/// Turn to the left after which the real toy is beyond the picture's right side, and the shown one
+/// still in it.
 const TURN_RAD: f64 = 0.58;
 
 #[test]
@@ -40,7 +42,7 @@ fn a_toy_that_comes_back_finds_its_targets() {
         assert_eq!(warns, is_out, "{:?}", report.warnings);
         core.memory().made_bytes
     };
-    // Until the targets are as large as either view asks for.
+    // Until the targets are as large as either view requires.
     for _ in 0..2 {
         made_bytes(&seen, false);
         made_bytes(&left, true);

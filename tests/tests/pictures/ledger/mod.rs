@@ -1,4 +1,4 @@
-//! The ledger against what a device is given, and the budgets that are held on it.
+//! The ledger compared with the work that a device gets, and the budgets on the ledger.
 
 mod budgets;
 mod leaving;
@@ -18,7 +18,7 @@ use measure::planar::{BT601_FULL, planar};
 
 use crate::trace::{Objects, Pass, Traced};
 
-/// A report in the words of a trace.
+/// A report in the form of a trace.
 fn counted(report: &FrameReport, given: &BTreeMap<String, Pass>) -> BTreeMap<String, Pass> {
     counted_runs(&report.ran, given)
 }
@@ -33,7 +33,7 @@ fn counted_runs(ran: &[PassRun], given: &BTreeMap<String, Pass>) -> BTreeMap<Str
         pass.triangles += work.triangles();
         pass.vertices += work.vertices();
         pass.bytes_written += work.bytes_written();
-        // Of compute passes the trace does not tell.
+        // The trace does not contain the draws of compute passes.
         if given
             .get(run.pass)
             .is_some_and(|given| given.bytes_read.is_some())
@@ -54,7 +54,7 @@ fn the_ledger_without_a_device_is_what_a_device_is_given() {
         for core in [&mut traced.core, &mut without] {
             core.set_scene(session.scene().clone(), preset).unwrap();
         }
-        // The first frame learns all anew, the others what is new in them.
+        // The first frame estimates everything anew, the others their changes.
         let mut steady = first.clone();
         let others = FRAME_KINDS.map(|kind| {
             steady = with_new(&steady, kind);
@@ -82,7 +82,8 @@ fn the_ledger_without_a_device_is_what_a_device_is_given() {
     }
 }
 
-/// Screens on which the region is the smaller part, and the larger; its effect in whole, in part and not at all; pixels and planes.
+/// Screens on which the region is the smaller part, and the larger; its effect in full, in part and
+/// not at all; pixels and planes.
 #[test]
 fn a_screen_costs_what_a_device_is_given() {
     let session = bundled_session();
@@ -127,7 +128,7 @@ fn a_screen_costs_what_a_device_is_given() {
     }
 }
 
-/// A draw, a store or a texel that the ledger does not know of is found.
+/// A draw, a store or a texel that the ledger does not contain is detected.
 #[test]
 fn what_is_planted_in_a_trace_is_found() {
     let session = bundled_session();

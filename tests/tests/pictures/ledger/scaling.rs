@@ -1,11 +1,12 @@
-//! What frames cost is flat outside of the region, and grows no faster than in proportion to what is in it.
+//! The cost of frames is constant outside the region, and grows at most in proportion to its
+//! content.
 
 use measure::scaling::{by_area, by_lights, by_picture, by_triangles};
 use measure::stability::Sweep;
 
 type Points = [[f64; 2]];
 
-/// Most cost over least.
+/// Largest cost over smallest.
 fn spread(points: &Points) -> f64 {
     let costs = points.iter().map(|point| point[1]);
     costs.clone().fold(0.0, f64::max) / costs.fold(f64::INFINITY, f64::min)
@@ -20,7 +21,7 @@ fn bend(points: &Points) -> f64 {
     off.fold(0.0, f64::max) / y0.max(y1)
 }
 
-/// How much faster than in proportion the cost grows from the first point to the last.
+/// Ratio of the cost's growth from the first point to the last to a proportional one.
 fn excess(points: &Points) -> f64 {
     let ([x0, y0], [x1, y1]) = (points[0], points[points.len() - 1]);
     (y1 / y0) / (x1 / x0)

@@ -1,4 +1,4 @@
-//! Where the plane spaces of receivers begin.
+//! Origins of the receivers' plane spaces.
 
 use app_core::scene::{Receiver, Surface};
 use app_pipeline::geometry::anchored::AnchoredReceiver;
@@ -6,10 +6,11 @@ use glam::{DMat4, DQuat, DVec2, DVec3};
 
 /// Half a table's size.
 const HALF_M: f64 = 2.0;
-/// Where the toy stands on it.
+/// Position of the toy on it.
 const TOY_IN_WORLD: DVec3 = DVec3::new(0.31, 0.12, -0.47);
 
-/// A tilted table whose own plane space begins `aside_m` along x before its middle; it ends at the same place along +x.
+/// A tilted table whose own plane space begins `aside_m` along x before its centre; it ends at the
+/// same place along +x.
 fn table(aside_m: f64) -> Receiver {
     let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.4, 0.7, -0.3);
     let aside = DMat4::from_translation(DVec3::new(-aside_m, 0.0, 0.0));

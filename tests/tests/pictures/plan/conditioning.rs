@@ -1,4 +1,4 @@
-//! Which lights' strengths the sums of a fit tell.
+//! The lights whose strengths the sums of a fit constrain.
 
 use app_pipeline::model::diagnostics::conditioning::light_conditioning;
 use app_pipeline::model::state::solution::{N_COLUMNS, N_FIT_SUMS};
@@ -33,7 +33,8 @@ fn lights_whose_shadows_fall_together_are_told_by_half() {
 
 #[test]
 fn each_light_is_told_by_the_receiver_that_shows_most_of_it() {
-    // Each row tells one unknown alone, so that the sums are a diagonal: told is a / (a + w).
+    // Each row constrains one unknown alone, so that the sums are diagonal: the resolution is a /
+    // (a + w).
     let row = |column: usize, value: f64| {
         let mut row = [0.0; N_COLUMNS];
         row[column] = value;
@@ -50,7 +51,7 @@ fn each_light_is_told_by_the_receiver_that_shows_most_of_it() {
         receiver([0.02, 0.01, 0.0, 0.0]),
         receiver([0.01, 0.03, 0.0, 0.01]),
     );
-    // Its blue channel shows nothing.
+    // Its blue channel is empty.
     second[2 * N_FIT_SUMS..].fill(0.0);
     let told = light_conditioning(&[first, second].concat(), 4);
     let one = |value: f64| value * value / (value * value + 1e-4);

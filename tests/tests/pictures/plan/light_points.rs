@@ -1,11 +1,12 @@
-//! Points over a light and directions over the hemisphere against the moments of disc and hemisphere.
+//! Points over a light and directions over the hemisphere, compared with the moments of disc and
+//! hemisphere.
 
 use app_core::preset::{Preset, Settings};
 use app_core::scene::Light;
 use app_scene::geometry::disc::ambient_directions;
 use glam::{DMat4, DQuat, DVec2, DVec3, Vec4};
 
-/// Rounding of a result in f32, relative.
+/// Relative rounding of a result in f32.
 const F32: f64 = 1e-6;
 const N_POINTS: [usize; 5] = [4, 16, 32, 48, 64];
 
@@ -23,7 +24,8 @@ fn plane_from_world() -> DMat4 {
     )
 }
 
-/// Points of the bulb around its centre, across the line to the toy, in units of its outline's radius there.
+/// Points of the bulb around its centre, across the line to the toy, in units of its outline's
+/// radius there.
 fn bulb_disc(n_points: usize) -> Vec<DVec2> {
     let plane_from_world = plane_from_world();
     let centre = plane_from_world.transform_point3(BULB.position_in_world().unwrap());
@@ -71,11 +73,13 @@ fn light_points_have_the_moments_of_a_disc() {
     }
 }
 
-/// Columns and rows from one point's position within a pixel to the next one's: those of `occlusion`.
+/// Step in columns and rows from one point's position within a pixel to the next one's, as in
+/// `occlusion`.
 const POSITION_STEPS: [usize; 2] = [47, 53];
 
-/// Whether each quarter of a pixel has points from all over the light: in each quarter of it, with a middle near its middle, and a mean
-/// squared radius no farther from 1/2 than as many points at random have theirs in the mean (its variance is 1/12).
+/// Whether each quarter of a pixel has points from the whole light: in each quarter of it, with a
+/// centre near its own, and with a mean squared radius no farther from 1/2 than that of the same
+/// number of random points on average (its variance is 1/12).
 fn is_seen_from_each_quarter(n_points: usize) -> bool {
     let disc = bulb_disc(n_points);
     let random = (1.0 / (12.0 * (n_points / 4) as f64)).sqrt();
@@ -95,7 +99,8 @@ fn is_seen_from_each_quarter(n_points: usize) -> bool {
     })
 }
 
-/// An edge through a pixel parts its positions, and what is at either side must be a sample of the whole light.
+/// An edge through a pixel separates its positions, and the points on either side must be a sample
+/// of the whole light.
 #[test]
 fn each_quarter_of_a_pixel_gets_points_from_all_over_the_light() {
     for preset in Preset::ALL {
@@ -105,11 +110,12 @@ fn each_quarter_of_a_pixel_gets_points_from_all_over_the_light() {
             }
         }
     }
-    // With 16 there are too few, and with 48 a position's column goes with its distance from the light's middle.
+    // With 16 there are too few, and with 48 a position's column correlates with its distance from
+    // the light's centre.
     assert!(!is_seen_from_each_quarter(16) && !is_seen_from_each_quarter(48));
 }
 
-/// A large bulb close by is seen by rays that touch it, not by a disc of its radius.
+/// A large bulb close by is seen along rays that touch it, not as a disc of its radius.
 #[test]
 fn a_wide_bulb_fills_the_cone_that_touches_it() {
     let bulb = Light::Sphere {
@@ -122,7 +128,7 @@ fn a_wide_bulb_fills_the_cone_that_touches_it() {
         .map(|point| point.truncate().as_dvec3().angle_between(DVec3::Y));
     let widest_deg = angles_rad.fold(0.0, f64::max).to_degrees();
     assert!((29.9..30.0).contains(&widest_deg), "{widest_deg} degrees");
-    // From within there is no such cone.
+    // From inside there is no such cone.
     let around = bulb.points_in(&DMat4::IDENTITY, DVec3::new(0.0, 0.6, 0.0), 16);
     assert!(around.iter().all(|point| point.is_finite()));
 }
@@ -163,7 +169,8 @@ fn the_sun_is_a_cone_of_unit_directions() {
         })
         .collect();
     assert!(tangents.iter().all(|t| *t < radius_rad.tan()));
-    // Points of equal area on the disc that the cone cuts out: the mean of tan^2 is half of the largest.
+    // Points of equal area on the disc that the cone cuts out: the mean of tan^2 is half of the
+    // largest.
     let squares: Vec<f64> = tangents.iter().map(|t| t * t).collect();
     assert!((mean(&squares) - 0.5 * radius_rad.tan().powi(2)).abs() < 1e-5);
 }
@@ -185,7 +192,8 @@ fn ambient_directions_are_cosine_weighted() {
         );
         let tolerance = 1.0 / f64::from(u32::try_from(n_directions).unwrap());
         let mean_direction = mean(&directions);
-        // With density cos / pi: the mean of the cosine is 2/3, of its square 1/2, sideways there is nothing left.
+        // With density cos / pi: the mean of the cosine is 2/3, of its square 1/2, and sideways it
+        // is zero.
         assert!(
             (mean_direction.y - 2.0 / 3.0).abs() < 0.1 * tolerance,
             "{n_directions}: {mean_direction}"

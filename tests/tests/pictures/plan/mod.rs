@@ -1,4 +1,5 @@
-//! Plans, the work region, the points over a light and the presets: everything that is decided without a device.
+//! Plans, the work region, the points over a light and the presets: all decisions that need no
+//! device.
 
 mod anchored;
 mod conditioning;

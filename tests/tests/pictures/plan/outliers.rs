@@ -1,9 +1,9 @@
-//! What residuals are taken for.
+//! Classification of residuals.
 
 use app_core::frame::Outlier;
 use app_pipeline::model::diagnostics::outliers::outliers;
 
-/// Some cells that a few frames have told the same residual, among many of none.
+/// Some cells with the same residual from a few frames, among many without any.
 fn cells(residual: [f32; 3], n_cells: usize) -> Vec<[f32; 4]> {
     let [r, g, b] = residual.map(|value| 3.0 * value);
     let told = std::iter::repeat_n([r, g, b, 3.0], n_cells);

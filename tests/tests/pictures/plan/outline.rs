@@ -1,4 +1,5 @@
-//! The outline of a toy holds all of it, from whatever side; and the grids hold what they were laid over.
+//! The outline of a toy contains all of it from every side; and the grids contain the rectangles
+//! for which they were made.
 
 use std::f64::consts::PI;
 
@@ -7,7 +8,8 @@ use app_pipeline::geometry::rect::PlaneRect;
 use app_pipeline::model::state::grids::{grids_over, holds};
 use glam::{DQuat, DVec2, DVec3};
 
-/// `n` directions, each standing for an equal part of the sphere. Source: Vogel 1979, by equal heights.
+/// `n` directions, each representing an equal part of the sphere. Source: Vogel 1979, by equal
+/// heights.
 fn directions(n: u32) -> impl Iterator<Item = DVec3> {
     let golden_angle_rad = PI * (3.0 - 5f64.sqrt());
     (0..n).map(move |k| {
@@ -25,7 +27,7 @@ fn box_points(half_m: DVec3, turn: DQuat, centre: DVec3) -> Vec<DVec3> {
     surface.map(|p| centre + turn * (p * half_m)).collect()
 }
 
-/// Toys: a ball, boxes of all proportions that stand askew, and two thin tails side by side.
+/// Toys: a ball, oblique boxes of all proportions, and two thin tails side by side.
 fn toys() -> Vec<(&'static str, Vec<DVec3>)> {
     let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.8, -0.4);
     let centre = DVec3::new(0.02, 0.1, -0.03);
@@ -39,7 +41,7 @@ fn toys() -> Vec<(&'static str, Vec<DVec3>)> {
     ]
 }
 
-/// How far a point of a set reaches in a direction.
+/// Extent of a set of points in a direction.
 fn reach(points: impl Iterator<Item = DVec3>, direction: DVec3) -> f64 {
     points.map(|p| p.dot(direction)).fold(f64::NEG_INFINITY, f64::max)
 }
@@ -47,7 +49,7 @@ fn reach(points: impl Iterator<Item = DVec3>, direction: DVec3) -> f64 {
 #[test]
 fn the_outline_holds_the_toy_from_every_side_and_little_more() {
     for (name, points) in toys() {
-        // The middle of the first pose is not that of all poses.
+        // The centre of the first pose is not that of all poses.
         for middle in [DVec3::new(0.02, 0.1, -0.03), DVec3::new(0.03, 0.06, -0.02)] {
             let mut outline = Outline::new(middle);
             points.iter().for_each(|p| outline.include(*p));
@@ -58,7 +60,8 @@ fn the_outline_holds_the_toy_from_every_side_and_little_more() {
                 short = short.max(missing / size_m);
                 beyond = beyond.max(-missing / size_m);
             }
-            // Of two points in one bin the lesser is dropped. Measured: 0.0046, of a sheet and of tails seen from aside.
+            // The nearer of two points in one bin is dropped. Measured: 0.0046, for a sheet and for
+            // tails seen from the side.
             assert!(short < 0.006, "{name}: short of the toy by {short} of its size");
             assert!(beyond < 0.021, "{name}: beyond the toy by {beyond} of its size");
         }
@@ -82,7 +85,8 @@ fn grids_hold_what_they_are_laid_over_and_tell_when_they_do_not() {
     ];
     let grids = grids_over(&rects);
     assert!(holds(&grids, &rects));
-    // Corners of every rectangle are in cells of its grid, and no cell is twice as large as need be.
+    // Corners of every rectangle are in cells of its grid, and no cell is twice as large as
+    // necessary.
     for (grid, rect) in grids
         .grids
         .iter()
@@ -101,7 +105,7 @@ fn grids_hold_what_they_are_laid_over_and_tell_when_they_do_not() {
         }
         assert!(cell_m < 2.0 * (rect.max - rect.min).max_element() / 64.0);
     }
-    // Their cells lie one after the other, pyramids included.
+    // Their cells follow one another, pyramids included.
     let n_pyramid = |[mut x, mut y]: [u32; 2]| {
         let mut n_cells = x * y;
         for _ in 1..7 {
@@ -113,7 +117,7 @@ fn grids_hold_what_they_are_laid_over_and_tell_when_they_do_not() {
     for pair in grids.grids[..rects.len()].windows(2) {
         assert_eq!(pair[1].first_cell, pair[0].first_cell + n_pyramid(pair[0].size));
     }
-    // A little farther is within the spare cells, much farther is not.
+    // A slightly larger extent is within the spare cells, a much larger one is not.
     let grown = |by_m: f64| {
         let PlaneRect { min, max } = rects[0];
         [
@@ -126,6 +130,6 @@ fn grids_hold_what_they_are_laid_over_and_tell_when_they_do_not() {
         ]
     };
     assert!(holds(&grids, &grown(0.02)) && !holds(&grids, &grown(0.2)));
-    // What nothing reached before has no cells.
+    // A receiver that was not reached before has no cells.
     assert!(!holds(&grids, &[rects[0], rects[0], rects[2]]));
 }

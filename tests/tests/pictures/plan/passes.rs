@@ -2,6 +2,7 @@
 
 use app_core::Core;
 use app_core::frame::{FrameInput, PassGroup};
+use app_core::gloss::Gloss;
 use app_core::preset::{BALANCED, Preset};
 use app_core::session::Session;
 use app_core::sharpness::Sharpness;
@@ -46,6 +47,9 @@ fn facts_with(size_px: [u32; 2], penumbrae_px: Vec<f64>) -> SceneFacts {
         has_things: false,
         sharpness: Sharpness::SHARP,
         is_softened: false,
+        gloss: Gloss::NONE,
+        angular_radii_rad: vec![0.0; penumbrae_px.len()],
+        reflection: None,
         region,
         physical_toy: Some(region),
         toy_box: Some(region),

@@ -1,4 +1,4 @@
-//! Names of presets, and what they spend.
+//! Names and costs of presets.
 
 use app_core::Core;
 use app_core::preset::{BALANCED, BASELINE, BaselineSettings, ModelSettings, Preset, Settings};

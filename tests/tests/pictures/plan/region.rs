@@ -1,4 +1,4 @@
-//! The work region: it holds what toy and shadows reach, and not much else.
+//! The work region: it contains the area that toy and shadows reach, and little else.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -77,7 +77,7 @@ fn the_region_holds_the_penumbra() {
     }
 }
 
-/// The farthest that shadows of opposite points of a bulb's rim are apart.
+/// The largest distance between shadows from opposite points of a bulb's rim.
 fn widest_px(rig: &Rig, point: DVec3, light: DVec3, radius_m: f64) -> f64 {
     let (across, along) = (light - TOY.centre()).normalize().any_orthonormal_pair();
     let seen_px = |degrees: i32| {
@@ -102,11 +102,11 @@ fn a_penumbra_is_as_wide_as_the_widest_of_its_points() {
     for ((at, radius_m), found_px) in lights.into_iter().zip(reach.penumbrae_px()) {
         let widths_px = points.map(|point| widest_px(&rig, point, at, radius_m));
         let widest_px = widths_px.into_iter().fold(0.0, f64::max);
-        // Two of its diameters are looked at.
+        // Two of its diameters are tested.
         let is_near = (0.7 * widest_px..=1.02 * widest_px).contains(found_px);
         assert!(is_near, "{found_px} where {widest_px} is the widest");
     }
-    // A bulb no higher than the toy throws a shadow without an end.
+    // A bulb no higher than the toy casts a shadow without an end.
     let low = [rig.bulb(DVec3::new(0.4, TOY.max.y, 0.0), radius_m)];
     let mut reach = Reach::new(&view, &TOY, &layout(&receivers, &low));
     reach.include(points[2]);
@@ -135,7 +135,7 @@ fn the_region_of_some_points_is_within_that_of_their_box() {
     assert!(boxed.contains(&region) && !region.contains(&boxed));
 }
 
-/// A low light beside the toy throws its shadow on a wall behind it, beyond a small table.
+/// A low light beside the toy casts its shadow on a wall behind it, beyond a small table.
 #[test]
 fn shadows_on_a_wall_count_where_its_front_is_seen() {
     let mut rig = Rig::new(DVec3::ZERO);
@@ -194,7 +194,7 @@ fn without_a_bound_the_region_is_the_image() {
         whole,
         "the camera is inside the toy"
     );
-    // Its shadow goes on below and before the camera.
+    // Its shadow continues below and in front of the camera.
     rig.place_camera(DVec3::new(0.0, 0.3, -0.2), DVec3::new(0.0, 0.3, -1.0));
     assert_eq!(
         rig.region(&TOY, &[rig.bulb(DVec3::new(0.0, 0.3, 0.6), 0.0)]),
@@ -213,7 +213,7 @@ fn what_is_all_behind_the_camera_has_no_region() {
 #[test]
 fn a_toy_beside_the_picture_has_no_region() {
     let rig = Rig::new(DVec3::ZERO);
-    // Along the image's rows, far enough that its shadow is out of the picture too.
+    // Along the image's rows, so far that its shadow is outside the picture too.
     let to_the_right = points_on_plane()
         .max_by(|a, b| rig.pixel(*a).x.total_cmp(&rig.pixel(*b).x))
         .unwrap();

@@ -1,4 +1,4 @@
-//! A camera over a receiver, projected by hand: dot products with axes, no matrix.
+//! A camera over a receiver, projected without matrices: by dot products with axes.
 
 use app_core::scene::{Camera, Intrinsics, Light, Surface};
 use app_pipeline::geometry::anchored::AnchoredReceiver;
@@ -25,7 +25,7 @@ pub(crate) struct Rig {
     axes: [DVec3; 3],
 }
 
-/// A toy of 20 cm in plane space, off the plane's origin.
+/// A toy of 20 cm in plane space, away from the plane's origin.
 pub(crate) const TOY: Bounds = Bounds {
     min: DVec3::new(-0.05, 0.0, -0.04),
     max: DVec3::new(0.07, 0.2, 0.05),
@@ -37,7 +37,7 @@ pub(crate) const RECT: PixelRect = PixelRect {
     size_px: UVec2::new(501, 333),
 };
 
-/// Where bulbs are put, in plane space.
+/// Position of bulbs, in plane space.
 pub(crate) const BULB_AT: DVec3 = DVec3::new(-0.6, 0.9, -0.3);
 
 /// Points of the receiver that the camera of the rig sees.
@@ -51,7 +51,8 @@ pub(crate) fn shadow(point: DVec3, light: DVec3) -> DVec3 {
 }
 
 impl Rig {
-    /// A tilted receiver and a rolled camera 0.9 m from it that looks at the toy's middle. `shift` moves it all.
+    /// A tilted receiver and a rolled camera 0.9 m from it that looks at the toy's centre. `shift`
+    /// moves everything.
     pub(crate) fn new(shift: DVec3) -> Self {
         let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.4, 0.7, -0.3);
         let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| turn * axis);
@@ -78,7 +79,7 @@ impl Rig {
     pub(crate) fn place_camera(&mut self, eye: DVec3, target: DVec3) {
         self.eye = self.world(eye);
         self.forward = (self.world(target) - self.eye).normalize();
-        // Some axis that is not along the line of sight, so that the camera is rolled as well.
+        // An axis that is not along the line of sight, so that the camera is rolled as well.
         self.right = self.forward.cross(DVec3::new(0.2, 0.9, 0.1)).normalize();
         self.up = self.right.cross(self.forward);
     }
@@ -96,7 +97,7 @@ impl Rig {
         (self.world(in_plane) - self.eye).dot(self.forward)
     }
 
-    /// Where a point of plane space lies in the image.
+    /// Image position of a point in plane space.
     pub(crate) fn pixel(&self, in_plane: DVec3) -> DVec2 {
         let to_point = self.world(in_plane) - self.eye;
         let k = &self.intrinsics;
@@ -144,7 +145,7 @@ impl Rig {
         }
     }
 
-    /// What the shaders are told of the rig.
+    /// The shaders' globals for the rig.
     pub(crate) fn globals(&self, rect: &PixelRect, lights: &[Light]) -> Globals {
         globals(&self.view(), rect, &layout(&[self.receiver()], lights))
     }
@@ -162,7 +163,7 @@ pub(crate) fn square(half_m: f64) -> PlaneRect {
     }
 }
 
-/// The toy in the middle of its receivers and lights.
+/// The toy in the centre of its receivers and lights.
 pub(crate) fn layout<'a>(receivers: &'a [AnchoredReceiver], lights: &'a [Light]) -> SceneLayout<'a> {
     SceneLayout {
         receivers,

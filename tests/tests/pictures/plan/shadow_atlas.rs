@@ -1,4 +1,4 @@
-//! Depth maps of the toy from lights near and far, in the 32 bits that shaders have.
+//! Depth maps of the toy from near and distant lights, in the 32 bits of shaders.
 
 use app_pipeline::geometry::shadow_atlas::ShadowAtlas;
 use app_scene::geometry::bounds::Sphere;
@@ -8,7 +8,7 @@ const TOY: Sphere = Sphere {
     centre: DVec3::new(0.02, 0.1, -0.03),
     radius_m: 0.12,
 };
-/// Over a map's tile texel of a thousandth of the toy a depth may be off by that much; measured: 2e-7.
+/// Largest error of a depth, for tile texels of a thousandth of the toy; measured: 2e-7.
 const MAX_ERROR: f64 = 1e-5;
 
 #[test]
@@ -24,7 +24,7 @@ fn depths_span_the_toy_however_far_the_light() {
                     .as_vec3()
                     .extend(1.0);
             let actual = f64::from(clip.z / clip.w);
-            // From 0 behind the toy to 1 before it, by similar triangles.
+            // From 0 behind the toy to 1 in front of it, by similar triangles.
             let ratio = TOY.radius_m / distance_m;
             let expected = 0.5 * (1.0 + along) * (1.0 - ratio) / (1.0 - along * ratio);
             assert!(

@@ -1,5 +1,5 @@
-//! Tiles that no silhouette comes near, against rays: there all points see the same, and what meets the others covers as much
-//! of them as the whole shape.
+//! Tiles far from every silhouette, compared with rays: all viewpoints see the same there, and the
+//! triangles that meet the other tiles cover as much of them as the whole shape.
 
 use app_pipeline::geometry::silhouette::{
     AROUND_PX, ByCamera, OntoReceiver, Projection, Shape, Silhouette, Viewers, find_silhouette,
@@ -9,7 +9,7 @@ use glam::{DMat3, DVec2, DVec3, Mat3, Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzle
 use measure::ball::ball_mesh;
 
 const SIZE_PX: UVec2 = UVec2::new(192, 144);
-/// Where pixels are looked through, from their corner: at the lattice's ends, and between.
+/// Positions of rays within a pixel, from its corner: at the lattice's ends, and between.
 const POSITIONS: [[f64; 2]; 3] = [[0.01, 0.99], [0.5, 0.5], [0.99, 0.01]];
 
 /// Positions, and corners counter-clockwise seen from outside.
@@ -32,7 +32,7 @@ fn both((mut positions, mut corners): Mesh, (others, more): Mesh) -> Mesh {
     (positions, corners)
 }
 
-/// A ray, and how far along it something counts.
+/// A ray, and the range along it in which a hit counts.
 struct Ray {
     from: DVec3,
     along: DVec3,
@@ -52,7 +52,7 @@ impl Ray {
     }
 }
 
-/// Whoever looks at a mesh: by which rays through a place of the target, in pixels.
+/// A mesh's viewer, by its rays through a position of the target, in pixels.
 struct Look<'a> {
     name: &'static str,
     points: Vec<Vec4>,
@@ -73,8 +73,9 @@ impl Look<'_> {
         (facing, silhouette)
     }
 
-    /// Pixels of tiles without a silhouette that rays of them disagree about, pixels of the others that the listed triangles
-    /// cover in another way than all do, and how many pixels no silhouette comes near but the shape covers.
+    /// Number of pixels of tiles without a silhouette about which their rays disagree, of pixels of
+    /// other tiles that the listed triangles cover differently than all triangles do, and of
+    /// covered pixels far from every silhouette.
     fn check(&self, mesh: &Mesh, silhouette: &Silhouette) -> [usize; 3] {
         let place = |corner: &u32| mesh.0[*corner as usize].as_dvec3();
         let triangles = |corners: &[u32]| -> Vec<[DVec3; 3]> {
@@ -108,7 +109,8 @@ impl Look<'_> {
     }
 }
 
-/// Toys that are closed, open, sunk into the receiver, and in two pieces that pass through each other.
+/// Toys that are closed, open, sunk into the receiver, and in two pieces that pass through each
+/// other.
 fn meshes() -> [(&'static str, Mesh); 4] {
     let at = |x: f32, y: f32| Vec3::new(x, y, 0.1);
     [
@@ -125,12 +127,12 @@ fn meshes() -> [(&'static str, Mesh); 4] {
     ]
 }
 
-/// A camera that looks down on the receiver, all of which lies before it.
+/// A camera that looks down on the receiver, the whole of which is in front of it.
 fn homography() -> Mat3 {
     Mat3::from_cols_array(&[0.35, 0.02, 0.01, -0.03, -0.3, 0.12, 0.02, 0.05, 1.0])
 }
 
-/// Clip space's (x, y) at a place of the target.
+/// Clip space's (x, y) at a position of the target.
 fn clip_xy(px: DVec2) -> DVec2 {
     (px / SIZE_PX.as_dvec2() - 0.5) * DVec2::new(2.0, -2.0)
 }
@@ -179,7 +181,7 @@ fn look_by_camera(check: &dyn Fn(&Look<'_>)) {
         let near = anchor_from_clip.project_point3(clip_xy(px).extend(1.0));
         let from = eye.as_dvec3();
         let along = near - from;
-        // As far as the receiver.
+        // Up to the receiver.
         let end = if along.y < 0.0 {
             -from.y / along.y
         } else {
@@ -209,7 +211,7 @@ fn look_by_camera(check: &dyn Fn(&Look<'_>)) {
     });
 }
 
-/// Points of a lamp about a place.
+/// Points of a lamp around a position.
 fn lamp(radius_m: f32) -> Vec<Vec4> {
     let around = [
         [1.0, 0.0, 0.0],
@@ -242,7 +244,7 @@ fn all_points_see_the_same_where_no_outline_is() {
             assert_eq!(n_apart, 0, "{what}: pixels that are seen in part");
             assert_eq!(n_lost, 0, "{what}: pixels whose triangles are not listed");
             assert!(!facing.is_empty());
-            // What is under the receiver, or in a wide penumbra, is looked at closely all over.
+            // Under the receiver, or in a wide penumbra, all tiles are marked.
             if name != "sunk" && look.name != "a wide lamp" {
                 assert!(
                     n_inside > 100,
@@ -253,7 +255,8 @@ fn all_points_see_the_same_where_no_outline_is() {
     });
 }
 
-/// Without its edges a silhouette is not found, and without a triangle pixels are lost.
+/// Without its edges a silhouette is not found, and without a triangle pixels are lost: the test
+/// detects both.
 #[test]
 fn what_is_missing_is_found() {
     looks(&|look| {
@@ -294,7 +297,8 @@ fn a_shadow_without_bounds_has_no_outline() {
     assert!(find_silhouette(shape, &viewers, &projection, &mesh.1, SIZE_PX).is_none());
 }
 
-/// Where a line from each point of a lamp through a corner meets a shelf that is lifted and tilted.
+/// Points at which a line from each point of a lamp through a corner meets a shelf that is lifted
+/// and tilted.
 #[test]
 fn shadows_land_on_any_receiver() {
     let shelf_from_anchor = Mat4::from_rotation_z(0.2)
@@ -329,7 +333,7 @@ fn shadows_land_on_any_receiver() {
     };
     let on_shelf = projection(shelf_from_anchor);
     assert!(corners.iter().all(|corner| is_held(&on_shelf, corner)));
-    // As if the shelf lay on the table.
+    // As if the shelf were on the table.
     let on_table = projection(Mat4::IDENTITY);
     assert!(!corners.iter().all(|corner| is_held(&on_table, corner)));
 }

@@ -1,4 +1,4 @@
-//! Tiles of a target: the rectangles that they are filled by, and those that a shape is seen near.
+//! Tiles of a target: the rectangles that cover them, and the tiles near a shape.
 
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::geometry::seen::{mark_seen, seen_rect};
@@ -6,11 +6,11 @@ use app_pipeline::geometry::silhouette::{Landing, Projection};
 use app_pipeline::geometry::tiles::Tiles;
 use glam::{UVec2, Vec2, Vec3, Vec3Swizzles};
 
-/// No multiple of a tile.
+/// Not a multiple of a tile.
 const SIZE_PX: UVec2 = UVec2::new(77, 50);
 const TILE_PX: u32 = 8;
 
-/// Shows (x, y) of anchor space as pixels; a point of negative z is behind it.
+/// Projects (x, y) of anchor space to pixels; a point of negative z is behind it.
 struct Straight;
 
 impl Projection for Straight {
@@ -27,7 +27,8 @@ fn pixels() -> impl Iterator<Item = UVec2> {
     (0..SIZE_PX.y).flat_map(|y| (0..SIZE_PX.x).map(move |x| UVec2::new(x, y)))
 }
 
-/// Two triangles, one of them small, another one beyond the target's corner, and a corner that none of them has.
+/// Two triangles, one of them small, another one beyond the target's corner, and a corner that
+/// belongs to none of them.
 const CORNERS: [u32; 9] = [0, 1, 2, 3, 4, 5, 6, 7, 8];
 fn positions(unused_z: f32) -> Vec<Vec3> {
     let in_target = [
@@ -50,7 +51,8 @@ fn marked(reach_px: f32, positions: &[Vec3]) -> Tiles {
     tiles
 }
 
-/// Whether a pixel is within a distance, along both axes, of a place in a triangle of the target.
+/// Whether a pixel is within a distance, along both axes, of a position in a triangle of the
+/// target.
 fn is_near(px: UVec2, reach_px: f32, positions: &[Vec3]) -> bool {
     let steps = || (0..=20_u8).map(|step| f32::from(step) / 20.0);
     CORNERS.as_chunks().0.iter().any(|corners: &[u32; 3]| {
@@ -79,7 +81,7 @@ fn all_that_is_near_a_shape_is_marked() {
             "{n_marked} within {reach_px} px"
         );
     }
-    // Whose neighbourhood is larger than what was marked.
+    // The neighbourhood is larger than the marked one.
     let tiles = marked(0.0, &positions);
     assert!(pixels().any(|px| is_near(px, 11.0, &positions) && !tiles.is_marked_at(px)));
 }
@@ -108,7 +110,7 @@ fn rectangles_fill_each_pixel_once() {
         *n_filled = pixels().map(holds).collect();
         let within = |rect: &PixelRect| (rect.origin_px + rect.size_px).cmple(SIZE_PX).all();
         assert!(rects.iter().all(within), "{rects:?}");
-        // Fewer than runs of tiles: they go on from row to row.
+        // Fewer than runs of tiles, since they continue from row to row.
         let n_rows = SIZE_PX.y.div_ceil(TILE_PX) as usize;
         assert!(rects.len() < 2 * n_rows, "{} rectangles", rects.len());
     }
@@ -120,7 +122,7 @@ fn rectangles_fill_each_pixel_once() {
             "at {px}"
         );
     }
-    // All as one, and none at all.
+    // A single rectangle for all, and none for none.
     let mut all = Tiles::over(SIZE_PX, TILE_PX);
     assert_eq!(all.rects(false).len(), 1);
     all.mark_all();
@@ -161,7 +163,7 @@ fn a_shape_is_seen_in_a_rectangle_of_the_target() {
         let positions: Vec<Vec3> = corners.iter().copied().map(Vec3::from).collect();
         seen_rect(&positions, &Straight, SIZE_PX)
     };
-    // With a pixel around it, which the part of a pixel that it reaches into is not.
+    // With a margin of one pixel, which a partly covered pixel is not.
     assert_eq!(
         seen(&[[13.2, 9.0, 0.0], [40.0, 21.5, 0.0]]),
         Some(rect([12, 8], [29, 15]))
@@ -177,7 +179,7 @@ fn a_shape_is_seen_in_a_rectangle_of_the_target() {
     for beyond in [[-20.0, 20.0], [95.0, 20.0], [20.0, -20.0], [20.0, 70.0]] {
         assert_eq!(seen(&[[beyond[0], beyond[1], 0.0]]), None, "{beyond:?}");
     }
-    // What is behind has no bounds, and no shape has any.
+    // A point behind has no bounds, and neither has its shape.
     assert_eq!(
         seen(&[[13.0, 9.0, 0.0], [13.0, 9.0, -1.0]]),
         Some(rect([0, 0], [77, 50]))

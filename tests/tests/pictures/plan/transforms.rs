@@ -1,4 +1,5 @@
-//! Maps between image and plane against projections by hand, in the core's f64 and in the shaders' f32.
+//! Maps between image and plane compared with projections by hand, in the core's f64 and in the
+//! shaders' f32.
 
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::passes::globals::Globals;
@@ -57,7 +58,8 @@ fn the_camera_is_where_it_was_put() {
     assert!((rig.view().camera_in(&rig.world_from_plane()) - eye).length() < 1e-12);
 }
 
-/// The shaders work in f32, and ten kilometres from the world's origin f32 steps are a millimetre.
+/// The shaders compute in f32, and at ten kilometres from the world's origin steps of f32 are a
+/// millimetre.
 #[test]
 fn far_from_the_origin_nothing_changes() {
     let (near, far) = (Rig::new(DVec3::ZERO), Rig::new(TEN_KM));

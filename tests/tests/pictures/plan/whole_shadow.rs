@@ -1,4 +1,4 @@
-//! Whether nothing of a shadow is cut off, against the shadows of many points of a ball.
+//! The test for a complete shadow, compared with the shadows of many points of a ball.
 
 use app_pipeline::geometry::seen::Caster as ShadowCaster;
 use glam::{DVec3, DVec4, Vec3, Vec4};
@@ -17,7 +17,8 @@ fn points(caster: ShadowCaster) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// How far a shadow of a point is from being cut off: the light above the point, and the shadow before the near plane.
+/// Margin of a point's shadow before it is clipped: the light above the point, and the shadow
+/// beyond the near plane.
 fn margin(point: DVec3, light: DVec4) -> f64 {
     let above = light.y - light.w * point.y;
     if above <= 0.0 {
@@ -55,7 +56,7 @@ fn a_shadow_is_whole_where_that_of_every_point_is() {
             let is_whole = caster.has_whole_shadow(light, DEPTH, NEAR_M);
             let what = format!("{caster:?} in {light}: {least} m");
             assert!(!is_whole || least > 0.0, "{what}, yet whole");
-            // The points miss some of the ball.
+            // The points do not cover the whole ball.
             assert!(is_whole || least < 0.05, "{what}, yet cut");
             [n_whole, n_cut] = [n_whole + u32::from(is_whole), n_cut + u32::from(!is_whole)];
         }

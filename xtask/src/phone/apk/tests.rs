@@ -166,7 +166,7 @@ fn a_package_has_the_classes_of_its_archives_resources_or_is_refused() {
         error.contains("com/google/other/Gone, which com/google/ar/core/InstallActivity names"),
         "{error}"
     );
-    // As packages were made before: without R classes.
+    // An older form of packages, without R classes.
     fs::write(
         folder.join("core.aar"),
         zip::write(&without_resources(&folder)).expect("an archive"),

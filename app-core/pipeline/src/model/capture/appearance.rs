@@ -1,4 +1,5 @@
-//! `appearance`: which of the camera's pixels the toy's own colours are from, also a little past its outline.
+//! `appearance`: the camera's pixels from which the toy's own colours are taken, also slightly
+//! beyond its outline.
 
 use glam::IVec2;
 use wgpu::{Color, TextureFormat};
@@ -15,7 +16,7 @@ use crate::model::capture::gbuffer::{BASE_FORMAT, RECEIVED_FORMAT};
 use crate::model::plan::Plan;
 use crate::passes::globals::GLOBALS_GROUP;
 
-/// Numbers of the pixels that colours are from.
+/// Codes of the source pixels of colours.
 pub(crate) const SOURCE: Mirrors = mirrors!("common/source", constants: [REACH_PX, N_IN_ROW]);
 pub(crate) const SHADER: Shader = shader!("capture/appearance");
 const SLOTS: &[Slot] = &[
@@ -25,12 +26,12 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
 ];
-/// Format of the numbers of the pixels that colours are from, in codes.
+/// Format of the codes of source pixels.
 const SOURCE_FORMAT: TextureFormat = TextureFormat::R8Unorm;
 
-/// How far past the toy its colours are extrapolated.
+/// Distance beyond the toy up to which its colours are extrapolated.
 const REACH_PX: u32 = 3;
-/// Pixels around a pixel are numbered row by row, so many to a row.
+/// Length of a row in the numbering of the pixels around a pixel.
 const N_IN_ROW: i32 = 8;
 
 pub(crate) struct Pass {
@@ -44,13 +45,13 @@ pub(crate) struct Inputs<'a> {
     pub(crate) gbuffer: &'a gbuffer::Targets,
 }
 
-/// Of the physical box's size.
+/// Targets of the physical box's size.
 pub(crate) struct Targets {
-    /// Each light's cosine times its visibility at the pixels that a colour is from.
+    /// Each light's cosine times its visibility at the source pixels.
     pub(crate) received: Texture,
-    /// Base colour of these pixels, and how far they face upwards.
+    /// Base colour of the source pixels, and their upward orientation.
     pub(crate) base: Texture,
-    /// Which pixels they are.
+    /// The codes of the source pixels.
     pub(crate) source: Texture,
 }
 
@@ -87,7 +88,7 @@ impl Pass {
             recorder.bind(&self.draw, GROUP_SCENE, &[inputs.globals.into()]),
             recorder.bind(&self.draw, GROUP_PASS, &resources),
         ];
-        // Beyond what is drawn no colour has a source.
+        // Beyond the drawn part no colour has a source.
         let written = [
             cleared(&targets.received.view),
             cleared(&targets.base.view),
@@ -98,7 +99,7 @@ impl Pass {
     }
 }
 
-/// The pixel that a source tells the colour of a texel to be from; none where there is none.
+/// The source pixel of a texel's colour; `None` if it has none.
 pub(crate) fn source_texel(texel: IVec2, source: f32) -> Option<IVec2> {
     #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
     let number = (255.0 * source).round() as i32;

@@ -21,10 +21,10 @@ const SLOTS: &[Slot] = &[
     Slot::Filtered,
     Slot::Sampler,
 ];
-/// Format of residuals, in plates.
+/// Format of residuals, in units of the plate.
 const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
-/// Only where the real shadow is denoised.
+/// Needed only if the real shadow is denoised.
 pub(crate) fn is_needed(plan: &Plan) -> bool {
     plan.is_noise_removed
 }
@@ -39,7 +39,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) plate: &'a TextureView,
 }
 
-/// Of the region's size, where it is needed.
+/// Targets of the region's size, if needed.
 pub(crate) struct Targets {
     pub(crate) residual: Option<Texture>,
 }

@@ -25,7 +25,7 @@ const SLOTS: &[Slot] = &[
     Slot::Sampler,
 ];
 
-/// Only where plates do not show all of the region.
+/// Needed only if plates do not cover the whole region.
 pub(crate) fn is_needed(plan: &Plan) -> bool {
     plan.is_plate_estimated
 }
@@ -42,9 +42,9 @@ pub(crate) struct Inputs<'a> {
     pub(crate) observed: Observed<'a>,
 }
 
-/// Of the region's size, where it is needed.
+/// Targets of the region's size, if needed.
 pub(crate) struct Targets {
-    /// The photographed plate, from which the plate that passes read is completed.
+    /// The photographed plate, from which the plate for the passes is completed.
     pub(crate) photographed: Option<Texture>,
 }
 

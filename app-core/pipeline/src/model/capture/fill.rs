@@ -1,4 +1,4 @@
-//! `fill`: the cells that the toy hides, from those around, by pull-push.
+//! `fill`: the cells behind the toy, filled from their neighbours by pull-push.
 
 use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::buffer::Buffer;

@@ -12,6 +12,7 @@ use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
 use crate::model::capture::Observed;
 use crate::model::capture::gbuffer;
+use crate::model::gloss::Specular;
 use crate::model::plan::{MAX_FIT_ROWS, Plan};
 use crate::model::state::grids::Grids;
 use crate::model::state::solution::{N_CHANNELS, N_FIT_SUMS, SEEN_SLOTS, SeenScene};
@@ -40,6 +41,8 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
     Slot::Texture,
+    Slot::Depth,
+    Slot::uniform::<Specular>(),
 ];
 /// Slots of what is seen of receivers.
 const N_RECEIVER_SLOTS: usize = 7;
@@ -141,6 +144,7 @@ pub(crate) struct Inputs<'a> {
     /// Photographed alone for a task that completes it.
     pub(crate) plate: &'a TextureView,
     pub(crate) gbuffer: &'a gbuffer::Targets,
+    pub(crate) specular: &'a Buffer,
 }
 
 /// Rows of sums, one per workgroup and channel.
@@ -207,6 +211,8 @@ impl Pass {
             (&gbuffer.base.view).into(),
             (&gbuffer.normal.view).into(),
             (&gbuffer.received.view).into(),
+            (&gbuffer.depth.view).into(),
+            inputs.specular.into(),
         ];
         let by_plate = usize::from(task.completes_plate);
         let (compute, n_slots) = match task.subject {

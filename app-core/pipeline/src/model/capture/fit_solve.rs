@@ -1,4 +1,4 @@
-//! `fit_solve`: the solution of the normal equations that `fit` summed, with weak priors.
+//! `fit_solve`: the solution, with weak priors, of the normal equations that `fit` summed.
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
 use crate::gpu::buffer::Buffer;
@@ -27,7 +27,7 @@ pub(crate) struct Pass {
 
 pub(crate) struct Inputs<'a> {
     pub(crate) globals: &'a Buffer,
-    /// Rows of sums of this step.
+    /// Rows of this step's sums.
     pub(crate) rows: &'a Buffer,
 }
 
@@ -43,7 +43,7 @@ impl Pass {
         }
     }
 
-    /// Writes the solution, and in the last step of a fit the accumulated sums.
+    /// Writes the solution and, in the last step of a fit, the accumulated sums.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,

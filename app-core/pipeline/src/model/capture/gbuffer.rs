@@ -1,4 +1,4 @@
-//! `gbuffer`: the physical toy as the camera sees it: base colour, normal, received light and depth.
+//! `gbuffer`: the physical toy in the camera's view: base colour, normal, received light and depth.
 
 use glam::Vec3;
 use wgpu::{Face, StoreOp, TextureFormat};
@@ -26,7 +26,7 @@ const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 pub(crate) const RECEIVED_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
 pub(crate) struct Pass {
-    /// Draw both sides of each triangle, or the one that faces the camera.
+    /// Draws with both sides of each triangle, or with the side that faces the camera.
     draws: [Draw; 2],
 }
 
@@ -38,7 +38,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) self_shadow: &'a self_shadow::Targets,
 }
 
-/// Of the physical box's size.
+/// Targets of the physical box's size.
 pub(crate) struct Targets {
     pub(crate) base: Texture,
     pub(crate) normal: Texture,

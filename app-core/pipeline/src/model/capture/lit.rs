@@ -22,7 +22,7 @@ const SLOTS: &[Slot] = &[
     Slot::Sampler,
 ];
 
-/// Only where plates do not show all of the region.
+/// Needed only if plates do not cover the whole region.
 pub(crate) fn is_needed(plan: &Plan) -> bool {
     plan.is_plate_estimated
 }

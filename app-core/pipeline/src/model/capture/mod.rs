@@ -22,7 +22,7 @@ use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::{Change, FrameDelta};
 
 passes!(Plan:
-    gbuffer, validity, things, soften, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, rim, tint, tint_fill,
+    gbuffer, validity, things, soften, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, rim, gloss, tint, tint_fill,
     appearance,
 );
 
@@ -109,6 +109,9 @@ impl CapturePath<'_> {
         }
         if rim::is_needed(&self.region.plan) {
             passes.rim.encode(recorder, &self.rim_inputs(), &of.rim);
+        }
+        if gloss::is_needed(&self.region.plan) {
+            passes.gloss.encode(recorder, &self.gloss_inputs(), &of.gloss);
         }
         if is_view_new || !is_residual_next {
             let tints = &self.state.tints;
@@ -296,6 +299,7 @@ impl CapturePath<'_> {
             observed: self.observed(),
             plate: &photographed.unwrap_or(&captured.plate).view,
             gbuffer: &captured.by_pass.gbuffer,
+            specular: &self.region.specular,
         };
         let to_solve = fit_solve::Inputs {
             globals: &self.region.globals,
@@ -389,12 +393,28 @@ impl CapturePath<'_> {
         }
     }
 
+    fn gloss_inputs(&self) -> gloss::Inputs<'_> {
+        gloss::Inputs {
+            plan: &self.region.plan,
+            seen: self.seen(),
+            specular: &self.region.specular,
+            gbuffer: &self.captured.by_pass.gbuffer,
+        }
+    }
+
     fn tint_inputs(&self) -> tint::Inputs<'_> {
         tint::Inputs {
             plan: &self.region.plan,
             seen: self.seen(),
             validity: self.validity(),
             gbuffer: &self.captured.by_pass.gbuffer,
+            reflected: self
+                .captured
+                .by_pass
+                .gloss
+                .reflected
+                .as_ref()
+                .map(|texture| &texture.view),
         }
     }
 

@@ -14,13 +14,13 @@ use crate::passes::pictures::ByForm;
 
 /// Sample points of a cell, and its accumulation.
 pub(crate) const POOL: Mirrors = mirrors!("common/pool", structs: [Taken], constants: [N_POINTS]);
-/// Points of a cell along each side.
+/// Sample points of a cell along each side.
 const N_POINTS: u32 = 8;
 /// Workgroups along each side of the largest grid: 64 cells of 8 x 8 invocations.
 const WORKGROUPS: u32 = 8;
 
 shared_struct! {
-    /// Which of a cell's points are looked at.
+    /// The points of a cell that are sampled.
     pub(crate) struct Taken {
         pub stride: u32,
         pub _pad: u32,
@@ -29,16 +29,18 @@ shared_struct! {
 }
 
 impl Taken {
-    /// All of them.
+    /// All points.
     pub(crate) const ALL: Self = Self {
         stride: 1,
         _pad: 0,
         first: [0, 0],
     };
 
-    /// A quarter, all of which come in turn: what is known is a mean over several pictures.
+    /// A quarter of the points; the quarters take turns, since the estimate is a mean over several
+    /// pictures.
     pub(crate) fn quarter(n_pictures: u32) -> Self {
-        // All four come whether each picture is looked at, as under a moving camera, or every second one.
+        // All quarters take their turn whether each picture is used, as under a moving camera, or
+        // every second one.
         let turn = n_pictures / 2 + 2 * (n_pictures % 2);
         Self {
             stride: 2,
@@ -63,7 +65,8 @@ pub(crate) struct PoolGrids<'a> {
 }
 
 impl Pool {
-    /// The slots begin with the grids, the cells and their accumulated sums, and the points taken.
+    /// The slots begin with the grids, the cells and their accumulated sums, and the sampled
+    /// points.
     pub(crate) fn new(gpu: &Gpu, shader: &'static Shader, slots: &'static [Slot]) -> Self {
         Self {
             compute: ByForm::new(gpu, move |gpu, form| {

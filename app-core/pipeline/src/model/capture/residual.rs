@@ -27,7 +27,7 @@ pub(crate) struct Pass(Pool);
 
 pub(crate) struct Inputs<'a> {
     pub(crate) on: PoolGrids<'a>,
-    /// Points of a cell that are looked at.
+    /// Points of a cell that are sampled.
     pub(crate) taken: Taken,
     pub(crate) observed: Observed<'a>,
     pub(crate) plate: &'a TextureView,

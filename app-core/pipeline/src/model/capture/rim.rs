@@ -1,4 +1,4 @@
-//! `rim`: what a soft picture mixes into the toy's colours at its outline.
+//! `rim`: the light that a blurred picture adds to the toy's colours at its outline.
 
 use app_scene::sharpness::Spread;
 use wgpu::TextureFormat;
@@ -25,10 +25,10 @@ const SLOTS: &[Slot] = &[
     Slot::Sampler,
     Slot::Depth,
 ];
-/// Format of what is mixed in: codes, as those of the picture.
+/// Format of the added light: codes, like those of the picture.
 const FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 
-/// Only where the picture is seen to be softer than pixels are.
+/// Needed only if the picture is measurably softer than its pixels.
 pub(crate) fn is_needed(plan: &Plan) -> bool {
     plan.sharpness.outline_spread != Spread::NONE
 }
@@ -47,7 +47,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) gbuffer_depth: &'a TextureView,
 }
 
-/// Of the physical box's size, where a picture is softer than what is laid into it.
+/// Targets of the physical box's size, if the picture is softer than the renderings.
 pub(crate) struct Targets {
     pub(crate) mixed: Option<Texture>,
 }
@@ -84,7 +84,7 @@ impl Pass {
             recorder.bind(&self.draw, GROUP_SCENE, &inputs.scene.resources()),
             recorder.bind(&self.draw, GROUP_PASS, &resources),
         ];
-        // Colours are taken from no pixel beyond the toy.
+        // No colour has its source beyond the toy.
         let near = inputs.plan.near_physical_toy(0);
         recorder.fullscreen_within(&self.draw, &groups, &[Some(cleared(&mixed.view))], near);
     }

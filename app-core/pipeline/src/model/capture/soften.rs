@@ -1,4 +1,4 @@
-//! `soften`: the plate, made as soft as the picture.
+//! `soften`: the plate, blurred like the picture.
 
 use app_scene::sharpness::Spread;
 use glam::DVec2;
@@ -20,15 +20,16 @@ const SLOTS: &[Slot] = &[Slot::per_use::<Taps>(), Slot::Filtered, Slot::Sampler]
 /// A grid of taps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TapGrid {
-    /// To either side of the middle, along each axis.
+    /// Number of taps on either side of the centre, along each axis.
     n_beside: u32,
-    /// Standard deviations from one to the next, for its weights.
+    /// Distance between taps, in standard deviations, for their weights.
     spacing: f64,
-    /// Variance of what it makes of taps that are so far apart, over that of a Gaussian which is not cut off.
+    /// Variance that taps at this distance produce, relative to that of a Gaussian that is not cut
+    /// off.
     variance: f64,
 }
 
-/// Of most spreads, and of wide ones, where taps of the former would leave gaps between them.
+/// Grids for most blurs, and for wide ones, where taps of the first grid would leave gaps.
 const GRIDS: [TapGrid; 2] = [
     TapGrid {
         n_beside: 3,
@@ -41,14 +42,15 @@ const GRIDS: [TapGrid; 2] = [
         variance: 0.930,
     },
 ];
-/// Standard deviation from which on a spread is a wide one.
+/// Standard deviation from which a blur is a wide one.
 const WIDE_PX: f64 = 2.4;
-/// What bilinear taps spread by themselves, in square pixels, where they lie all over a pixel; and the variance from which on they do.
+/// Variance in square pixels that bilinear interpolation adds to taps whose positions cover all
+/// parts of a pixel, and the variance from which they do.
 const BILINEAR_PX2: f64 = 1.0 / 6.0;
 const ALL_OVER_PX2: f64 = 0.25;
 
 shared_struct! {
-    /// Taps along the axes of a spread.
+    /// Taps along the axes of a blur.
     pub(crate) struct Taps {
         pub first_px: [f32; 2],
         pub second_px: [f32; 2],
@@ -75,8 +77,9 @@ impl Taps {
     }
 }
 
-/// The standard deviation that taps have to have for a wanted one, since each is spread over the pixels around it. Within a pixel that
-/// is as much as their mean distance from the middle, .8 of the deviation.
+/// The standard deviation of the taps for a wanted one, since interpolation blurs each over the
+/// pixels around it. Within a pixel that adds as much as the taps' mean distance from the centre,
+/// .8 of the deviation.
 fn own_px(wanted_px: f64) -> f64 {
     let wanted_px2 = wanted_px * wanted_px;
     if wanted_px2 < ALL_OVER_PX2 {
@@ -91,12 +94,12 @@ pub(crate) struct Pass {
     fine: Draws,
 }
 
-/// For each of the grids.
+/// One draw for each of the grids.
 type Draws = [Draw; GRIDS.len()];
 
-/// Of the region's size, where a picture is softer than what is laid into it.
+/// Targets of the region's size, if the picture is softer than the renderings.
 pub(crate) struct Targets {
-    /// The plate as it was taken.
+    /// The plate before blurring.
     pub(crate) sharp: Option<Texture>,
 }
 
@@ -126,7 +129,7 @@ impl Pass {
         }
     }
 
-    /// Spreads the plate as it was taken onto the one that passes read; it is copied where there is no spread.
+    /// Blurs the original plate into the one that passes read; without a blur it is copied.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,

@@ -1,4 +1,4 @@
-//! `things`: what stands in the picture beside the toy, in the validity mask and in the plate.
+//! `things`: objects beside the toy, in the validity mask and in the plate.
 
 use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::context::Gpu;
@@ -17,10 +17,10 @@ pub(crate) const SHADER: Shader = shader!(
     constants: [CODE_THING, CODE_BEFORE_TOY, CODE_WRONG_PLATE]
 );
 const SLOTS: &[Slot] = &[Slot::uniform::<ThingsView>(), Slot::Texture];
-/// And of the mask that is marked.
+/// The same, and the mask that is marked.
 const MASK_SLOTS: &[Slot] = &[Slot::uniform::<ThingsView>(), Slot::Texture, Slot::Texture];
 
-/// Only where any are known.
+/// Needed only if any are known.
 pub(crate) fn is_needed(plan: &Plan) -> bool {
     plan.has_things
 }
@@ -30,9 +30,9 @@ pub(crate) struct Pass {
     forget_plate: Draw,
 }
 
-/// Of the region's size, where it is needed.
+/// Targets of the region's size, if needed.
 pub(crate) struct Targets {
-    /// The mask without things.
+    /// The mask without objects.
     alone: Option<Texture>,
 }
 
@@ -57,7 +57,7 @@ impl Pass {
         }
     }
 
-    /// Marks things in the mask, where any are known.
+    /// Marks objects in the mask, if any are known.
     pub(crate) fn mark(
         &self,
         recorder: &mut Recorder<'_>,
@@ -72,7 +72,7 @@ impl Pass {
         recorder.fullscreen(&self.mark, &groups, &[&marks.view]);
     }
 
-    /// Takes the plate for not photographed where it is wrong.
+    /// Treats the plate as not photographed where it is wrong.
     pub(crate) fn forget_plate(
         &self,
         recorder: &mut Recorder<'_>,

@@ -1,5 +1,7 @@
 //! `tint`: shown and expected colours of the toy's visible paint, summed in cells.
 
+use std::sync::OnceLock;
+
 use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Compute, ComputeSpec};
@@ -24,12 +26,26 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
     Slot::Texture,
+    Slot::Texture,
 ];
 /// Invocations of a workgroup along each side.
 const WORKGROUP_PX: u32 = 8;
 
 pub(crate) struct Pass {
-    compute: ByForm<Compute>,
+    matt: ByForm<Compute>,
+    /// Of a glossy toy, once one comes.
+    glossy: OnceLock<ByForm<Compute>>,
+}
+
+fn summing(gpu: &Gpu, is_glossy: bool) -> ByForm<Compute> {
+    ByForm::new(gpu, move |gpu, form| {
+        gpu.compute(&ComputeSpec {
+            shader: &SHADER,
+            entry_point: "cs_add",
+            groups: [SEEN_SLOTS, SLOTS, &[], &[]],
+            constants: vec![form, ("IS_GLOSSY", u32::from(is_glossy))],
+        })
+    })
 }
 
 pub(crate) struct Inputs<'a> {
@@ -37,26 +53,27 @@ pub(crate) struct Inputs<'a> {
     pub(crate) seen: SeenScene<'a>,
     pub(crate) validity: &'a TextureView,
     pub(crate) gbuffer: &'a gbuffer::Targets,
+    /// What a glossy toy reflects.
+    pub(crate) reflected: Option<&'a TextureView>,
 }
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         Self {
-            compute: ByForm::new(gpu, move |gpu, form| {
-                gpu.compute(&ComputeSpec {
-                    shader: &SHADER,
-                    entry_point: "cs_add",
-                    groups: [SEEN_SLOTS, SLOTS, &[], &[]],
-                    constants: vec![form],
-                })
-            }),
+            matt: summing(gpu, false),
+            glossy: OnceLock::new(),
         }
     }
 
     /// Sums the shown and expected colours of a frame.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, tints: &Tints) {
         recorder.clear(&tints.sums);
-        let compute = self.compute.of(recorder.gpu, &inputs.seen.frame);
+        let gpu = recorder.gpu;
+        let by_form = match inputs.reflected {
+            Some(_) => self.glossy.get_or_init(|| summing(gpu, true)),
+            None => &self.matt,
+        };
+        let compute = by_form.of(gpu, &inputs.seen.frame);
         let gbuffer = inputs.gbuffer;
         let resources = [
             Resource::PerUse,
@@ -67,6 +84,8 @@ impl Pass {
             (&gbuffer.normal.view).into(),
             (&gbuffer.received.view).into(),
             (&gbuffer.base.view).into(),
+            // A placeholder that is not read where there is none.
+            inputs.reflected.unwrap_or(&gbuffer.base.view).into(),
         ];
         let stride_px = inputs.plan.fit_stride_px;
         let groups = [

@@ -1,4 +1,4 @@
-//! `tint_fill`: tints of the toy's paint, filled where no camera has seen it.
+//! `tint_fill`: tints of the toy's paint, filled in where no camera has seen the paint.
 
 use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::context::Gpu;

@@ -1,4 +1,5 @@
-//! `validity`: mask of the pixels that show the receiver alone, and of those that show one surface of the toy.
+//! `validity`: mask of the pixels that show the receiver alone, and of those that show a single
+//! surface of the toy.
 
 use wgpu::{Color, TextureFormat};
 
@@ -15,13 +16,13 @@ const SLOTS: &[Slot] = &[Slot::Depth, Slot::per_use::<i32>()];
 /// Format of the mask: r for the receiver, g for the toy, b for the receiver well clear of the toy.
 pub(crate) const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
-/// Distance kept from the toy's outline in a sharp picture.
+/// Distance from the toy's outline in a sharp picture.
 const EDGE_PX: u32 = 2;
-/// Farthest that the toy is looked for around a pixel in one.
+/// Largest distance of the search for the toy around a pixel in a sharp picture.
 const BLEED_PX: u32 = 8;
-/// Farthest in a soft picture: what lies beyond is not in the physical box.
+/// Largest distance in a soft picture: the physical box contains no more.
 const MOST_PX: u32 = 10;
-/// Marks of pixels farther from it.
+/// Marks of pixels farther from the toy.
 pub(crate) const FAR_MARKS: [f32; 4] = [1.0, 0.0, 1.0, 1.0];
 
 pub(crate) struct Pass {
@@ -31,11 +32,11 @@ pub(crate) struct Pass {
 pub(crate) struct Inputs<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) gbuffer_depth: &'a TextureView,
-    /// Farthest that a soft picture spreads what it shows.
+    /// Largest reach of a soft picture's blur.
     pub(crate) soft_reach_px: f32,
 }
 
-/// Of the physical box's size.
+/// Targets of the physical box's size.
 pub(crate) struct Targets {
     pub(crate) marks: Texture,
 }

@@ -13,7 +13,7 @@ use crate::model::state::solution::{SCENE_SLOTS, Scene};
 pub(crate) const SHADER: Shader = shader!("capture/withhold");
 const SLOTS: &[Slot] = &[Slot::Texture, Slot::Texture, Slot::Filtered, Slot::Sampler];
 
-/// Only on request.
+/// Needed only on request.
 pub(crate) fn is_needed(plan: &Plan) -> bool {
     plan.is_shadow_withheld
 }
@@ -28,7 +28,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) ambient: &'a TextureView,
 }
 
-/// Of the region's size, where it is needed.
+/// Targets of the region's size, if needed.
 pub(crate) struct Targets {
     /// The mask with the real shadow.
     all: Option<Texture>,

@@ -1,8 +1,10 @@
-//! Conditioning of each light's direct fraction: how far the real shadow, rather than the prior, decides it.
+//! Conditioning of each light's direct fraction: the share that the real shadow, rather than the
+//! prior, determines.
 //!
-//! The fit of a receiver solves (A + w I) x = b + w prior, where A are the sums of the normal equations. The diagonal
-//! of its resolution matrix, 1 - w (A + w I)^-1, is 1 for an unknown that the sums alone decide and 0 for one that
-//! the prior decides: of two lights whose shadows always fall together just the sum is constrained.
+//! The fit of a receiver solves (A + w I) x = b + w prior, where A are the sums of the normal
+//! equations. The diagonal of its resolution matrix, 1 - w (A + w I)^-1, is 1 for an unknown that
+//! the sums alone determine and 0 for one that the prior determines: for two lights whose shadows
+//! always coincide, only the sum is constrained.
 //!
 //! Source: Backus and Gilbert 1968 (resolution of an inverse problem).
 
@@ -46,9 +48,11 @@ fn channel_resolution(sums: &[f32], n_columns: usize) -> [f64; N_COLUMNS] {
     inverse_diagonal(matrix, n_columns).map(|inverse| (1.0 - weight * inverse).max(0.0))
 }
 
-/// Diagonal of the inverse of the first `n` rows and columns; the matrix is symmetric and positive definite.
+/// Diagonal of the inverse of the first `n` rows and columns; the matrix is symmetric and positive
+/// definite.
 ///
-/// Column k of the inverse solves M x = e_k, so x_k is 1 over the pivot that k has when it is eliminated last.
+/// Column k of the inverse solves M x = e_k, so x_k is 1 over the pivot of k when k is eliminated
+/// last.
 fn inverse_diagonal(matrix: Matrix, n: usize) -> [f64; N_COLUMNS] {
     let mut diagonal = [0.0; N_COLUMNS];
     for (last, inverse) in diagonal.iter_mut().enumerate().take(n) {

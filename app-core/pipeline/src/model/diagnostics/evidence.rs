@@ -1,22 +1,24 @@
-//! Whether the pictures of the latest view show what the session says: the real toy, its shadow, colours in their order.
+//! Comparison of the latest view's pictures with the session: the real toy, its shadow, the order
+//! of the colour channels.
 
 use crate::geometry::rect::PixelRect;
 use app_scene::geometry::color::linear_of_codes;
 use app_scene::scene::Image;
 
-/// Codes that tell a brightness, as in `common/pixel`, in linear light.
+/// Codes that are a measure of brightness, as in `common/pixel`, in linear light.
 const USABLE: std::ops::RangeInclusive<f32> = 0.003_035_27..=0.955_973_4;
 /// Visibility below which a pixel lies in the shadow of a light, and above which it does not.
 const SHADOW: f32 = 0.5;
 const LIT: f32 = 0.99;
-/// Difference, over the plate, up to which a pixel shows just the plate: above the noise of one pixel.
+/// Difference, relative to the plate, up to which a pixel shows just the plate: above the noise of
+/// one pixel.
 const SAME_AS_PLATE: f32 = 0.1;
-/// Minimum number of pixels that tell a share.
+/// Minimum number of pixels for a share.
 const FEWEST_PIXELS: usize = 16;
-/// Maximum number of pixels that are looked at.
+/// Maximum number of pixels that are read.
 const MOST_PIXELS: usize = 1 << 16;
 
-/// What one pixel of the region is known by.
+/// The values of one pixel of the region.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PixelEvidence {
     /// The camera's picture, linear.
@@ -25,21 +27,21 @@ pub(crate) struct PixelEvidence {
     pub plate: [f32; 4],
     /// Marks of `validity`.
     pub validity: [f32; 4],
-    /// The least of the lights' visibilities.
+    /// The lowest of the lights' visibilities.
     pub visibility: f32,
 }
 
 /// Sums over the pixels of a view.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Evidence {
-    /// Pixels that each one stands for.
+    /// Number of pixels that each sampled one represents.
     step: usize,
-    /// Sum of what is hidden of the lights.
+    /// Sum of the lights' hidden shares.
     hidden: f64,
     receiver: Share,
     shadow: Share,
     toy: Share,
-    /// Light of the toy's pixels, and what the plate would have had there.
+    /// Light of the toy's pixels, and the plate's light there.
     toy_light: [f64; 3],
     plate_light: [f64; 3],
     straight: Spread,
@@ -47,7 +49,7 @@ pub(crate) struct Evidence {
 }
 
 impl Evidence {
-    /// Of at most some 65,536 of the pixels; `gain` is that from plate to picture.
+    /// Sums over at most some 65,536 of the pixels; `gain` is the gain from plate to picture.
     #[must_use]
     pub(crate) fn of(pixels: impl ExactSizeIterator<Item = PixelEvidence>, gain: &[f32; 4]) -> Self {
         let step = pixels.len().div_ceil(MOST_PIXELS).max(1);
@@ -62,7 +64,7 @@ impl Evidence {
     fn add(&mut self, pixel: &PixelEvidence, gain: &[f32; 4]) {
         let [seen, of_toy, _, kept] = pixel.validity;
         let [r, g, b, alpha] = pixel.plate;
-        // Also where the shadow is withheld from all but the first fit.
+        // Also if the shadow is withheld from all but the first fit.
         if seen > 0.0 || kept < 1.0 {
             self.hidden += f64::from(1.0 - pixel.visibility);
         }
@@ -92,7 +94,7 @@ impl Evidence {
         }
     }
 
-    /// Pixels of the receivers that show the real shadow, each as far as it is hidden from a light.
+    /// Number of receiver pixels in the real shadow, each weighted by the hidden share of a light.
     #[must_use]
     pub(crate) fn n_shadow_pixels(&self) -> f64 {
         let step = self.step as f64;
@@ -105,7 +107,7 @@ impl Evidence {
         self.receiver.value()
     }
 
-    /// The same of the picture, where the real shadow falls and the plate tells.
+    /// The same share in the picture, where the real shadow falls and the plate is usable.
     #[must_use]
     pub(crate) fn unreadable_shadow(&self) -> Option<f64> {
         self.shadow.value()
@@ -117,22 +119,23 @@ impl Evidence {
         self.toy.value()
     }
 
-    /// Light of the toy over that of the plate behind it, channel by channel.
+    /// Light of the toy relative to that of the plate behind it, by channel.
     #[must_use]
     pub(crate) fn toy_over_plate(&self) -> Option<[f64; 3]> {
         let is_known = self.toy.value().is_some() && self.plate_light.iter().all(|light| *light > 0.0);
         is_known.then(|| [0, 1, 2].map(|channel| self.toy_light[channel] / self.plate_light[channel]))
     }
 
-    /// How much colours of lit pixels differ between picture and plate: the spread of ln(frame / plate) over pixels and
-    /// channels, as it is and with red and blue of the plate swapped. Exposure changes neither.
+    /// Difference in colour of lit pixels between picture and plate: the standard deviation of
+    /// ln(frame / plate) over pixels and channels, unchanged and with red and blue of the plate
+    /// swapped. It does not depend on exposure.
     #[must_use]
     pub(crate) fn color_spreads(&self) -> Option<[f64; 2]> {
         Some([self.straight.value()?, self.swapped.value()?])
     }
 }
 
-/// How many of some pixels are of a kind.
+/// Share of a number of pixels that have a property.
 #[derive(Clone, Debug, Default)]
 struct Share {
     n: usize,

@@ -1,4 +1,5 @@
-//! Diagnostics of the scene state: conditioning of the fits, what the pictures show, and outliers of the model.
+//! Diagnostics of the scene state: conditioning of the fits, evidence in the pictures, and outliers
+//! of the model.
 
 pub mod conditioning;
 pub(crate) mod evidence;

@@ -1,12 +1,15 @@
-//! Outliers of the model: an object that the plate does not have, or the shadow of a light that is not listed.
+//! Outliers of the model: an object that is missing in the plate, or the shadow of a light that is
+//! not listed.
 
 use crate::frame::warning::Outlier;
 
-/// Pooled residual, in plates, from which `composite` begins to keep the camera's pixels: enough to report a shadow.
+/// Pooled residual, in units of the plate, from which `composite` begins to keep the camera's
+/// pixels: enough to report a shadow.
 pub const OUTLIER_NONE: f32 = 0.15;
-/// Pooled residual from which it keeps them in full.
+/// Pooled residual from which `composite` keeps them in full.
 pub const OUTLIER_ALL: f32 = 0.3;
-/// Least over most of a residual's channels, from which `composite` classifies it as a shadow.
+/// Smallest ratio of a residual's lowest to its highest channel for which `composite` classifies it
+/// as a shadow.
 pub const SHADOW_EVENNESS: f32 = 0.4;
 /// Minimum certainty of a cell, of 1 per frame.
 const LEAST_CERTAINTY: f32 = 0.5;

@@ -1,4 +1,5 @@
-//! `composite`: plate times new shadow, real toy and real shadow gone, the animated toy laid over it.
+//! `composite`: plate times new shadow, without the real toy and the real shadow, and the animated
+//! toy over it.
 
 use std::sync::OnceLock;
 
@@ -33,15 +34,15 @@ const SLOTS: &[Slot] = &[
     Slot::Filtered,
     Slot::Sampler,
 ];
-/// Format of its layers: four of them are as many bytes a pixel as a pass may draw.
+/// Format of its layers: four of them have as many bytes per pixel as a pass may write.
 const LAYER_FORMAT: TextureFormat = half_float(4);
 /// Clean plate, shadow ratio, toy and masks.
 pub(crate) const N_LAYERS: usize = 4;
-/// Group of what is read where shadows fall.
+/// Group of the inputs where shadows fall.
 const GROUP_SHADOW: usize = 2;
-/// Group of what is read near the toy.
+/// Group of the inputs near the toy.
 const GROUP_TOY: usize = 3;
-/// What is read where shadows fall.
+/// Inputs where shadows fall.
 const SHADOW_SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
@@ -49,10 +50,11 @@ const SHADOW_SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::per_use::<Drawing>(),
 ];
-/// What is read near a toy alone: with all else that is 16 textures, the most that a phone's stage may have.
+/// Inputs near a toy alone: together with all others they are 16 textures, the limit of a phone's
+/// shader stage.
 const TOY_SLOTS: &[Slot] = &[Slot::Texture; 8];
 shared_struct! {
-    /// How the receivers were drawn.
+    /// The way in which the receivers were drawn.
     pub(crate) struct Drawing {
         pub has_detail: u32,
         pub picture: u32,
@@ -67,23 +69,24 @@ shared_struct! {
 
 pub(crate) struct Pass {
     of_codes: Draws,
-    /// Compiled when the first picture in light is asked for.
+    /// Compiled when the first picture in light is requested.
     of_light: OnceLock<Draws>,
-    /// Compiled when the first layers are asked for.
+    /// Compiled when the first layers are requested.
     layers: OnceLock<Layered>,
 }
 
-/// What draws the picture in one format.
+/// Pipelines that draw the picture in one format.
 struct Draws {
     format: TextureFormat,
-    /// Clear of the toy in either pose, and of its shadows: there nothing is made.
+    /// Outside the toy in either pose and its shadows: only the plate is drawn there.
     open: ByForm<Draw>,
     plain: Shadowed,
-    /// With grain, with a shadow that is not as strong as the true one, with both: compiled when the first frame has it.
+    /// With grain, with a shadow whose strength is not the true one, with both; compiled when the
+    /// first such frame comes.
     others: [OnceLock<Shadowed>; 3],
 }
 
-/// What sets a frame apart from most.
+/// Properties in which a frame differs from most.
 #[derive(Clone, Copy)]
 struct Variant {
     has_grain: bool,
@@ -97,17 +100,17 @@ impl Variant {
     };
 }
 
-/// The layers of the picture, all over the region.
+/// The layers of the picture, over the whole region.
 struct Layered {
     drawn_once: ByForm<Draw>,
     drawn_four_times: ByForm<Draw>,
 }
 
-/// Where shadows fall.
+/// Pipelines for places where shadows fall.
 struct Shadowed {
-    /// Clear of the toy in either pose.
+    /// Outside the toy in either pose.
     beside: ByForm<Draw>,
-    /// Near it, where the toy was drawn once.
+    /// Near the toy, if it was drawn once.
     drawn_once: ByForm<Draw>,
     drawn_four_times: ByForm<Draw>,
 }
@@ -124,21 +127,21 @@ pub(crate) struct Inputs<'a> {
     pub(crate) coverage: &'a TextureView,
     pub(crate) toy: &'a toy::Targets,
     pub(crate) moved_mask: &'a TextureView,
-    /// Each pixel's own residual; without it the frame's own pixels serve.
+    /// Each pixel's own residual; without it the frame's own pixels are used.
     pub(crate) detail: Option<&'a TextureView>,
     pub(crate) grain: Option<PictureGrain>,
-    /// How strong the shown shadow is, 1 being the truth.
+    /// Strength of the shown shadow; 1 is the true one.
     pub(crate) shadow_strength: f32,
 }
 
-/// Of the region's size.
+/// Targets of the region's size.
 pub(crate) struct Targets {
     pub(crate) picture: Texture,
-    /// View of its sRGB codes, not decoded.
+    /// View of the picture's sRGB codes, which does not decode them.
     codes: TextureView,
-    /// The picture in light, once it was asked for.
+    /// The picture in light, once it was requested.
     light: OnceLock<Texture>,
-    /// Its layers, once they were asked for.
+    /// Its layers, once they were requested.
     layers: OnceLock<[Texture; N_LAYERS]>,
 }
 
@@ -153,14 +156,14 @@ impl Targets {
         }
     }
 
-    /// For the picture in light.
+    /// Target of the picture in light.
     pub(crate) fn light(&self, gpu: &Gpu) -> &Texture {
         let size_px = self.picture.size_px();
         self.light
             .get_or_init(|| Texture::target(gpu, "composite light", size_px, LIGHT_FORMAT))
     }
 
-    /// For clean plate, shadow ratio, toy and masks.
+    /// Targets of clean plate, shadow ratio, toy and masks.
     pub(crate) fn layers(&self, gpu: &Gpu) -> &[Texture; N_LAYERS] {
         let target = |label| Texture::target(gpu, label, self.picture.size_px(), LAYER_FORMAT);
         self.layers
@@ -190,7 +193,7 @@ impl Pass {
         self.of_codes.encode(recorder, inputs, &targets.picture.view);
     }
 
-    /// Draws the picture in light, finer than codes.
+    /// Draws the picture in light, with more precision than codes have.
     pub(crate) fn encode_light(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &Texture) {
         let gpu = recorder.gpu;
         let draws = self.of_light.get_or_init(|| Draws::new(gpu, LIGHT_FORMAT));
@@ -287,7 +290,7 @@ impl Shadowed {
 
 impl Layered {
     fn new(gpu: &Gpu) -> Self {
-        // The clean plate is what a shadow of no strength leaves.
+        // A shadow without strength leaves the clean plate.
         let variant = Variant {
             has_grain: false,
             has_strength: true,
@@ -353,7 +356,7 @@ impl<'a> Inputs<'a> {
             self.plate.into(),
             (&self.physical.visibility.lights.view).into(),
             (&self.shown.visibility.lights.view).into(),
-            // A placeholder that is not read where there is none.
+            // A placeholder that is not read if there is no detail.
             self.detail.unwrap_or(self.plate).into(),
             Resource::PerUse,
         ]

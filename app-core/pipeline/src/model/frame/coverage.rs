@@ -1,4 +1,5 @@
-//! `coverage`: fraction of each pixel that the posed toy covers, from many positions, in one pass.
+//! `coverage`: fraction of each pixel that the posed toy covers, sampled at many positions in one
+//! pass.
 
 use wgpu::{BlendOperation, CompareFunction, TextureFormat, VertexFormat};
 
@@ -15,12 +16,12 @@ use crate::passes::counting::{CountingDraws, InstanceOrder, counting, ordered};
 use crate::passes::globals::GLOBALS_GROUP;
 use crate::passes::toy_mesh::{CasterLod, Saves, SeenToy, Side, SilhouetteTarget, ToyMesh};
 
-/// Counting of a pixel's covered positions.
+/// Count of a pixel's covered positions.
 pub(crate) const COVERED: Mirrors = mirrors!("common/covered", constants: [N_POSITIONS, COVERED_CODES]);
 pub(crate) const SHADER: Shader = shader!("frame/coverage", structs: [Positions]);
 const SLOTS: &[Slot] = &[Slot::per_use::<Positions>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
-/// Positions of the lattice within a pixel that the toy's coverage is counted over.
+/// Number of lattice positions within a pixel at which the toy's coverage is sampled.
 pub(crate) const N_POSITIONS: u32 = 32;
 /// Format of the count, in whole codes.
 const COUNT_FORMAT: TextureFormat = TextureFormat::R8Unorm;
@@ -35,8 +36,9 @@ shared_struct! {
     }
 }
 
-/// All of them, and half. RMS error of the area that a straight edge of any direction cuts off a pixel: 0.020 and 0.035, the
-/// least of all row steps or nearly, where four multisample positions have 0.092.
+/// All positions, and half of them. RMS error of the area that a straight edge of any direction
+/// cuts off a pixel: 0.020 and 0.035, nearly or exactly the least of all row steps; four
+/// multisample positions have 0.092.
 const ALL: Positions = Positions {
     n: N_POSITIONS,
     row_step: 9,
@@ -56,7 +58,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) camera_in_anchor: glam::Vec3,
 }
 
-/// Of the toy box's size.
+/// Targets of the toy box's size.
 pub(crate) struct Targets {
     order: InstanceOrder,
     pub(crate) covered: Texture,
@@ -86,7 +88,7 @@ impl Pass {
         }
     }
 
-    /// Draws the shown toy once for each of its positions in a pixel, as far as its silhouette comes near.
+    /// Draws the shown toy once for each position in a pixel, in the tiles near its silhouette.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         let (toy, pose) = (inputs.toy, &inputs.toy.shown);
         let camera = inputs.camera_in_anchor.extend(1.0);
@@ -115,7 +117,7 @@ impl Pass {
         let mut render = targets.order.render(recorder, SHADER.name, count);
         render.part_of(inputs.region.plan.part_drawn(&inputs.region.plan.toy_box));
         let drawn = (&corners, pose);
-        // Before one receiver it is told from the vertices what is behind it.
+        // In front of a single receiver, the vertices alone decide what is behind it.
         let n_plain = if inputs.region.plan.n_receivers == 1 {
             n_positions
         } else {

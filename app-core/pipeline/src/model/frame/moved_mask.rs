@@ -1,4 +1,4 @@
-//! `moved_mask`: where the visible surface of the real toy has moved in the shown pose.
+//! `moved_mask`: mask of the visible surface of the real toy that has moved in the shown pose.
 
 use glam::Vec3;
 use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
@@ -15,23 +15,24 @@ use crate::passes::globals::GLOBALS_GROUP;
 use crate::passes::toy_mesh::{CasterLod, SeenToy, Side, ToyMesh};
 
 pub(crate) const SHADER: Shader = shader!("frame/moved_mask");
-/// Both poses: the physical one is drawn.
+/// Vertices of both poses; the physical one is drawn.
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3), (1, VertexFormat::Float32x3)];
 /// Format of the mask, a fraction of each pixel.
 pub(crate) const MOVED_FORMAT: TextureFormat = TextureFormat::R8Unorm;
-/// Multisampling, so that parts thinner than a pixel count as well; where the toy is drawn of one sample, its mask is, too.
+/// Samples per pixel, so that parts thinner than a pixel count as well; if the toy is drawn with
+/// one sample, so is its mask.
 const N_SAMPLES: u32 = 4;
 
 pub(crate) struct Pass {
-    /// Draws both sides of each triangle, or the one that faces the camera.
+    /// Draws with both sides of each triangle, or with the side that faces the camera.
     draws: [Draw; 2],
-    /// Of one sample.
+    /// The same with one sample.
     single: [Draw; 2],
 }
 
-/// Of the toy box's size: the mask, and what is never stored.
+/// Targets of the toy box's size: the mask, and the samples, which are never stored.
 pub(crate) struct Targets {
-    /// None where a pixel has one.
+    /// The samples; `None` if a pixel has only one.
     samples: Option<Texture>,
     depth: Texture,
     pub(crate) moved: Texture,

@@ -1,4 +1,5 @@
-//! Parts of the region that `composite` draws by a shader each: near the toy, in a shadow, and open.
+//! Parts of the region that `composite` draws with a shader each: near the toy, in a shadow, and
+//! open.
 
 use glam::{UVec2, Vec2};
 
@@ -10,19 +11,20 @@ use crate::model::lighting::{LightMaps, Lighting, Posed, TILE_PX};
 use crate::model::region::Region;
 use crate::passes::toy_mesh::{CasterLod, PoseBuffers, ToyMesh};
 
-/// Farthest that the validity and what is drawn of a toy tell of it, in pixels beyond its triangles.
+/// Largest distance from a toy's triangles, in pixels, at which the validity or the drawn toy
+/// differs.
 const AROUND_TOY_PX: f32 = 10.0;
 
-/// What a toy in one pose changes.
+/// The tiles that a toy in one pose changes.
 pub(crate) struct Marks {
-    /// Tiles near it.
+    /// Tiles near the toy.
     near: Tiles,
-    /// Tiles in which more may change than a little ambient light.
+    /// Tiles in which more than a little ambient light may change.
     shadowed: Tiles,
 }
 
 impl Marks {
-    /// Of a pose, with the maps of its lights.
+    /// The marks of a pose, with the maps of its lights.
     pub(crate) fn of(
         region: &Region,
         lighting: &Lighting,
@@ -34,7 +36,7 @@ impl Marks {
         let mut shadowed = near.clone();
         let globals = region.globals_on_device();
         if region.plan.is_shadow_withheld || region.plan.has_things {
-            // The validity then tells of shadows or of things, too.
+            // The validity then also marks shadows or objects.
             near.mark_all();
         } else {
             let camera = ByCamera {
@@ -45,7 +47,8 @@ impl Marks {
             toy.mark_seen(&mut near, pose, CasterLod::Own, &camera, around_px);
         }
         if detail::is_needed(&region.plan) || region.plan.n_lights == 0 {
-            // Each pixel has its own residual, or the ambient light's change may be as large as a shadow.
+            // Each pixel has its own residual, or the ambient light may change as much as in a
+            // shadow.
             shadowed.mark_all();
         } else {
             lighting.mark_shadows(&mut shadowed, Posed { globals, toy, pose }, maps);
@@ -53,24 +56,24 @@ impl Marks {
         Self { near, shadowed }
     }
 
-    /// Marks all as shadowed: the light changes wherever any of it is hidden.
+    /// Marks all tiles as shadowed: the light changes wherever any of it is hidden.
     pub(crate) fn shadow_all(&mut self) {
         self.shadowed.mark_all();
     }
 }
 
-/// Rectangles that fill the region.
+/// Rectangles that cover the region.
 pub(crate) struct RegionParts {
-    /// Clear of the toy and of its shadows in either pose.
+    /// Outside the toy and its shadows in either pose.
     pub(crate) open: Vec<PixelRect>,
-    /// Where shadows may fall.
+    /// Parts in which shadows may fall.
     pub(crate) shadowed: Vec<PixelRect>,
-    /// Near the toy.
+    /// Parts near the toy.
     pub(crate) near: Vec<PixelRect>,
 }
 
 impl RegionParts {
-    /// All of a region of `size_px` as near the toy.
+    /// Treats the whole region of `size_px` as near the toy.
     pub(crate) fn all_near(size_px: UVec2) -> Self {
         Self {
             open: Vec::new(),
@@ -79,7 +82,7 @@ impl RegionParts {
         }
     }
 
-    /// Of both poses.
+    /// The parts for the marks of both poses.
     pub(crate) fn new([physical, shown]: [&Marks; 2]) -> Self {
         let (mut near, mut shadowed) = (physical.near.clone(), physical.shadowed.clone());
         near.join(&shown.near);

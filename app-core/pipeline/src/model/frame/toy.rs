@@ -1,10 +1,13 @@
 //! `toy`: the toy in the pose to be shown, with its camera pixels, once for each offset within a pixel.
 
+use std::sync::OnceLock;
+
 use glam::{Vec2, Vec3};
 use wgpu::{Face, StoreOp, TextureFormat, VertexFormat};
 
 use crate::geometry::rect::PixelRect;
 use crate::gpu::bindings::{GROUP_PASS, Resource, Slot};
+use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Attachment, Recorder, discarded, sampled};
@@ -12,6 +15,7 @@ use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::appearance;
 use crate::model::frame::moved_mask::MOVED_FORMAT;
+use crate::model::gloss::Specular;
 use crate::model::lighting::self_shadow;
 use crate::model::lighting::self_shadow::{GROUP_SELF_SHADOW, SELF_SHADOW_GROUP};
 use crate::model::plan::Plan;
@@ -32,6 +36,8 @@ const SLOTS: &[Slot] = &[
     Slot::Read,
     Slot::Texture,
     Slot::Texture,
+    Slot::Texture,
+    Slot::uniform::<Specular>(),
 ];
 /// As a draw with materials, then the physical pose.
 const STREAMS: &[Stream] = &[
@@ -60,11 +66,37 @@ const OFFSETS_PX: [Vec2; 4] = [
 /// Both sides of each triangle, and the one that faces the camera.
 type Sides = ByForm<[Draw; 2]>;
 
+/// Draws onto targets of a format and so many samples.
+struct Variants {
+    target: (TextureFormat, u32),
+    matt: Sides,
+    /// Of a glossy toy, once one comes.
+    glossy: OnceLock<Sides>,
+}
+
+impl Variants {
+    fn new(gpu: &Gpu, target: (TextureFormat, u32)) -> Self {
+        Self {
+            target,
+            matt: sides(gpu, target, false),
+            glossy: OnceLock::new(),
+        }
+    }
+
+    fn of(&self, gpu: &Gpu, is_glossy: bool) -> &Sides {
+        if is_glossy {
+            self.glossy.get_or_init(|| sides(gpu, self.target, true))
+        } else {
+            &self.matt
+        }
+    }
+}
+
 pub(crate) struct Pass {
-    coded: Sides,
-    fine: Sides,
+    coded: Variants,
+    fine: Variants,
     /// Of one sample.
-    single: Sides,
+    single: Variants,
 }
 
 pub(crate) struct Inputs<'a> {
@@ -81,6 +113,9 @@ pub(crate) struct Inputs<'a> {
     pub(crate) tints: &'a Tints,
     /// What a soft picture mixes into the toy's colours.
     pub(crate) rim: Option<&'a TextureView>,
+    /// What a glossy toy reflected.
+    pub(crate) reflected: Option<&'a TextureView>,
+    pub(crate) specular: &'a Buffer,
 }
 
 /// Of the toy box's size: one for each draw, and those that stay on the chip.
@@ -148,19 +183,20 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         Self {
-            coded: sides(gpu, CODED_FORMAT, N_SAMPLES),
-            fine: sides(gpu, FINE_FORMAT, N_SAMPLES),
-            single: sides(gpu, CODED_FORMAT, 1),
+            coded: Variants::new(gpu, (CODED_FORMAT, N_SAMPLES)),
+            fine: Variants::new(gpu, (FINE_FORMAT, N_SAMPLES)),
+            single: Variants::new(gpu, (CODED_FORMAT, 1)),
         }
     }
 
     /// Draws the toy once in the middle of the pixel, or once for each offset.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
-        let sides = match targets.drawn.len() {
+        let variants = match targets.drawn.len() {
             1 if targets.samples.is_none() => &self.single,
             1 => &self.coded,
             _ => &self.fine,
         };
+        let sides = variants.of(recorder.gpu, inputs.reflected.is_some());
         let [draw, culled] = sides.of(recorder.gpu, &inputs.seen.frame);
         let [shown, physical] = inputs.self_shadow;
         let maps = shown.resources(recorder.gpu, physical);
@@ -197,17 +233,17 @@ impl Pass {
     }
 }
 
-/// Draws onto targets of a format and so many samples.
-fn sides(gpu: &Gpu, format: TextureFormat, n_samples: u32) -> Sides {
+fn sides(gpu: &Gpu, (format, n_samples): (TextureFormat, u32), is_glossy: bool) -> Sides {
     let groups = [SEEN_SLOTS, SLOTS, MATERIAL_GROUP, SELF_SHADOW_GROUP];
     let is_coarse = ("IS_COARSE", u32::from(n_samples == 1));
+    let is_glossy = ("IS_GLOSSY", u32::from(is_glossy));
     ByForm::new(gpu, move |gpu, form| {
         [None, Some(Face::Back)].map(|culled| {
             gpu.draw(&DrawSpec {
                 vertex: "vs_toy",
                 streams: STREAMS,
                 n_samples,
-                constants: vec![form, is_coarse],
+                constants: vec![form, is_coarse, is_glossy],
                 depth: Some(nearest_surface()),
                 culled,
                 ..DrawSpec::fullscreen(&SHADER, "fs_toy", groups, &[format, MOVED_FORMAT])
@@ -217,7 +253,7 @@ fn sides(gpu: &Gpu, format: TextureFormat, n_samples: u32) -> Sides {
 }
 
 impl<'a> Inputs<'a> {
-    fn resources(&self) -> [Resource<'a>; 8] {
+    fn resources(&self) -> [Resource<'a>; 10] {
         [
             Resource::PerUse,
             self.gbuffer_depth.into(),
@@ -228,6 +264,8 @@ impl<'a> Inputs<'a> {
             (&self.appearance.source.view).into(),
             // A placeholder that is not read where there is none.
             self.rim.unwrap_or(&self.appearance.base.view).into(),
+            self.reflected.unwrap_or(&self.appearance.base.view).into(),
+            self.specular.into(),
         ]
     }
 }

@@ -85,8 +85,10 @@ impl LightMaps {
 
 /// Points over the lights, directions of the ambient light, and the order in which they are drawn.
 pub(crate) struct Lighting {
+    /// Of each light, then of the eyes behind a receiver that reflects.
     lights: Vec<LightPointsBuffer>,
     ambient: LightPointsBuffer,
+    n_lights: usize,
     n_receivers: u32,
     casters: Casters,
     atlas: ShadowAtlas,
@@ -118,6 +120,7 @@ impl Lighting {
             orders: occlusion::Orders::new(gpu, plan),
             casters: plan.casters,
             atlas: plan.self_shadow.clone(),
+            n_lights: plan.n_lights,
             n_receivers,
         }
     }
@@ -191,7 +194,8 @@ impl Lighting {
             .enumerate()
             .map(|(index, points)| Light {
                 points,
-                side: Some(Side::Light(index)),
+                // Eyes behind a receiver see the other side of what the camera sees of their image.
+                side: (index < self.n_lights).then_some(Side::Light(index)),
             })
             .collect();
         let inputs = self.occlusion_inputs(posed, self.casters.light);
@@ -220,7 +224,8 @@ impl Lighting {
         posed: Posed<'_>,
         maps: &LightMaps,
     ) {
-        let light_points: Vec<&[Vec4]> = self.lights.iter().map(LightPointsBuffer::in_anchor).collect();
+        let lights = self.lights.iter().take(self.n_lights);
+        let light_points: Vec<&[Vec4]> = lights.map(LightPointsBuffer::in_anchor).collect();
         let inputs = self_shadow::Inputs {
             toy: posed.toy,
             pose: posed.pose,

@@ -74,7 +74,7 @@ impl PartOfMap {
     pub(crate) fn of_light(plan: &Plan, channel: usize) -> Self {
         Self {
             sizes: (plan.region.size_px, plan.region.size_px),
-            format: fractions(plan.n_lights),
+            format: fractions(plan.n_channels()),
             channel,
         }
     }
@@ -168,7 +168,7 @@ const AMBIENT_FORMAT: TextureFormat = half_float(1);
 
 /// Visibility maps of one pose.
 pub(crate) struct Targets {
-    /// One channel per light.
+    /// One channel per light, and one of what of the first receiver's reflection the toy leaves, where that reflects.
     pub(crate) lights: Texture,
     pub(crate) ambient: Texture,
 }

@@ -17,13 +17,13 @@ use crate::passes::toy_mesh::{CasterLod, PoseBuffers, ToyMesh};
 use app_scene::geometry::bounds::Sphere;
 use app_scene::scene::MAX_LIGHTS;
 
-/// The maps, for passes that read them.
+/// Declarations of the maps for passes that read them.
 pub(crate) const SELF_SHADOW_MAPS: Mirrors =
     mirrors!("common/self_shadow", structs: [SelfShadow], constants: [MAX_TILES]);
 pub(crate) const SHADER: Shader = shader!("lighting/self_shadow");
-/// Group of the maps, in this pass and where they are read.
+/// Group of the maps, in this pass and in the passes that read them.
 pub(crate) const GROUP_SELF_SHADOW: usize = 3;
-/// Slots of the group where the maps are read.
+/// Slots of the group in passes that read the maps.
 pub(crate) const SELF_SHADOW_GROUP: &[Slot] = &[
     Slot::uniform::<SelfShadow>(),
     Slot::ShadowMap,
@@ -31,7 +31,7 @@ pub(crate) const SELF_SHADOW_GROUP: &[Slot] = &[
     Slot::uniform::<SelfShadow>(),
     Slot::ShadowMap,
 ];
-/// And where they are drawn.
+/// Slots of the group in the pass that draws the maps.
 const TILES_GROUP: &[Slot] = &[Slot::uniform::<SelfShadow>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Maximum number of depth maps of the toy from the lights.
@@ -48,7 +48,8 @@ shared_struct! {
 }
 
 impl SelfShadow {
-    /// The tiles over a toy within `toy`. `light_points` are those of each light, in anchor space.
+    /// The tiles over a toy within `toy`. `light_points` are the points of each light, in anchor
+    /// space.
     #[must_use]
     pub(crate) fn new(atlas: &ShadowAtlas, light_points: &[&[Vec4]], toy: &Sphere) -> Self {
         let mut uniform: Self = bytemuck::Zeroable::zeroed();
@@ -104,10 +105,10 @@ pub(crate) struct Pass {
 pub(crate) struct Inputs<'a> {
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pose: &'a PoseBuffers,
-    /// Those of each light, in anchor space.
+    /// The points of each light, in anchor space.
     pub(crate) light_points: &'a [&'a [Vec4]],
     pub(crate) atlas: &'a ShadowAtlas,
-    /// What casts the shadow.
+    /// The shape that casts the shadow.
     pub(crate) caster: CasterLod,
 }
 

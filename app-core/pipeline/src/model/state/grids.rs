@@ -19,9 +19,11 @@ const CELL_BYTES: u64 = 16;
 const N_LEVELS: usize = 7;
 /// Maximum number of cells of a grid along a side.
 const MAX_SIDE_CELLS: u32 = 64;
-/// Relative margin of a grid around its rectangle on each side: another clip reaches a little farther.
+/// Relative margin of a grid around its rectangle on each side, since another clip reaches slightly
+/// farther.
 const SPARE: f64 = 0.1;
-/// Size of the grid over a receiver that nothing reaches: one over anything else has a longer side.
+/// Size of the grid over a receiver that neither toy nor shadows reach; any other grid has a longer
+/// side.
 const UNREACHED: [u32; 2] = [1, 1];
 
 shared_struct! {
@@ -52,7 +54,7 @@ impl Grids {
     }
 }
 
-/// Lays a grid of square cells over each rectangle, pyramid after pyramid in one buffer.
+/// Places a grid of square cells over each rectangle, pyramid after pyramid in one buffer.
 #[must_use]
 pub fn grids_over(rects: &[PlaneRect]) -> Grids {
     let mut grids = Grids::default();
@@ -75,7 +77,8 @@ fn grid_over(rect: &PlaneRect, first_cell: u32) -> Grid {
     };
     let size_m = rect.max - rect.min;
     let longest_m = size_m.max_element();
-    // A receiver that nothing reaches has a grid of one cell without extent, which stays empty.
+    // A receiver that neither toy nor shadows reach has a grid of one cell without extent, which
+    // stays empty.
     if !is_reached(&rect) {
         return Grid {
             origin_in_plane: [0.0; 2],
@@ -96,14 +99,14 @@ fn grid_over(rect: &PlaneRect, first_cell: u32) -> Grid {
     }
 }
 
-/// Cells of one quantity on the grids: pyramids, and sums over the frames so far.
+/// Cells of one quantity on the grids: pyramids, and sums over the previous frames.
 pub(crate) struct CellBuffers {
     pub(crate) cells: Buffer,
     pub(crate) accumulated: Buffer,
 }
 
 impl CellBuffers {
-    /// Zeroed.
+    /// Buffers filled with zeros.
     pub(crate) fn new(gpu: &Gpu, label: &str, grids: &Grids) -> Self {
         let n_cells: u32 = grids.grids.iter().map(|grid| n_pyramid_cells(grid.size)).sum();
         let usage = BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
@@ -115,7 +118,7 @@ impl CellBuffers {
     }
 }
 
-/// Whether toy or shadows reach a receiver, over more than a point.
+/// Whether toy or shadows reach a receiver in more than a point.
 fn is_reached(rect: &PlaneRect) -> bool {
     let longest_m = (rect.max - rect.min).max_element();
     longest_m.is_finite() && longest_m > 0.0
@@ -127,7 +130,7 @@ pub fn holds(grids: &Grids, rects: &[PlaneRect]) -> bool {
     grids.grids.iter().zip(rects).all(|(grid, rect)| {
         let origin = glam::Vec2::from(grid.origin_in_plane).as_dvec2();
         let size = glam::UVec2::from(grid.size).as_dvec2() * f64::from(grid.cell_m);
-        // A tolerance of one cell: points beyond the grid take the value at its border.
+        // A tolerance of one cell: points beyond the grid have the value at its border.
         let slack = f64::from(grid.cell_m);
         let is_laid = grid.size != UNREACHED;
         !is_reached(rect)

@@ -1,4 +1,5 @@
-//! Scene state, accumulated over the views of a scene and its real toy: independent of the camera.
+//! Scene state, accumulated over the views of a scene and its real toy, and independent of the
+//! camera.
 
 pub mod grids;
 pub mod solution;
@@ -30,7 +31,8 @@ pub(crate) struct SceneState {
 }
 
 impl SceneState {
-    /// Zeroed, but for the solution to start from: on `grids`, of a toy of so many materials within a ball.
+    /// State of zeros, except for the starting solution: on `grids`, for a toy within a ball with
+    /// this number of materials.
     pub(crate) fn new(
         gpu: &Gpu,
         grids: Grids,
@@ -57,7 +59,7 @@ impl SceneState {
         }
     }
 
-    /// Resets everything, so that no wrong value is left.
+    /// Resets everything, so that no wrong value remains.
     pub(crate) fn forget(&self, recorder: &mut Recorder<'_>) {
         recorder
             .gpu
@@ -68,7 +70,7 @@ impl SceneState {
         self.forget_sums(recorder);
     }
 
-    /// Resets the sums of fits and lit colours, and keeps their solutions.
+    /// Resets the sums of fits and lit colours, but keeps their solutions.
     pub(crate) fn forget_sums(&self, recorder: &mut Recorder<'_>) {
         recorder.clear(&self.fit_sums);
         recorder.clear(&self.lit.accumulated);

@@ -1,4 +1,4 @@
-//! The solution of the fits, and the sums that it is solved from.
+//! The solution of the fits, and the sums from which it is solved.
 
 use crate::gpu::bindings::{GROUP_SCENE, Resource, Slot};
 use crate::gpu::buffer::Buffer;
@@ -30,7 +30,7 @@ pub const N_COLUMNS: usize = 2 + MAX_LIGHTS;
 pub const N_FIT_SUMS: usize = N_COLUMNS * (N_COLUMNS + 1) / 2 + N_COLUMNS + 1;
 /// Colour channels.
 pub(crate) const N_CHANNELS: usize = 3;
-/// Weight of the fit's priors against the energy of its first column.
+/// Weight of the fit's priors relative to the energy of its first column.
 pub(crate) const PRIOR_WEIGHT: f32 = 1e-4;
 /// Prior of the toy's bounce.
 pub(crate) const PRIOR_BOUNCE: f32 = 0.27;
@@ -69,7 +69,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// A scene as the camera sees it: with its picture, of the image's size.
+/// A scene with the camera's picture, of the image's size.
 #[derive(Clone, Copy)]
 pub(crate) struct SeenScene<'a> {
     pub(crate) scene: Scene<'a>,
@@ -86,7 +86,7 @@ impl SeenScene<'_> {
     }
 }
 
-/// The solution to start from, which also stands where a frame has no valid pixel.
+/// The starting solution, which also remains if a frame has no valid pixel.
 pub(crate) fn start(n_lights: usize) -> Fit {
     let direct_fraction = PRIOR_DIRECT_FRACTION / n_lights.max(1) as f32;
     // Without any light no shadow is known either.
@@ -107,7 +107,7 @@ pub(crate) fn start(n_lights: usize) -> Fit {
     fit
 }
 
-/// Bytes of the accumulated sums: for each receiver and the toy.
+/// Bytes of the accumulated sums for each receiver and the toy.
 pub(crate) const fn accumulated_bytes() -> u64 {
     (size_of::<f32>() * N_FIT_SUMS * N_CHANNELS * (MAX_RECEIVERS + 1)) as u64
 }

@@ -1,4 +1,4 @@
-//! The tints of the toy's paint: its ratio to that of the model.
+//! The tints of the toy's paint: the ratios of its colours to those of the model.
 
 use wgpu::BufferUsages;
 
@@ -24,11 +24,11 @@ pub(crate) const TINT_CELLS: usize = TINT_SIDE * TINT_SIDE * TINT_SIDE;
 pub(crate) const TINT_PYRAMID: usize = (8 * TINT_CELLS - 1) / 7;
 /// Sums of a cell of tints.
 pub(crate) const N_TINT_SUMS: usize = 7;
-/// Materials that have a grid of their own.
+/// Maximum number of materials with a grid of their own.
 const MAX_GRIDS: usize = 8;
 
 shared_struct! {
-    /// Layout of the cells: cubes around all of the physical toy.
+    /// Layout of the cells: cubes around the whole physical toy.
     pub struct TintGrid {
         pub corner_in_anchor: [f32; 3],
         pub cell_m: f32,
@@ -43,7 +43,7 @@ shared_struct! {
 pub struct TintMap {
     /// Layout of the cells.
     pub grid: TintGrid,
-    /// For each material that has a grid, the tint of its cells, x fastest, then y; alpha is 1.
+    /// For each material with a grid, the tints of its cells, x fastest, then y; alpha is 1.
     pub materials: Vec<Vec<[f32; 4]>>,
 }
 
@@ -61,7 +61,7 @@ pub(crate) struct Tints {
 }
 
 impl Tints {
-    /// Zeroed, of a toy within `around`.
+    /// Tints of zero, for a toy within `around`.
     pub(crate) fn new(gpu: &Gpu, around: &Sphere, n_materials: usize) -> Self {
         let n_grids = n_materials.clamp(1, MAX_GRIDS);
         let layout = tint_grid(around, n_grids);
@@ -80,7 +80,7 @@ impl Tints {
         }
     }
 
-    /// Moves the grids to another position of the toy; their contents are then to be reset.
+    /// Moves the grids to another position of the toy; their contents must then be reset.
     pub(crate) fn surround(&mut self, gpu: &Gpu, around: &Sphere) {
         self.layout = tint_grid(around, self.layout.n_materials as usize);
         gpu.write(&self.grid, &[self.layout]);
@@ -98,7 +98,7 @@ impl Tints {
     }
 }
 
-/// Cubes around all of the physical toy.
+/// Cubes around the whole physical toy.
 #[allow(
     clippy::cast_possible_truncation,
     reason = "metres in f32 as shaders have them, and few grids"

@@ -1,4 +1,5 @@
-//! Corners to draw of a shape in a pose: all, those that face somebody, and those that a silhouette comes near.
+//! The corners of a posed shape that are drawn: all, those that face a viewer, or those near a
+//! silhouette.
 
 use std::ops::Range;
 
@@ -10,25 +11,26 @@ use crate::geometry::silhouette::{Projection, Silhouette};
 use crate::gpu::{Buffer, Gpu, Render};
 use crate::passes::toy_mesh::PoseBuffers;
 
-/// What the processor lists of a shape in a pose, for whom looks at it.
+/// The lists that the processor makes of a posed shape for a set of viewers.
 pub(super) struct Lists {
-    /// Triangles that face them.
+    /// Triangles that face the viewers.
     pub(super) facing: Buffer,
-    /// Those of them that meet tiles which a silhouette comes near.
+    /// Those of them that meet tiles near a silhouette.
     silhouette: Buffer,
-    /// These tiles: two triangles a run, in pixels of the region.
+    /// These tiles: two triangles per run, in pixels of the region.
     tiles: Buffer,
 }
 
-/// Most runs of tiles that a list holds.
+/// Maximum number of runs of tiles in a list.
 const MAX_TILE_RUNS: usize = 1024;
-/// Corners of two triangles.
+/// Number of corners of two triangles.
 const N_RUN_CORNERS: usize = 6;
-/// Most corners of a shape whose silhouette is looked for: of more it would take the processor longer than it saves.
+/// Maximum number of corners of a shape whose silhouette is searched: for larger shapes the search
+/// takes more time than it saves.
 pub(super) const MAX_SILHOUETTE_CORNERS: usize = 3 << 16;
 
 impl Lists {
-    /// With room for so many corners.
+    /// Lists for at most this number of corners.
     pub(super) fn new(gpu: &Gpu, n_corners: usize) -> Self {
         let indices = |label, n: usize| {
             let none = vec![0_u32; n];
@@ -46,7 +48,7 @@ impl Lists {
         }
     }
 
-    /// Writes what has to be drawn once for each point.
+    /// Writes the triangles that must be drawn once per viewpoint.
     pub(super) fn silhouette(
         &self,
         gpu: &Gpu,
@@ -77,7 +79,7 @@ impl Lists {
     }
 }
 
-/// What is drawn once for each point, where a silhouette comes near.
+/// The triangles that are drawn once per viewpoint near a silhouette.
 pub(crate) struct NearSilhouette<'a> {
     lists: &'a Lists,
     n_corners: u32,
@@ -85,7 +87,7 @@ pub(crate) struct NearSilhouette<'a> {
 }
 
 impl NearSilhouette<'_> {
-    /// Closes the tiles to what is drawn next, or opens them again.
+    /// Excludes the tiles from the next draws, or admits them again.
     pub(crate) fn draw_tiles(&self, render: &mut Render<'_>, is_closed: bool) {
         let instance = u32::from(is_closed);
         render.set_vertices(0, &self.lists.tiles);
@@ -100,11 +102,11 @@ impl NearSilhouette<'_> {
     }
 }
 
-/// Whom triangles are to face.
+/// The viewers that triangles must face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Side {
     Camera,
-    /// By its index.
+    /// A light, by its index.
     Light(usize),
 }
 
@@ -117,17 +119,18 @@ impl Side {
     }
 }
 
-/// Corners to draw: those of a whole shape, or of its triangles that face somebody.
+/// Corners to draw: those of a whole shape, or of its triangles that face a viewer.
 pub(crate) struct Corners<'a> {
     pub(super) buffer: &'a Buffer,
     pub(super) indices: Range<u32>,
-    /// Whether triangles that face away are left out, which the draw then leaves out, too.
+    /// Whether triangles that face away are left out; the draw then culls them, too.
     pub(crate) is_culled: bool,
-    /// What of them has to be drawn once for each instance, the rest but once; without it all of them have.
+    /// The part that must be drawn once per instance, while the rest is drawn once; without it
+    /// everything is drawn once per instance.
     pub(crate) silhouette: Option<NearSilhouette<'a>>,
 }
 
-/// Where a shape's silhouette is looked for.
+/// The target in which a shape's silhouette is searched.
 pub(crate) struct SilhouetteTarget<'a> {
     pub(crate) projection: &'a dyn Projection,
     /// The part of the region.
@@ -135,34 +138,35 @@ pub(crate) struct SilhouetteTarget<'a> {
     pub(crate) saves: Saves,
 }
 
-/// What it saves to draw but once where no silhouette is.
+/// The savings from drawing only once far from silhouettes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Saves {
-    /// Pixels of the shape's inside, whatever its triangles.
+    /// Pixels inside the shape, whatever its triangles.
     Pixels,
-    /// Triangles alone: nothing where they are so large that most meet a silhouette, as in shapes of few, or thin open ones.
+    /// Triangles alone: there are no savings if the triangles are so large that most of them meet a
+    /// silhouette, as in shapes of few triangles, or in thin open ones.
     Triangles,
 }
 
-/// Fewest corners of a closed shape of which triangles are saved: of 1,000 to 3,500 triangles, 300 to 500 pixels high, none
-/// were, of 5,000 half.
+/// Minimum number of corners of a closed shape for savings in triangles: with 1,000 to 3,500
+/// triangles, 300 to 500 pixels high, there were none, with 5,000 half were saved.
 const MIN_FINE_CORNERS: usize = 3 * 2000;
 
 impl Saves {
-    /// Whether it pays to look for the silhouette of a shape of so many corners to draw.
+    /// Whether the search for the silhouette is worth its cost for this number of corners.
     pub(super) fn pays(self, n_corners: usize, is_closed: bool) -> bool {
         self == Self::Pixels || (is_closed && n_corners >= MIN_FINE_CORNERS)
     }
 }
 
 impl Corners<'_> {
-    /// Binds them, and the positions of their pose in slot 0.
+    /// Binds the corners, and the positions of their pose in slot 0.
     pub(crate) fn bind(&self, render: &mut Render<'_>, pose: &PoseBuffers) {
         render.set_vertices(0, &pose.positions);
         render.set_indices(self.buffer);
     }
 
-    /// Draws what has to be drawn once for each instance.
+    /// Draws the part that must be drawn once per instance.
     pub(crate) fn draw_each(&self, render: &mut Render<'_>, pose: &PoseBuffers, instances: Range<u32>) {
         if let Some(silhouette) = &self.silhouette {
             silhouette.draw_corners(render, pose, instances);
@@ -178,7 +182,7 @@ impl Corners<'_> {
     }
 }
 
-/// Of a list.
+/// Number of indices of a list.
 pub(super) fn n(indices: &[u32]) -> u32 {
     u32::try_from(indices.len()).unwrap_or(u32::MAX)
 }

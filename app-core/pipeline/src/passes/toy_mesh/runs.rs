@@ -1,4 +1,4 @@
-//! The toy's triangles by their materials, for draws that show it.
+//! The toy's triangles, grouped by material, for draws that show it.
 
 use std::ops::Range;
 
@@ -9,29 +9,30 @@ use crate::passes::materials::Materials;
 use crate::passes::toy_mesh::corners::n;
 use app_scene::toy::Toy;
 
-/// Pipelines of one pass: of both sides of each triangle, and of the side alone that faces the camera.
+/// Pipelines of one pass: for both sides of each triangle, and for the side that faces the camera
+/// alone.
 pub(crate) struct Sided<'a> {
     pub(crate) both: &'a Draw,
     pub(crate) culled: &'a Draw,
     pub(crate) groups: &'a [Group],
-    /// Where triangles are seen from.
+    /// Position of the camera.
     pub(crate) camera_in_anchor: Vec3,
 }
 
 /// A run of indices with one material.
 pub(super) struct Run {
-    /// Those of closed pieces.
+    /// Indices of closed pieces.
     pub(super) closed: Range<u32>,
-    /// Those of open ones, which follow.
+    /// Indices of open pieces, which follow.
     pub(super) open: Range<u32>,
-    /// Index of the material, which the shaders take from the instance.
+    /// Index of the material, which the shaders get from the instance.
     pub(super) material: u32,
     /// Index of its look.
     pub(super) look: usize,
 }
 
-/// The draws of a toy, those with the same material as one where they follow one another, and its corners: of each draw those
-/// of closed pieces first.
+/// The draws of a toy and its corners; successive draws with the same material are merged, and
+/// within each draw the closed pieces come first.
 pub(super) fn runs(toy: &Toy, materials: &Materials) -> (Vec<Run>, Vec<u32>) {
     let mut alike: Vec<(Range<usize>, usize)> = Vec::new();
     for part in toy.parts() {
@@ -62,7 +63,8 @@ pub(super) fn runs(toy: &Toy, materials: &Materials) -> (Vec<Run>, Vec<u32>) {
     (runs, indices)
 }
 
-/// Corners of those triangles within a range of the toy's that are of closed pieces, or of open ones.
+/// Corners of those triangles in a range of the toy's that belong to closed pieces, or to open
+/// ones.
 fn corners_of(toy: &Toy, range: Range<usize>, is_closed: bool) -> impl Iterator<Item = u32> {
     let closed = &toy.shadow_indices().is_of_closed;
     let triangles = toy.indices().as_chunks::<3>().0.iter().zip(closed);

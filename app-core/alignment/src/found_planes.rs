@@ -1,0 +1,53 @@
+//! Planes of things that were found at a place, which the scene has as receivers from then on.
+
+use std::sync::Arc;
+
+use super::report::PlaneAlignment;
+use app_scene::scene::{Receiver, Scene};
+
+/// They are looked for in one of the first views that show things, or never: each search takes some seconds.
+const MOST_SEARCHES: usize = 2;
+
+/// A thing's plane as a receiver.
+#[derive(Debug)]
+pub(super) struct FoundReceiver {
+    pub(super) receiver: Receiver,
+    /// Index of the scene's receiver that it is in place of.
+    pub(super) instead_of: Option<usize>,
+    pub(super) report: PlaneAlignment,
+}
+
+/// Planes that were found.
+#[derive(Debug, Default)]
+pub(super) struct FoundPlanes {
+    found: Vec<FoundReceiver>,
+    pub(super) report: Vec<PlaneAlignment>,
+    n_searches: usize,
+}
+
+impl FoundPlanes {
+    /// Whether they are to be looked for.
+    pub(super) fn are_wanted(&self) -> bool {
+        self.found.is_empty() && self.n_searches < MOST_SEARCHES
+    }
+
+    /// Takes note of a search in a view that shows things; whether it found any.
+    pub(super) fn take(&mut self, planes: Vec<FoundReceiver>) -> bool {
+        self.n_searches += 1;
+        self.report = planes.iter().map(|found| found.report).collect();
+        self.found = planes;
+        !self.found.is_empty()
+    }
+
+    /// Adds them to a scene, each once.
+    pub(super) fn add_to(&self, scene: &mut Arc<Scene>) {
+        for found in &self.found {
+            let receivers = &mut Arc::make_mut(scene).receivers;
+            let receiver = found.receiver.clone();
+            match found.instead_of.and_then(|index| receivers.get_mut(index)) {
+                Some(known) => *known = receiver,
+                None => receivers.push(receiver),
+            }
+        }
+    }
+}

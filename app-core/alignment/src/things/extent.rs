@@ -1,0 +1,164 @@
+//! How far a thing's plane reaches: the smallest rectangle around what the picture shows of it.
+
+use glam::{DMat4, DVec2, DVec3};
+
+use super::grown::Grown;
+use crate::picture::{Level, places};
+use crate::receivers::SeenReceiver;
+
+/// Turns of the rectangle that are tried, over a quarter turn.
+const N_TURNS: usize = 45;
+/// The part of the points that may lie beyond each side.
+const BEYOND: f64 = 0.005;
+/// At least that part of the pixels that a rectangle is seen in shows the thing.
+const FILLED: f64 = 0.6;
+/// Fewer pixels tell no rectangle.
+const LEAST_PIXELS: usize = 100;
+/// A tilted plane whose lowest side is no higher than this part of its highest one goes down to the receiver.
+const LOW: f64 = 0.4;
+
+/// A thing in a level, on a receiver.
+pub(super) struct Outline<'a> {
+    pub(super) level: &'a Level,
+    pub(super) table: &'a SeenReceiver,
+    pub(super) grown: &'a Grown,
+    pub(super) thing: usize,
+}
+
+/// A rectangle on a plane.
+pub(super) struct Extent {
+    middle: DVec2,
+    turn_rad: f64,
+    pub(super) half_m: DVec2,
+}
+
+impl Outline<'_> {
+    /// Places on a plane that show the thing's upper side, in metres. Of a level one that are those below which the thing stands on its
+    /// receiver: its sides are seen below its near edge, and show none.
+    fn places(&self, plane_from_camera: &DMat4, is_level: bool) -> Vec<DVec2> {
+        let endless = SeenReceiver::of_size(*plane_from_camera, DVec2::INFINITY);
+        let k = &self.level.intrinsics;
+        let table_from_camera = self.table.plane_from_camera;
+        let camera_from_table = table_from_camera.inverse();
+        let is_over_thing = |point: DVec3| {
+            let below = table_from_camera.transform_point3(point) * DVec3::new(1.0, 0.0, 1.0);
+            let seen = k.pixel_of(camera_from_table.transform_point3(below));
+            seen.is_some_and(|at| self.grown.of_pixel(at.floor().as_ivec2()) == Some(self.thing))
+        };
+        let pixels = places(self.level.frame.size_px);
+        let pixels = pixels.filter(|at| self.grown.of_pixel(*at) == Some(self.thing));
+        let points = pixels.filter_map(|at| endless.point_at(k, at));
+        points
+            .filter(|point| !is_level || is_over_thing(*point))
+            .map(|point| {
+                let at = plane_from_camera.transform_point3(point);
+                DVec2::new(at.x, at.z)
+            })
+            .collect()
+    }
+
+    /// The part of the pixels that a plane is seen in that shows the thing.
+    fn filled(&self, plane: &SeenReceiver) -> f64 {
+        let pixels = places(self.level.frame.size_px);
+        let seen = pixels.filter(|at| plane.point_at(&self.level.intrinsics, *at).is_some());
+        let (mut n, mut n_thing) = (0, 0);
+        for at in seen {
+            n += 1;
+            n_thing += usize::from(self.grown.of_pixel(at) == Some(self.thing));
+        }
+        n_thing as f64 / f64::from(n.max(1))
+    }
+}
+
+impl Extent {
+    /// None where too little is seen, or the thing is no rectangle.
+    pub(super) fn of(outline: &Outline<'_>, plane_from_camera: &DMat4, is_level: bool) -> Option<Self> {
+        let places = outline.places(plane_from_camera, is_level);
+        if places.len() < LEAST_PIXELS {
+            return None;
+        }
+        let turns = (0..N_TURNS).map(|i| std::f64::consts::FRAC_PI_2 * i as f64 / N_TURNS as f64);
+        let smallest = turns
+            .map(|turn_rad| Self::turned(&places, turn_rad))
+            .min_by(|a, b| a.half_m.element_product().total_cmp(&b.half_m.element_product()))?;
+        let filled = outline.filled(&smallest.plane(plane_from_camera));
+        let whole = if is_level {
+            smallest
+        } else {
+            smallest.down_to(outline.table, plane_from_camera)
+        };
+        (filled >= FILLED).then_some(whole)
+    }
+
+    fn turned(places: &[DVec2], turn_rad: f64) -> Self {
+        let axis = DVec2::from_angle(turn_rad);
+        let ends_along = |axis: DVec2| ends(places.iter().map(|place| place.dot(axis)).collect());
+        let [x, z] = [axis, axis.perp()].map(ends_along);
+        let [low, high] = [0, 1].map(|end| DVec2::new(x[end], z[end]));
+        Self {
+            middle: axis.rotate(0.5 * (low + high)),
+            turn_rad,
+            half_m: 0.5 * (high - low),
+        }
+    }
+
+    /// With a plane's low side on the receiver, where it comes near to it: what lies beneath that is not seen.
+    fn down_to(self, table: &SeenReceiver, plane_from_camera: &DMat4) -> Self {
+        let axis = DVec2::from_angle(self.turn_rad);
+        let table_from_plane = table.plane_from_camera * plane_from_camera.inverse();
+        let height_m = |at: DVec2| table_from_plane.transform_point3(DVec3::new(at.x, 0.0, at.y)).y;
+        let sides = [
+            (axis, self.half_m.x),
+            (-axis, self.half_m.x),
+            (axis.perp(), self.half_m.y),
+            (-axis.perp(), self.half_m.y),
+        ];
+        let heights = sides.map(|(to, half_m)| height_m(self.middle + half_m * to));
+        let highest = heights.into_iter().fold(0.0, f64::max);
+        let lowest = (0..4)
+            .min_by(|a, b| heights[*a].total_cmp(&heights[*b]))
+            .unwrap_or(0);
+        let (to, half_m) = sides[lowest];
+        let falls = height_m(self.middle) - heights[lowest];
+        if heights[lowest] > LOW * highest || heights[lowest] <= 0.0 || falls <= 0.0 {
+            return self;
+        }
+        let longer_m = heights[lowest] * half_m / falls;
+        let along_x = lowest < 2;
+        Self {
+            middle: self.middle + 0.5 * longer_m * to,
+            half_m: self.half_m + 0.5 * longer_m * if along_x { DVec2::X } else { DVec2::Y },
+            ..self
+        }
+    }
+
+    /// Of an endless plane.
+    pub(super) fn plane(&self, plane_from_camera: &DMat4) -> SeenReceiver {
+        let moved = DMat4::from_rotation_y(self.turn_rad)
+            * DMat4::from_translation(-DVec3::new(self.middle.x, 0.0, self.middle.y));
+        SeenReceiver::of_size(moved * *plane_from_camera, self.half_m)
+    }
+
+    /// Of its middle above a receiver, in metres.
+    pub(super) fn height_m(&self, plane_from_camera: &DMat4, table: &SeenReceiver) -> f64 {
+        let middle = DVec3::new(self.middle.x, 0.0, self.middle.y);
+        let middle = plane_from_camera.inverse().transform_point3(middle);
+        table.plane_from_camera.transform_point3(middle).y
+    }
+}
+
+/// The first and the last of some values, but for those beyond.
+fn ends(mut values: Vec<f64>) -> [f64; 2] {
+    values.sort_unstable_by(f64::total_cmp);
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a part of a count"
+    )]
+    let beyond = (BEYOND * values.len() as f64) as usize;
+    let last = values.len().saturating_sub(1 + beyond);
+    [
+        values.get(beyond).copied().unwrap_or(0.0),
+        values.get(last).copied().unwrap_or(0.0),
+    ]
+}

@@ -1,0 +1,379 @@
+//! Planes that things have, such as the top of a book or a ramp: found by the toy's shadow on them.
+//!
+//! A shadow on a plane is the toy flattened onto it, so height and tilt of a plane are searched until the shadow that it would catch is
+//! the one that is seen. What is left then tells whether the thing has a plane there at all: a cup, a cloth or a hand has none.
+
+use glam::{DMat4, DQuat, DVec2, DVec3, IVec2};
+
+use super::extent::{Extent, Outline};
+use super::grown::Grown;
+use super::simplex::descend;
+use crate::lights::{Compared, Comparison, OnPlane};
+use crate::picture::{Color, Level};
+use crate::raster::Rasterizer;
+use crate::receivers::SeenReceiver;
+use crate::report::PlaneAlignment;
+use crate::shape::Shape;
+use app_scene::scene::{Intrinsics, MAX_RECEIVERS};
+
+/// A thing of fewer pixels of the level tells no plane; of more, so many are looked at.
+const LEAST_PIXELS: usize = 300;
+const MOST_PIXELS: usize = 2500;
+/// So many pixels lie in the shadow on a level plane that is told, and on a tilted one.
+const LEAST_SHADOWED: [usize; 2] = [90, 250];
+/// What is shadowed: a part of the light that is taken.
+const SHADOWED: f32 = 0.25;
+/// Noisier pixels tell nothing, in plates.
+const NOISIEST: f32 = 0.2;
+/// Squared differences, in plates, count no more than that.
+const MOST_LOSS: f64 = 0.03;
+/// A plane leaves no more than this of them, and that part of what the receiver below leaves, and of what no shadow at all does.
+const OF_PLANE: f64 = 0.0012;
+const OF_OTHERS: f64 = 0.35;
+/// Where these leave less there is nothing to be explained.
+const LEAST_LEFT: f64 = 3e-4;
+/// A plane that is no farther from a receiver is that one, in metres.
+const SAME_M: f64 = 0.012;
+/// The receiver that is nearest to the toy, which stands on it.
+const GROUND: usize = 0;
+/// A level plane is taken if it leaves no more than so many times what a tilted one does, and that much more.
+const LEVEL_TIMES: f64 = 1.3;
+const LEVEL_MORE: f64 = 1e-4;
+/// A shadow is no less deep than so many times what is expected, nor deeper; told in so many rounds.
+const DEPTHS: [f64; 2] = [0.6, 1.3];
+const N_ROUNDS: usize = 3;
+/// Heights that are tried, over the toy's radius: the first, the step, and how many.
+const HEIGHTS: (f64, f64, usize) = (-0.03, 0.03, 24);
+/// Slopes that are tried, each to so many sides.
+const SLOPES: [f64; 2] = [0.1, 0.22];
+const N_SIDES: usize = 8;
+/// No slope is steeper, and no plane reaches as far below the receiver, in metres.
+const STEEPEST: f64 = 0.6;
+const BELOW_M: f64 = 0.004;
+/// Starts of the descents, the size of their first steps over the toy's radius, and how many tries each has.
+const N_STARTS: usize = 2;
+const FIRST_STEP: f64 = 0.05;
+const N_TRIES: usize = 60;
+/// Side of the cells that the toy is merged in, in pixels of the level.
+const CELL_PX: f64 = 0.7;
+
+/// A plane with its extent, and what tells it.
+pub(crate) struct FoundPlane {
+    pub(crate) plane: SeenReceiver,
+    /// Index of the receiver in whose place it is: one above that which the toy stands on, and not quite where it is listed.
+    pub(crate) instead_of: Option<usize>,
+    pub(crate) report: PlaneAlignment,
+}
+
+impl FoundPlane {
+    /// Whether its middle is about where a receiver is.
+    fn is_near(&self, receiver: &SeenReceiver) -> bool {
+        let middle = self.plane.plane_from_camera.inverse().w_axis.truncate();
+        receiver.plane_from_camera.transform_point3(middle).y.abs() < SAME_M
+    }
+}
+
+/// Planes of the things of a level.
+pub(super) fn find(
+    (shape, receivers): (&Shape, &[SeenReceiver]),
+    level: &Level,
+    comparison: &Comparison,
+    grown: &Grown,
+) -> Vec<FoundPlane> {
+    let shape = shape.merged_in_px(CELL_PX, level);
+    let planes = (0..grown.n_things()).filter_map(|thing| {
+        let pixels = pixels(comparison, grown, thing);
+        let on = most_on(&pixels)?;
+        let search = Search::new((&shape, receivers), level, comparison, &pixels)?;
+        let outline = Outline {
+            level,
+            table: search.table,
+            grown,
+            thing,
+        };
+        let found = found(search, &outline)?;
+        Some(FoundPlane {
+            instead_of: (on != GROUND && found.is_near(&receivers[on])).then_some(on),
+            ..found
+        })
+    });
+    planes.collect()
+}
+
+/// The pixels well within a thing, row by row.
+fn pixels<'a>(comparison: &'a Comparison, grown: &Grown, thing: usize) -> Vec<&'a Compared> {
+    let steps = [IVec2::ZERO, IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
+    let is_within = |at: IVec2| steps.iter().all(|step| grown.of_pixel(at + *step) == Some(thing));
+    let all = comparison.pixels.iter();
+    let all: Vec<&Compared> = all
+        .filter(|pixel| pixel.noise < NOISIEST && is_within(pixel.at))
+        .collect();
+    all
+}
+
+/// The receiver that most pixels are on; none of too few.
+fn most_on(pixels: &[&Compared]) -> Option<usize> {
+    if pixels.len() < LEAST_PIXELS {
+        return None;
+    }
+    let mut counts = [0; MAX_RECEIVERS];
+    for pixel in pixels {
+        if let Some(count) = counts.get_mut(pixel.on) {
+            *count += 1;
+        }
+    }
+    (0..counts.len()).max_by_key(|on| counts[*on])
+}
+
+/// A thing's plane: looked for in all of the thing, then in the rectangle of its upper side.
+fn found(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
+    let raster = &mut Rasterizer::default();
+    let first = search.best_plane(raster)?;
+    let endless = search.plane(&first.heights).plane_from_camera;
+    let extent = Extent::of(outline, &endless, first.is_level)?;
+    let search = search.within(&extent.plane(&endless));
+    let heights = first.heights;
+    let level = [(first.loss, [heights[0], 0.0, 0.0])];
+    let plane = search.refined(raster, &level, &[(first.loss, heights)])?;
+    let losses = search.told(raster, &plane)?;
+    let endless = search.plane(&plane.heights).plane_from_camera;
+    let extent = Extent::of(outline, &endless, plane.is_level)?;
+    Some(FoundPlane {
+        plane: extent.plane(&endless),
+        instead_of: None,
+        report: PlaneAlignment {
+            height_m: extent.height_m(&endless, search.table),
+            tilt_rad: (plane.heights[1].hypot(plane.heights[2]) / search.size_m).atan(),
+            half_extent_m: extent.half_m.to_array(),
+            losses,
+        },
+    })
+}
+
+/// A plane that may be a thing's.
+struct Candidate {
+    heights: Heights,
+    loss: f64,
+    is_level: bool,
+}
+
+/// By heights in metres above the receiver: in the thing's middle, and what it rises by along either axis over the thing's size.
+type Heights = [f64; 3];
+
+/// A search for one thing's plane.
+struct Search<'a> {
+    on_plane: OnPlane<'a>,
+    table: &'a SeenReceiver,
+    intrinsics: Intrinsics,
+    /// One of so many pixels is looked at.
+    apart: usize,
+    pixels: Vec<IVec2>,
+    seen: Vec<(Color, f32)>,
+    /// By the receivers that are known.
+    expected: Vec<Option<Color>>,
+    /// The thing's middle and size on the receiver, in metres.
+    middle: DVec2,
+    size_m: f64,
+    radius_m: f64,
+}
+
+impl<'a> Search<'a> {
+    fn new(
+        (shape, receivers): (&'a Shape, &'a [SeenReceiver]),
+        level: &Level,
+        comparison: &'a Comparison,
+        pixels: &[&Compared],
+    ) -> Option<Self> {
+        let table = receivers.get(GROUND)?;
+        let ground = pixels
+            .iter()
+            .filter_map(|pixel| table.point_at(&level.intrinsics, pixel.at));
+        let ground: Vec<DVec2> = ground
+            .map(|point| {
+                let at = table.plane_from_camera.transform_point3(point);
+                DVec2::new(at.x, at.z)
+            })
+            .collect();
+        let n = ground.len().max(1) as f64;
+        let middle = ground.iter().sum::<DVec2>() / n;
+        let square = ground.iter().map(|at| at.distance_squared(middle)).sum::<f64>() / n;
+        let size_m = square.sqrt();
+        let apart = pixels.len().div_ceil(MOST_PIXELS).max(1);
+        let looked_at = || pixels.iter().step_by(apart);
+        (size_m > 0.0).then(|| Self {
+            on_plane: OnPlane::new(comparison, (shape, receivers), GROUND, level),
+            table,
+            intrinsics: level.intrinsics,
+            apart,
+            pixels: looked_at().map(|pixel| pixel.at).collect(),
+            seen: looked_at().map(|pixel| (pixel.ratio, pixel.noise)).collect(),
+            expected: looked_at().map(|pixel| Some(pixel.model)).collect(),
+            middle,
+            size_m,
+            radius_m: shape.radius_m,
+        })
+    }
+
+    /// The plane that explains the thing best.
+    fn best_plane(&self, raster: &mut Rasterizer) -> Option<Candidate> {
+        let (first, step, n) = HEIGHTS;
+        let level = (0..n).map(|i| [(first + step * i as f64) * self.radius_m, 0.0, 0.0]);
+        let level = self.best(raster, level, N_STARTS + 1);
+        let slopes = level.iter().flat_map(|(_, [height_m, ..])| {
+            SLOPES.into_iter().flat_map(move |slope| {
+                (0..N_SIDES).map(move |side| {
+                    let to = DVec2::from_angle(std::f64::consts::TAU * side as f64 / N_SIDES as f64);
+                    [*height_m, slope * to.x * self.size_m, slope * to.y * self.size_m]
+                })
+            })
+        });
+        let all = level.iter().map(|(_, heights)| *heights).chain(slopes);
+        let all: Vec<Heights> = all.collect();
+        let tilted = self.best(raster, all.into_iter(), N_STARTS);
+        self.refined(raster, &level, &tilted)
+    }
+
+    /// The best plane down from some level and some tilted ones.
+    fn refined(
+        &self,
+        raster: &mut Rasterizer,
+        level: &[(f64, Heights)],
+        tilted: &[(f64, Heights)],
+    ) -> Option<Candidate> {
+        let step_m = FIRST_STEP * self.radius_m;
+        let mut descended = |starts: &[(f64, Heights)], n_free: usize| {
+            let ends = starts.iter().map(|(_, start)| {
+                descend((*start, step_m), n_free, N_TRIES, |heights| {
+                    self.loss(raster, heights)
+                })
+            });
+            ends.min_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let (level, tilted) = (descended(level, 1)?, descended(tilted, 3)?);
+        let is_level = level.0 <= LEVEL_TIMES * tilted.0 + LEVEL_MORE;
+        let (loss, heights) = if is_level { level } else { tilted };
+        Some(Candidate {
+            heights,
+            loss,
+            is_level,
+        })
+    }
+
+    /// The same search among the pixels that show a rectangle.
+    fn within(mut self, plane: &SeenReceiver) -> Self {
+        let k = self.intrinsics;
+        let is_within: Vec<bool> = self
+            .pixels
+            .iter()
+            .map(|at| plane.point_at(&k, *at).is_some())
+            .collect();
+        keep(&mut self.pixels, &is_within);
+        keep(&mut self.seen, &is_within);
+        keep(&mut self.expected, &is_within);
+        self
+    }
+
+    /// How well a plane is told; none where something else explains the thing about as well.
+    fn told(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Option<[f64; 2]> {
+        let of_receiver = self.loss_of(&self.expected);
+        let of_light = self.loss_of(&vec![Some([1.0; 3]); self.seen.len()]);
+        let loss = candidate.loss;
+        let of_others = of_receiver.min(of_light);
+        let is_told = of_others > LEAST_LEFT && loss < OF_PLANE.min(OF_OTHERS * of_others);
+        let n_shadowed = self.n_shadowed(raster, &candidate.heights);
+        let least = LEAST_SHADOWED[usize::from(!candidate.is_level)];
+        (is_told && n_shadowed >= least).then_some([of_receiver, loss])
+    }
+
+    /// The best of some, with their losses.
+    fn best(
+        &self,
+        raster: &mut Rasterizer,
+        tries: impl Iterator<Item = Heights>,
+        n: usize,
+    ) -> Vec<(f64, Heights)> {
+        let mut tried: Vec<(f64, Heights)> = tries
+            .map(|heights| (self.loss(raster, &heights), heights))
+            .collect();
+        tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        tried.truncate(n);
+        tried
+    }
+
+    fn plane(&self, [height_m, along_x, along_z]: &Heights) -> SeenReceiver {
+        let slope = DVec2::new(*along_x, *along_z) / self.size_m;
+        let normal = DVec3::new(-slope.x, 1.0, -slope.y).normalize();
+        let turn = DQuat::from_rotation_arc(DVec3::Y, normal);
+        let origin = DVec3::new(self.middle.x, *height_m, self.middle.y);
+        let plane_from_table = DMat4::from_rotation_translation(turn, origin).inverse();
+        SeenReceiver::of_size(plane_from_table * self.table.plane_from_camera, DVec2::INFINITY)
+    }
+
+    /// Mean squared difference of what is seen from what a plane would show, in plates.
+    fn loss(&self, raster: &mut Rasterizer, heights: &Heights) -> f64 {
+        let steepest_m = STEEPEST * self.size_m;
+        let rise_m = heights[1].hypot(heights[2]);
+        if rise_m > steepest_m || heights[0] - rise_m < -BELOW_M - 0.5 * rise_m {
+            return f64::INFINITY;
+        }
+        let expected = self.on_plane.ratios(raster, &self.plane(heights), &self.pixels);
+        self.loss_of(&expected)
+    }
+
+    /// The same of what is expected of each pixel; none where nothing is.
+    fn loss_of(&self, expected: &[Option<Color>]) -> f64 {
+        let depth = self.depth(expected);
+        let pixels = expected.iter().zip(&self.seen);
+        let losses = pixels
+            .map(|(expected, seen)| expected.map_or(MOST_LOSS, |expected| square(seen, expected, depth)));
+        losses.sum::<f64>() / self.seen.len().max(1) as f64
+    }
+
+    /// How deep the shadow is over what is expected. Where little of the shadow is seen on the receiver that is not well known.
+    fn depth(&self, expected: &[Option<Color>]) -> f64 {
+        let mut depth = 1.0;
+        for _ in 0..N_ROUNDS {
+            let pixels = expected.iter().zip(&self.seen);
+            let pixels = pixels.filter_map(|(expected, seen)| Some((seen, (*expected)?)));
+            let like = pixels.filter(|(seen, expected)| square(seen, *expected, depth) < MOST_LOSS);
+            let (mut product, mut own) = (0.0, 0.0);
+            for ((ratio, _), expected) in like {
+                for channel in 0..3 {
+                    let taken = f64::from(1.0 - expected[channel]);
+                    product += taken * f64::from(1.0 - ratio[channel]);
+                    own += taken * taken;
+                }
+            }
+            if own > 0.0 {
+                depth = (product / own).clamp(DEPTHS[0], DEPTHS[1]);
+            }
+        }
+        depth
+    }
+
+    fn n_shadowed(&self, raster: &mut Rasterizer, heights: &Heights) -> usize {
+        let expected = self.on_plane.ratios(raster, &self.plane(heights), &self.pixels);
+        let is_shadowed = |color: &Color| color.iter().sum::<f32>() / 3.0 < 1.0 - SHADOWED;
+        self.apart
+            * expected
+                .iter()
+                .flatten()
+                .filter(|color| is_shadowed(color))
+                .count()
+    }
+}
+
+/// Keeps the values that are marked.
+fn keep<T>(values: &mut Vec<T>, marks: &[bool]) {
+    let mut marks = marks.iter();
+    values.retain(|_| marks.next().is_some_and(|is_kept| *is_kept));
+}
+
+/// Squared difference of what is seen from what is expected, of a shadow so much deeper, less that of the noise.
+fn square((ratio, noise): &(Color, f32), expected: Color, depth: f64) -> f64 {
+    let squares = (0..3).map(|channel| {
+        let expected = 1.0 - depth * f64::from(1.0 - expected[channel]);
+        (f64::from(ratio[channel]) - expected).powi(2)
+    });
+    (squares.sum::<f64>() / 3.0 - f64::from(*noise).powi(2)).clamp(0.0, MOST_LOSS)
+}

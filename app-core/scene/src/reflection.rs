@@ -1,0 +1,94 @@
+//! How a glossy receiver reflects: its surroundings, which its plate shows as well, and the toy in their place.
+//!
+//! Source: the lobe is that of Beckmann and Spizzichino 1963, sampled by its slopes; its strength by angle is Karis' fit of a rough
+//! dielectric's reflectance (2014, "Physically Based Shading on Mobile").
+
+use glam::{DVec3, DVec4};
+
+use crate::scene::{FieldError, InputError};
+
+/// Eyes behind the receiver that an image of the toy is drawn from.
+pub const N_MIRRORED_EYES: usize = 32;
+/// Roughness of the smoothest and of the roughest receiver: no reflection of a rougher one is told from its own colour.
+pub const ROUGHNESS: std::ops::RangeInclusive<f64> = 0.01..=1.0;
+/// Reflectance of a dielectric that is looked at from above.
+const FROM_ABOVE: f64 = 0.04;
+/// No reflected ray is lower, as a sine.
+const LOWEST: f64 = 0.02;
+/// Most light that a receiver reflects the surroundings of, over white.
+const MOST_LIGHT: f32 = 1e3;
+
+/// How the receiver that the toy stands on reflects.
+///
+/// It shows its own colour in the light that falls on it, and `reflectance` times what it reflects: the surroundings, and in
+/// the part that the toy hides of them the toy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reflection {
+    /// Width of the lobe, as Beckmann's alpha: the root of twice the variance of its slopes.
+    pub roughness: f64,
+    /// Light of the surroundings in linear light, at the exposure of the plates.
+    pub surroundings: [f32; 3],
+    /// What the toy's light is above it: below 0 where the toy is darker.
+    pub toy_above_surroundings: [f32; 3],
+}
+
+impl Reflection {
+    /// Part of the light that is reflected towards an eye at the angle of this cosine to the receiver's normal.
+    #[must_use]
+    pub fn reflectance(&self, cosine: f64) -> f64 {
+        let roughness = self.roughness.sqrt();
+        let x = 1.0 - roughness;
+        let y = 0.0425 - 0.0275 * roughness;
+        let [z, w] = [1.04 - 0.572 * roughness, 0.022 * roughness - 0.04];
+        let grazing = (x * x).min((-9.28 * cosine).exp2()) * x + y;
+        FROM_ABOVE * (z - 1.04 * grazing) + w + 1.04 * grazing
+    }
+
+    /// Mirror images of an eye that looks at a foot on the plane y = 0, one for each slope of the lobe: lines from one of them to a
+    /// point meet the plane where that point is seen reflected. Each is homogeneous with w = -1, so that it flattens what is above the
+    /// plane as a light above it does.
+    #[must_use]
+    pub fn mirrored_eyes(&self, eye: DVec3, foot: DVec3) -> Vec<DVec4> {
+        let to_eye = eye - foot;
+        let view = to_eye.normalize_or(DVec3::Y);
+        (0..N_MIRRORED_EYES)
+            .map(|index| {
+                let normal = slope_normal(self.roughness, index);
+                let mut ray = 2.0 * normal.dot(view) * normal - view;
+                ray.y = ray.y.max(LOWEST);
+                (to_eye.length() * ray.normalize() - foot).extend(-1.0)
+            })
+            .collect()
+    }
+
+    /// Validates the values.
+    pub fn check(&self, field: &str) -> Result<(), InputError> {
+        let range = |name: &str, value: f64, min: f64, max: f64| {
+            // Written so that what is no number is refused.
+            if (min..=max).contains(&value) {
+                return Ok(());
+            }
+            Err(InputError {
+                field: format!("{field}.{name}"),
+                reason: FieldError::Range { value, min, max },
+            })
+        };
+        range("roughness", self.roughness, *ROUGHNESS.start(), *ROUGHNESS.end())?;
+        let most = f64::from(MOST_LIGHT);
+        for channel in 0..3 {
+            range("surroundings", self.surroundings[channel].into(), 0.0, most)?;
+            let toy = self.toy_above_surroundings[channel].into();
+            range("toy_above_surroundings", toy, -most, most)?;
+        }
+        Ok(())
+    }
+}
+
+/// Normal of one of the lobe's slopes, all equally likely.
+fn slope_normal(roughness: f64, index: usize) -> DVec3 {
+    let golden_angle_rad = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    let part = (index as f64 + 0.5) / N_MIRRORED_EYES as f64;
+    let slope = roughness * (-(-part).ln_1p()).sqrt();
+    let (sin, cos) = (index as f64 * golden_angle_rad).sin_cos();
+    DVec3::new(slope * cos, 1.0, slope * sin).normalize()
+}

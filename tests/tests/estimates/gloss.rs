@@ -1,0 +1,87 @@
+//! How glossy a toy is, by photographs of one that stands on a table under a bulb.
+
+use std::sync::{Arc, LazyLock};
+
+use app_core::alignment::Observer;
+use app_core::frame::FrameInput;
+use app_core::gloss::Gloss;
+use app_core::scene::{Image, Scene};
+use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
+use glam::DVec3;
+use measure::photographer::{Part, Shape, Sheen, Shot, Stance, World};
+
+/// A figure of three balls on a box, of two paints.
+fn figure(sheen: Option<Sheen>) -> World {
+    let mut world = World::boxes().resized([480, 270]);
+    let ball = |radius_m: f64, at: DVec3, color: DVec3| Part {
+        shape: Shape::Sphere { radius_m },
+        color,
+        rest: Stance::at(at),
+        keys: Vec::new(),
+    };
+    world.parts.extend([
+        ball(0.026, DVec3::new(0.0, 0.122, 0.0), DVec3::new(0.15, 0.22, 0.4)),
+        ball(0.022, DVec3::new(0.05, 0.022, 0.04), DVec3::new(0.15, 0.22, 0.4)),
+        ball(0.02, DVec3::new(-0.04, 0.02, 0.045), DVec3::new(0.45, 0.4, 0.3)),
+    ]);
+    world.sheen = sheen;
+    world
+}
+
+fn shot(sheen: Option<Sheen>) -> (Scene, FrameInput) {
+    let shot = Shot::of(&figure(sheen)).unwrap();
+    (shot.scene, shot.input)
+}
+
+static MATT: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| shot(None));
+
+fn seen(scene: &Scene, input: &FrameInput) -> Gloss {
+    Observer::default().observed(scene, input).unwrap().gloss
+}
+
+#[test]
+fn roughness_and_strength_are_found() {
+    for roughness in [0.12, 0.25] {
+        let (scene, input) = shot(Some(Sheen {
+            roughness,
+            strength: 1.0,
+        }));
+        let found = seen(&scene, &input);
+        let ratio = f64::from(found.roughness) / roughness;
+        assert!(
+            (0.75..1.33).contains(&ratio),
+            "{roughness} is taken for {found:?}"
+        );
+        assert!((0.6..1.6).contains(&found.strongest()), "{found:?} of plastic");
+        assert!(!found.is_beyond_model(), "{found:?}");
+    }
+}
+
+/// What a camera makes of light: darks darker, lights flatter. A broad lobe would do about the same to a matt toy.
+fn through_a_camera(image: &Image) -> Image {
+    let toned = |code: u8| {
+        let light = linear_from_srgb(f32::from(code) / 255.0);
+        let shown = light * (1.5 * light + 0.03) / (light * (1.46 * light + 0.59) + 0.14);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
+        let code = (255.0 * srgb_from_linear(shown.min(1.0))).round() as u8;
+        code
+    };
+    Image {
+        rgba8: image.rgba8.iter().map(|code| toned(*code)).collect(),
+        ..image.clone()
+    }
+}
+
+#[test]
+fn a_matt_toy_has_none() {
+    let (scene, input) = &*MATT;
+    assert_eq!(seen(scene, input), Gloss::NONE);
+    let mut scene = scene.clone();
+    for plate in &mut scene.plates {
+        plate.image = Arc::new(through_a_camera(&plate.image));
+    }
+    let input = input
+        .clone()
+        .with_image(Arc::new(through_a_camera(input.image.rgba())));
+    assert_eq!(seen(&scene, &input), Gloss::NONE);
+}
