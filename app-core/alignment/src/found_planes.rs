@@ -1,18 +1,19 @@
-//! Planes of things that were found at a place, which the scene has as receivers from then on.
+//! Planes of things that were found at a place; they become receivers of the scene.
 
 use std::sync::Arc;
 
 use super::report::PlaneAlignment;
 use app_scene::scene::{Receiver, Scene};
 
-/// They are looked for in one of the first views that show things, or never: each search takes some seconds.
+/// Maximum number of views with things in which planes are searched: each search takes some
+/// seconds.
 const MOST_SEARCHES: usize = 2;
 
 /// A thing's plane as a receiver.
 #[derive(Debug)]
 pub(super) struct FoundReceiver {
     pub(super) receiver: Receiver,
-    /// Index of the scene's receiver that it is in place of.
+    /// Index of the scene's receiver that it replaces.
     pub(super) instead_of: Option<usize>,
     pub(super) report: PlaneAlignment,
 }
@@ -26,12 +27,12 @@ pub(super) struct FoundPlanes {
 }
 
 impl FoundPlanes {
-    /// Whether they are to be looked for.
+    /// Whether a search is still due.
     pub(super) fn are_wanted(&self) -> bool {
         self.found.is_empty() && self.n_searches < MOST_SEARCHES
     }
 
-    /// Takes note of a search in a view that shows things; whether it found any.
+    /// Records a search in a view that shows things. Returns whether it found any plane.
     pub(super) fn take(&mut self, planes: Vec<FoundReceiver>) -> bool {
         self.n_searches += 1;
         self.report = planes.iter().map(|found| found.report).collect();
@@ -39,7 +40,7 @@ impl FoundPlanes {
         !self.found.is_empty()
     }
 
-    /// Adds them to a scene, each once.
+    /// Adds the planes to a scene, each once.
     pub(super) fn add_to(&self, scene: &mut Arc<Scene>) {
         for found in &self.found {
             let receivers = &mut Arc::make_mut(scene).receivers;

@@ -1,4 +1,4 @@
-//! What a shadow would look like on a plane that nobody lists, in the light that a comparison found on a receiver.
+//! Expected shadow on an unlisted plane, in the light that was estimated on a receiver.
 
 use glam::{DVec2, DVec3, IVec2};
 
@@ -14,26 +14,27 @@ use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
 use app_scene::scene::Intrinsics;
 
-/// Points over a lamp, and directions of ambient light: a shadow is compared by where it lies.
+/// Points over a lamp, and directions of ambient light; few suffice, since only the shadow's place
+/// is compared.
 const N_POINTS: usize = 12;
 const N_DIRECTIONS: usize = 16;
-/// Light on a plane without a toy is no less, over that on the receiver.
+/// Smallest light on a plane without a toy, relative to the receiver.
 const LEAST_UNSHADOWED: f64 = 0.05;
 
-/// The light on a receiver, and a toy that stands in it.
+/// The light on a receiver, and a toy in it.
 pub(crate) struct OnPlane<'a> {
     shape: &'a Shape,
     lamps: &'a [Lamp],
     intrinsics: Intrinsics,
     size_px: IVec2,
-    /// Of each channel, over the light at the foot of the toy.
+    /// Factors of each channel, relative to the light at the foot of the toy.
     factors: [Factors; 3],
-    /// Irradiance from each lamp there, up to a factor.
+    /// Irradiance of each lamp at the foot, up to a factor.
     at_foot: Vec<f64>,
 }
 
 impl<'a> OnPlane<'a> {
-    /// In the light on one of the compared receivers.
+    /// The light on one of the compared receivers.
     pub(crate) fn new(
         comparison: &'a Comparison,
         (shape, receivers): (&'a Shape, &[SeenReceiver]),
@@ -57,7 +58,8 @@ impl<'a> OnPlane<'a> {
         }
     }
 
-    /// Frame over plate of pixels, row by row, if they show a plane; none where it is not seen.
+    /// Ratio of frame to plate of pixels, row by row, if they show a plane; `None` if it is not
+    /// visible.
     pub(crate) fn ratios(
         &self,
         raster: &mut Rasterizer,
@@ -121,7 +123,7 @@ impl<'a> OnPlane<'a> {
     }
 }
 
-/// The middle of a lamp in a plane's space, homogeneous.
+/// The centre of a lamp in a plane's space, homogeneous.
 fn middle(lamp: &Lamp, shape: &Shape, plane: &SeenReceiver) -> glam::DVec4 {
     lamp.points(&plane.plane_from_camera, shape.centre, &[DVec2::ZERO])[0]
 }

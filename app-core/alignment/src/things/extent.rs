@@ -1,4 +1,4 @@
-//! How far a thing's plane reaches: the smallest rectangle around what the picture shows of it.
+//! Extent of a thing's plane: the smallest rectangle around its visible part.
 
 use glam::{DMat4, DVec2, DVec3};
 
@@ -6,15 +6,16 @@ use super::grown::Grown;
 use crate::picture::{Level, places};
 use crate::receivers::SeenReceiver;
 
-/// Turns of the rectangle that are tried, over a quarter turn.
+/// Number of turns of the rectangle that are tried, over a quarter turn.
 const N_TURNS: usize = 45;
-/// The part of the points that may lie beyond each side.
+/// Share of the points that may lie beyond each side.
 const BEYOND: f64 = 0.005;
-/// At least that part of the pixels that a rectangle is seen in shows the thing.
+/// Minimum share of the rectangle's pixels that must show the thing.
 const FILLED: f64 = 0.6;
-/// Fewer pixels tell no rectangle.
+/// Minimum number of pixels of a rectangle.
 const LEAST_PIXELS: usize = 100;
-/// A tilted plane whose lowest side is no higher than this part of its highest one goes down to the receiver.
+/// Largest height of a tilted plane's lowest side, relative to its highest, at which it is extended
+/// down to the receiver.
 const LOW: f64 = 0.4;
 
 /// A thing in a level, on a receiver.
@@ -33,8 +34,9 @@ pub(super) struct Extent {
 }
 
 impl Outline<'_> {
-    /// Places on a plane that show the thing's upper side, in metres. Of a level one that are those below which the thing stands on its
-    /// receiver: its sides are seen below its near edge, and show none.
+    /// Places on a plane that show the thing's upper side, in metres. For a level plane these are
+    /// the ones with the thing above its receiver below them: the sides are visible below its near
+    /// edge, and do not count.
     fn places(&self, plane_from_camera: &DMat4, is_level: bool) -> Vec<DVec2> {
         let endless = SeenReceiver::of_size(*plane_from_camera, DVec2::INFINITY);
         let k = &self.level.intrinsics;
@@ -57,7 +59,7 @@ impl Outline<'_> {
             .collect()
     }
 
-    /// The part of the pixels that a plane is seen in that shows the thing.
+    /// Share of a plane's visible pixels that show the thing.
     fn filled(&self, plane: &SeenReceiver) -> f64 {
         let pixels = places(self.level.frame.size_px);
         let seen = pixels.filter(|at| plane.point_at(&self.level.intrinsics, *at).is_some());
@@ -71,7 +73,7 @@ impl Outline<'_> {
 }
 
 impl Extent {
-    /// None where too little is seen, or the thing is no rectangle.
+    /// `None` if too little is visible, or the thing is not rectangular.
     pub(super) fn of(outline: &Outline<'_>, plane_from_camera: &DMat4, is_level: bool) -> Option<Self> {
         let places = outline.places(plane_from_camera, is_level);
         if places.len() < LEAST_PIXELS {
@@ -102,7 +104,8 @@ impl Extent {
         }
     }
 
-    /// With a plane's low side on the receiver, where it comes near to it: what lies beneath that is not seen.
+    /// Extends a plane's low side to the receiver if it comes near: the space beneath is not
+    /// visible.
     fn down_to(self, table: &SeenReceiver, plane_from_camera: &DMat4) -> Self {
         let axis = DVec2::from_angle(self.turn_rad);
         let table_from_plane = table.plane_from_camera * plane_from_camera.inverse();
@@ -132,14 +135,14 @@ impl Extent {
         }
     }
 
-    /// Of an endless plane.
+    /// The plane, without bounds.
     pub(super) fn plane(&self, plane_from_camera: &DMat4) -> SeenReceiver {
         let moved = DMat4::from_rotation_y(self.turn_rad)
             * DMat4::from_translation(-DVec3::new(self.middle.x, 0.0, self.middle.y));
         SeenReceiver::of_size(moved * *plane_from_camera, self.half_m)
     }
 
-    /// Of its middle above a receiver, in metres.
+    /// Height of its centre above a receiver, in metres.
     pub(super) fn height_m(&self, plane_from_camera: &DMat4, table: &SeenReceiver) -> f64 {
         let middle = DVec3::new(self.middle.x, 0.0, self.middle.y);
         let middle = plane_from_camera.inverse().transform_point3(middle);
@@ -147,7 +150,7 @@ impl Extent {
     }
 }
 
-/// The first and the last of some values, but for those beyond.
+/// The first and the last of some values, without the outliers.
 fn ends(mut values: Vec<f64>) -> [f64; 2] {
     values.sort_unstable_by(f64::total_cmp);
     #[allow(

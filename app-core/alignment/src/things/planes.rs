@@ -1,7 +1,8 @@
-//! Planes that things have, such as the top of a book or a ramp: found by the toy's shadow on them.
+//! Planes of things, such as the top of a book or a ramp, detected by the toy's shadow on them.
 //!
-//! A shadow on a plane is the toy flattened onto it, so height and tilt of a plane are searched until the shadow that it would catch is
-//! the one that is seen. What is left then tells whether the thing has a plane there at all: a cup, a cloth or a hand has none.
+//! A shadow on a plane is the toy flattened onto it, so height and tilt of a plane are searched
+//! until its expected shadow agrees with the visible one. The residual then decides whether the
+//! thing has a plane at all: a cup, a cloth or a hand has none.
 
 use glam::{DMat4, DQuat, DVec2, DVec3, IVec2};
 
@@ -16,64 +17,70 @@ use crate::report::PlaneAlignment;
 use crate::shape::Shape;
 use app_scene::scene::{Intrinsics, MAX_RECEIVERS};
 
-/// A thing of fewer pixels of the level tells no plane; of more, so many are looked at.
+/// Minimum number of a thing's pixels in the level for a plane, and the number that is sampled at
+/// most.
 const LEAST_PIXELS: usize = 300;
 const MOST_PIXELS: usize = 2500;
-/// So many pixels lie in the shadow on a level plane that is told, and on a tilted one.
+/// Minimum number of pixels in the shadow on a level plane, and on a tilted one.
 const LEAST_SHADOWED: [usize; 2] = [90, 250];
-/// What is shadowed: a part of the light that is taken.
+/// Share of light that a pixel must lose to count as shadowed.
 const SHADOWED: f32 = 0.25;
-/// Noisier pixels tell nothing, in plates.
+/// Largest noise of a usable pixel, in plates.
 const NOISIEST: f32 = 0.2;
-/// Squared differences, in plates, count no more than that.
+/// Upper limit of a squared difference, in plates.
 const MOST_LOSS: f64 = 0.03;
-/// A plane leaves no more than this of them, and that part of what the receiver below leaves, and of what no shadow at all does.
+/// Largest residual of a plane, absolutely and relative to those of the receiver below and of no
+/// shadow at all.
 const OF_PLANE: f64 = 0.0012;
 const OF_OTHERS: f64 = 0.35;
-/// Where these leave less there is nothing to be explained.
+/// Smallest of these residuals that needs an explanation.
 const LEAST_LEFT: f64 = 3e-4;
-/// A plane that is no farther from a receiver is that one, in metres.
+/// Distance up to which a plane counts as a known receiver, in metres.
 const SAME_M: f64 = 0.012;
-/// The receiver that is nearest to the toy, which stands on it.
+/// Index of the receiver nearest to the toy, on which it stands.
 const GROUND: usize = 0;
-/// A level plane is taken if it leaves no more than so many times what a tilted one does, and that much more.
+/// A level plane is preferred if its residual is at most this many times that of a tilted one, plus
+/// a margin.
 const LEVEL_TIMES: f64 = 1.3;
 const LEVEL_MORE: f64 = 1e-4;
-/// A shadow is no less deep than so many times what is expected, nor deeper; told in so many rounds.
+/// Range of the shadow's depth relative to the expected one, and the number of rounds that estimate
+/// it.
 const DEPTHS: [f64; 2] = [0.6, 1.3];
 const N_ROUNDS: usize = 3;
-/// Heights that are tried, over the toy's radius: the first, the step, and how many.
+/// Tried heights relative to the toy's radius: the first, the step, and their number.
 const HEIGHTS: (f64, f64, usize) = (-0.03, 0.03, 24);
-/// Slopes that are tried, each to so many sides.
+/// Tried slopes, and the number of directions of each.
 const SLOPES: [f64; 2] = [0.1, 0.22];
 const N_SIDES: usize = 8;
-/// No slope is steeper, and no plane reaches as far below the receiver, in metres.
+/// Steepest slope, and largest depth of a plane below the receiver in metres.
 const STEEPEST: f64 = 0.6;
 const BELOW_M: f64 = 0.004;
-/// Starts of the descents, the size of their first steps over the toy's radius, and how many tries each has.
+/// Number of descents, the size of their first steps relative to the toy's radius, and the number
+/// of tries of each.
 const N_STARTS: usize = 2;
 const FIRST_STEP: f64 = 0.05;
 const N_TRIES: usize = 60;
-/// Side of the cells that the toy is merged in, in pixels of the level.
+/// Size of the cells in which the toy's points are merged, in pixels of the level.
 const CELL_PX: f64 = 0.7;
 
-/// A plane with its extent, and what tells it.
+/// A plane with its extent, and its residuals.
 pub(crate) struct FoundPlane {
     pub(crate) plane: SeenReceiver,
-    /// Index of the receiver in whose place it is: one above that which the toy stands on, and not quite where it is listed.
+    /// Index of the receiver that it replaces: one above the toy's own that is listed at a slightly
+    /// different place.
     pub(crate) instead_of: Option<usize>,
     pub(crate) report: PlaneAlignment,
 }
 
 impl FoundPlane {
-    /// Whether its middle is about where a receiver is.
+    /// Whether its centre is near a receiver.
     fn is_near(&self, receiver: &SeenReceiver) -> bool {
         let middle = self.plane.plane_from_camera.inverse().w_axis.truncate();
         receiver.plane_from_camera.transform_point3(middle).y.abs() < SAME_M
     }
 }
 
-/// Planes of the things of a level.
+/// Finds the planes of a level's things.
 pub(super) fn find(
     (shape, receivers): (&Shape, &[SeenReceiver]),
     level: &Level,
@@ -100,7 +107,7 @@ pub(super) fn find(
     planes.collect()
 }
 
-/// The pixels well within a thing, row by row.
+/// The pixels inside a thing, away from its border, row by row.
 fn pixels<'a>(comparison: &'a Comparison, grown: &Grown, thing: usize) -> Vec<&'a Compared> {
     let steps = [IVec2::ZERO, IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
     let is_within = |at: IVec2| steps.iter().all(|step| grown.of_pixel(at + *step) == Some(thing));
@@ -111,7 +118,7 @@ fn pixels<'a>(comparison: &'a Comparison, grown: &Grown, thing: usize) -> Vec<&'
     all
 }
 
-/// The receiver that most pixels are on; none of too few.
+/// The receiver that most pixels are on; `None` for too few pixels.
 fn most_on(pixels: &[&Compared]) -> Option<usize> {
     if pixels.len() < LEAST_PIXELS {
         return None;
@@ -125,7 +132,7 @@ fn most_on(pixels: &[&Compared]) -> Option<usize> {
     (0..counts.len()).max_by_key(|on| counts[*on])
 }
 
-/// A thing's plane: looked for in all of the thing, then in the rectangle of its upper side.
+/// A thing's plane: searched in the whole thing, then in the rectangle of its upper side.
 fn found(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     let raster = &mut Rasterizer::default();
     let first = search.best_plane(raster)?;
@@ -150,14 +157,15 @@ fn found(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     })
 }
 
-/// A plane that may be a thing's.
+/// A candidate for a thing's plane.
 struct Candidate {
     heights: Heights,
     loss: f64,
     is_level: bool,
 }
 
-/// By heights in metres above the receiver: in the thing's middle, and what it rises by along either axis over the thing's size.
+/// A plane as heights in metres above the receiver: at the thing's centre, and the rise along
+/// either axis over the thing's size.
 type Heights = [f64; 3];
 
 /// A search for one thing's plane.
@@ -165,13 +173,13 @@ struct Search<'a> {
     on_plane: OnPlane<'a>,
     table: &'a SeenReceiver,
     intrinsics: Intrinsics,
-    /// One of so many pixels is looked at.
+    /// Sampling stride of the pixels.
     apart: usize,
     pixels: Vec<IVec2>,
     seen: Vec<(Color, f32)>,
-    /// By the receivers that are known.
+    /// Expected colours on the known receivers.
     expected: Vec<Option<Color>>,
-    /// The thing's middle and size on the receiver, in metres.
+    /// The thing's centre and size on the receiver, in metres.
     middle: DVec2,
     size_m: f64,
     radius_m: f64,
@@ -214,7 +222,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The plane that explains the thing best.
+    /// The plane with the smallest residual.
     fn best_plane(&self, raster: &mut Rasterizer) -> Option<Candidate> {
         let (first, step, n) = HEIGHTS;
         let level = (0..n).map(|i| [(first + step * i as f64) * self.radius_m, 0.0, 0.0]);
@@ -233,7 +241,7 @@ impl<'a> Search<'a> {
         self.refined(raster, &level, &tilted)
     }
 
-    /// The best plane down from some level and some tilted ones.
+    /// The best plane after descents from some level and some tilted ones.
     fn refined(
         &self,
         raster: &mut Rasterizer,
@@ -259,7 +267,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The same search among the pixels that show a rectangle.
+    /// The same search among the pixels inside a rectangle.
     fn within(mut self, plane: &SeenReceiver) -> Self {
         let k = self.intrinsics;
         let is_within: Vec<bool> = self
@@ -273,7 +281,8 @@ impl<'a> Search<'a> {
         self
     }
 
-    /// How well a plane is told; none where something else explains the thing about as well.
+    /// The plane, if its residual is small enough; `None` if something else explains the thing
+    /// about as well.
     fn told(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Option<[f64; 2]> {
         let of_receiver = self.loss_of(&self.expected);
         let of_light = self.loss_of(&vec![Some([1.0; 3]); self.seen.len()]);
@@ -285,7 +294,7 @@ impl<'a> Search<'a> {
         (is_told && n_shadowed >= least).then_some([of_receiver, loss])
     }
 
-    /// The best of some, with their losses.
+    /// The best of some planes, with their losses.
     fn best(
         &self,
         raster: &mut Rasterizer,
@@ -309,7 +318,7 @@ impl<'a> Search<'a> {
         SeenReceiver::of_size(plane_from_table * self.table.plane_from_camera, DVec2::INFINITY)
     }
 
-    /// Mean squared difference of what is seen from what a plane would show, in plates.
+    /// Mean squared difference between the picture and the expectation for a plane, in plates.
     fn loss(&self, raster: &mut Rasterizer, heights: &Heights) -> f64 {
         let steepest_m = STEEPEST * self.size_m;
         let rise_m = heights[1].hypot(heights[2]);
@@ -320,7 +329,7 @@ impl<'a> Search<'a> {
         self.loss_of(&expected)
     }
 
-    /// The same of what is expected of each pixel; none where nothing is.
+    /// The same for given expected colours; `None` if there are none.
     fn loss_of(&self, expected: &[Option<Color>]) -> f64 {
         let depth = self.depth(expected);
         let pixels = expected.iter().zip(&self.seen);
@@ -329,7 +338,8 @@ impl<'a> Search<'a> {
         losses.sum::<f64>() / self.seen.len().max(1) as f64
     }
 
-    /// How deep the shadow is over what is expected. Where little of the shadow is seen on the receiver that is not well known.
+    /// Depth of the shadow relative to the expected one, which is uncertain if little of the shadow
+    /// is visible on the receiver.
     fn depth(&self, expected: &[Option<Color>]) -> f64 {
         let mut depth = 1.0;
         for _ in 0..N_ROUNDS {
@@ -363,13 +373,14 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Keeps the values that are marked.
+/// Keeps the marked values.
 fn keep<T>(values: &mut Vec<T>, marks: &[bool]) {
     let mut marks = marks.iter();
     values.retain(|_| marks.next().is_some_and(|is_kept| *is_kept));
 }
 
-/// Squared difference of what is seen from what is expected, of a shadow so much deeper, less that of the noise.
+/// Squared difference between a pixel and its expectation, for a shadow of that depth, less the
+/// squared noise.
 fn square((ratio, noise): &(Color, f32), expected: Color, depth: f64) -> f64 {
     let squares = (0..3).map(|channel| {
         let expected = 1.0 - depth * f64::from(1.0 - expected[channel]);

@@ -1,8 +1,10 @@
-//! The least of a loss of three numbers, of which the first ones are free, by a simplex that walks downhill.
+//! Minimisation of a loss of three numbers, of which the first ones are free, by the downhill
+//! simplex method.
 //!
 //! Source: Nelder and Mead 1965.
 
-/// The best of some tries: its loss, and where. The simplex begins at a start, with steps of a length along each free number.
+/// The best point: its loss, and its numbers. The simplex begins at a start, with steps of a length
+/// along each free number.
 pub(super) fn descend(
     (start, step): ([f64; 3], f64),
     n_free: usize,
