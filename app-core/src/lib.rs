@@ -70,14 +70,14 @@ pub use app_scene::{
     camera_frame, card, gloss, grain, lens, reflection, scene, shadow_style, sharpness, things, toy,
 };
 
-/// The one object that an app holds.
+/// The main object of an app.
 pub mod core {
     pub use app_pipeline::core::{Canvas, Core, CoreError, WarmUp, as_shown};
     pub use app_pipeline::readback::FloatMap;
     pub use app_pipeline::readback::layers::Layers;
 }
 
-/// The device, and textures that a platform lends on it.
+/// The device, and textures that a platform shares with it.
 pub mod gpu {
     pub use app_pipeline::gpu::{
         AdapterChoice, DeviceHandle, GpuError, LentError, LentTextures, ShaderTexts,
@@ -85,7 +85,7 @@ pub mod gpu {
     };
 }
 
-/// One frame in, one report out.
+/// The input and the report of a frame.
 pub mod frame {
     pub use app_pipeline::frame::*;
     pub use app_scene::frame::FrameInput;
@@ -102,7 +102,8 @@ pub use app_session as session;
 #[cfg(feature = "session")]
 pub use app_session::recording;
 
-/// A document of `app-core/doc` as a page of its own, so that its links are checked and the first page stays short.
+/// A document of `app-core/doc` as a separate page, so that its links are checked and the first
+/// page stays short.
 macro_rules! document {
     ($name:ident, $text:literal) => {
         // These definitions win over those of the documents themselves, which are of files.
