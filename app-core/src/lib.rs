@@ -53,15 +53,17 @@
 //! ```
 //!
 //! Where poses come from a tracker, or lights from a person, [`alignment::Aligner`] first corrects them by the picture.
-//! An app that has a device of its own brings it with [`Core::on_device`]; one that shows a window uses
-//! [`Core::on_surface`] and [`Core::present`]. [`Core::warm_up`] compiles on another thread, or in slices.
+//! An app with its own device uses [`Core::on_device`]; one with a window uses [`Core::on_surface`]
+//! and [`Core::present`]. [`Core::warm_up`] compiles on another thread, or in slices.
 //!
-//! [`shadow_style`] makes the shown shadow stronger or weaker, harder or softer than it is. Programs that work on a picture further read it
-//! finer than codes with [`Core::read_light`], and in layers, from the clean plate to the toy with its alpha, with [`Core::read_layers`].
+//! [`shadow_style`] makes the shown shadow stronger or weaker, harder or softer than the real one. For
+//! further processing, [`Core::read_light`] reads the picture with more precision than codes, and
+//! [`Core::read_layers`] in layers, from the clean plate to the toy with its alpha.
 //!
-//! How it works, and in which words, is told in the documents of `app-core/doc`: the [architecture], the [spaces] and units,
-//! the [passes] and the [glossary]; the format of sessions stands in [`session`], that of recordings in [`recording`].
-//! `app-core/examples` has programs on a device of their own, with a loop over poses, and with a scene made of values alone.
+//! The documents of `app-core/doc` explain the [architecture], the [spaces] and units, the [passes]
+//! and the terms of the [glossary]; [`session`] has the format of sessions, and [`recording`] that of
+//! recordings. The programs in `app-core/examples` use a device of their own, a loop over poses, and
+//! a scene made of values alone.
 #![forbid(unsafe_code)]
 
 pub use app_pipeline::{Core, CoreError, governor, ledger, preset, profile, wgpu};

@@ -1,19 +1,19 @@
-//! What the app asks for that takes no more than files and threads, the same on both phones and on a desktop.
+//! Work of the app that needs only files and threads, the same on both phones and on a desktop.
 //!
-//! | command | what is done | what comes of it |
+//! | command | work | result |
 //! | --- | --- | --- |
 //! | `Plate` | on a thread | `Plated` |
 //! | `Search` | on a thread | `Searched` |
 //! | `Align` | on a thread | `Aligned` |
-//! | `SavePhoto` | the picture is read, and written on a thread | `Saved`, and the file for the gallery |
-//! | `Video` | each picture that is drawn goes to a thread, until the video ends | `Saved`, and the file for the gallery |
+//! | `SavePhoto` | read the picture, and write it on a thread | `Saved`, and the file for the gallery |
+//! | `Video` | pass each drawn picture to a thread, until the video ends | `Saved`, and the file for the gallery |
 //! | `Record` | on a thread, until the recording ends | `Recorded` |
-//! | `Share` | the log and the times are written | `Saved`, and the files to hand on |
-//! | `PickToy` | the folder is looked at | `ToyFiles` |
+//! | `Share` | write the log and the times | `Saved`, and the files to share |
+//! | `PickToy` | list the folder | `ToyFiles` |
 //! | `ReadToy` | on a thread | `Toy` |
-//! | `Remember` | written at once | nothing |
+//! | `Remember` | write the text at once | none |
 //!
-//! A thread that panics, or that cannot be started, is told as work that failed.
+//! A thread that panics, or that cannot be started, is reported as failed work.
 
 use std::io;
 use std::path::{Path, PathBuf};
