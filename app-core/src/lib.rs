@@ -52,16 +52,17 @@
 //! }
 //! ```
 //!
-//! Where poses come from a tracker, or lights from a person, [`alignment::Aligner`] first corrects them by the picture.
+//! If poses come from a tracker, or lights from a person, [`alignment::Aligner`] first corrects them
+//! against the picture.
 //! An app with its own device uses [`Core::on_device`]; one with a window uses [`Core::on_surface`]
 //! and [`Core::present`]. [`Core::warm_up`] compiles on another thread, or in slices.
 //!
-//! [`shadow_style`] makes the shown shadow stronger or weaker, harder or softer than the real one. For
-//! further processing, [`Core::read_light`] reads the picture with more precision than codes, and
-//! [`Core::read_layers`] in layers, from the clean plate to the toy with its alpha.
+//! [`shadow_style`] makes the shown shadow stronger or weaker, harder or softer than the real one.
+//! For further processing, [`Core::read_light`] reads the picture with more precision than codes,
+//! and [`Core::read_layers`] in layers, from the clean plate to the toy with its alpha.
 //!
 //! The documents of `app-core/doc` explain the [architecture], the [spaces] and units, the [passes]
-//! and the terms of the [glossary]; [`session`] has the format of sessions, and [`recording`] that of
+//! and the terms of the [glossary]; [`session`] has the format of sessions, [`recording`] that of
 //! recordings. The programs in `app-core/examples` use a device of their own, a loop over poses, and
 //! a scene made of values alone.
 #![forbid(unsafe_code)]
