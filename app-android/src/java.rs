@@ -1,4 +1,4 @@
-//! What only Java can do: the camera's permission, the system's settings, and the pointers that ARCore asks for.
+//! Calls that need Java: the camera's permission, the system's settings, and ARCore's pointers.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -18,22 +18,22 @@ use crate::phone::{Phone, permission};
 use app_shell::guard::guarded;
 
 const CAMERA: &str = "android.permission.CAMERA";
-/// `PackageManager.PERMISSION_GRANTED`.
+/// The constant `PackageManager.PERMISSION_GRANTED`.
 const GRANTED: i32 = 0;
-/// Comes back with an answer that a native activity never hears; the permission is looked at when it resumes.
+/// Code of the answer, which a native activity never receives; the permission is read on resume.
 const REQUEST: i32 = 1;
 
-/// The phone by its activity.
+/// The phone, through its activity.
 pub(crate) struct Activity {
     app: AndroidApp,
     was_asked: bool,
-    /// What bars and cut-outs cover, as Java's own thread has reported last.
+    /// Insets that bars and cut-outs cover, as last reported by Java's thread.
     insets_px: Arc<Mutex<Option<[i32; 4]>>>,
     thermometer: Option<Thermometer>,
 }
 
 impl Activity {
-    /// Of the app that `android_main` was called with.
+    /// The activity of the app that `android_main` was called with.
     pub(crate) fn new(app: AndroidApp) -> Self {
         Self {
             app,
@@ -43,12 +43,13 @@ impl Activity {
         }
     }
 
-    /// What bars and cut-outs cover, at the left, the top, the right and the bottom; none before Android reports it.
+    /// Insets that bars and cut-outs cover, at the left, top, right and bottom; `None` before the
+    /// first report.
     pub(crate) fn insets_px(&self) -> Option<[i32; 4]> {
         *self.insets_px.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Has it reported anew.
+    /// Requests a new report of the insets.
     fn look_at_insets(&self) {
         let (app, told) = (self.app.clone(), Arc::clone(&self.insets_px));
         self.app.run_on_java_main_thread(Box::new(move || {
@@ -59,7 +60,7 @@ impl Activity {
         }));
     }
 
-    /// Lets `act` call Java on the thread that activities live on, and writes to the log where it fails.
+    /// Lets `act` call Java on the activities' thread, and logs a failure.
     fn on_java_thread(&self, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -> Result<()> + Send + 'static) {
         let app = self.app.clone();
         self.app.run_on_java_main_thread(Box::new(move || {
@@ -69,7 +70,7 @@ impl Activity {
         }));
     }
 
-    /// Lets `act` call Java on a thread of its own, which may take its time, and writes to the log where it fails.
+    /// Lets `act` call Java on a separate thread, which may take long, and logs a failure.
     fn on_thread(&self, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -> Result<()> + Send + 'static) {
         let app = self.app.clone();
         let thread = thread::Builder::new().spawn(move || {
@@ -99,12 +100,12 @@ fn with_java<T>(app: &AndroidApp, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -
     })
 }
 
-/// How much larger than usual the person wants letters to be.
+/// Scale of letters that the person has set.
 pub(crate) fn font_scale(app: &AndroidApp) -> f32 {
     with_java(app, display::font_scale).unwrap_or(1.0)
 }
 
-/// Shows a few words over whatever is on the screen, also when the activity is gone: `Toast.makeText(…).show()`.
+/// Shows a short message on the screen, even without the activity: `Toast.makeText(…).show()`.
 pub(crate) fn say(app: &AndroidApp, words: &'static str) {
     let of_java = app.clone();
     app.run_on_java_main_thread(Box::new(move || {
@@ -117,7 +118,7 @@ pub(crate) fn say(app: &AndroidApp, words: &'static str) {
     }));
 }
 
-/// Whether the camera may be used, and whether Android would have a reason for it explained.
+/// Whether the camera may be used, and whether Android recommends an explanation.
 fn permission_of(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<(bool, bool)> {
     let name = env.new_string(CAMERA)?;
     let granted = env.call_method(
@@ -156,7 +157,7 @@ impl JavaHost for Activity {
     fn java(&mut self) -> Java {
         let env = with_java(&self.app, |env, _| Ok(env.get_raw()));
         Java {
-            // Without an environment ARCore answers with an error of its own.
+            // Without an environment ARCore returns its own error.
             env: env.map_or(std::ptr::null_mut(), |env| env.cast()),
             activity: self.app.activity_as_ptr(),
         }
@@ -208,9 +209,9 @@ impl Phone for Activity {
     }
 
     fn rotation(&mut self) -> i32 {
-        // Asked several times a second, as long as there is a window.
+        // This is called several times a second while there is a window.
         self.look_at_insets();
-        // The activity is made for landscape.
+        // The activity's natural orientation is landscape.
         with_java(&self.app, display::rotation).unwrap_or(1)
     }
 

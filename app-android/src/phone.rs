@@ -1,11 +1,11 @@
-//! What the shell asks of the phone beside ARCore and graphics.
+//! The shell's requests to the phone, except for ARCore and graphics.
 
 use std::path::PathBuf;
 
 use app_core::app::{Language, Permission, Thermal};
 use arcore::java::JavaHost;
 
-/// A phone: Android's own, or a test's.
+/// A phone: Android's own, or that of a test.
 pub trait Phone: JavaHost {
     /// Whether the app may use the camera.
     fn permission(&mut self) -> Permission;
@@ -13,32 +13,33 @@ pub trait Phone: JavaHost {
     fn ask_for_camera(&mut self);
     /// Shows Android's settings of this app.
     fn open_settings(&mut self);
-    /// Finishes the activity, as Android does where an app knows of no way back.
+    /// Finishes the activity, as Android does if an app has no way back.
     fn leave(&mut self);
-    /// What the person reads.
+    /// The person's language.
     fn language(&self) -> Language;
-    /// Says it to those who do not see the screen.
+    /// Announces the words to screen readers.
     fn say(&mut self, words: String);
-    /// One short knock.
+    /// Gives one short haptic pulse.
     fn knock(&mut self);
-    /// Keeps the screen on, or lets it go off.
+    /// Keeps the screen on, or lets it turn off.
     fn keep_awake(&mut self, is_awake: bool);
-    /// How hot the phone is, as an `AThermalStatus`; none where Android does not tell.
+    /// The thermal state, as an `AThermalStatus`; `None` if Android does not report it.
     fn thermal_status(&mut self) -> Option<i32>;
-    /// How the display is turned, as `Surface.ROTATION_*`.
+    /// The display's rotation, as `Surface.ROTATION_*`.
     fn rotation(&mut self) -> i32;
-    /// Where files go that people get at, with a computer at least.
+    /// Folder for files that a person can access, at least from a computer.
     fn folder(&self) -> Option<PathBuf>;
-    /// Has the gallery show a copy of a photo or a video.
+    /// Adds a copy of a photo or a video to the gallery.
     fn show_in_gallery(&mut self, file: PathBuf);
-    /// Asks the person what to do with files.
+    /// Opens the share sheet for files.
     fn share(&mut self, files: Vec<PathBuf>);
-    /// Where files go that are the app's own.
+    /// Folder for the app's own files.
     fn own_folder(&self) -> Option<PathBuf>;
 }
 
-/// The camera's permission by what Android says: whether it is granted, whether it was asked for since the app was started,
-/// and whether `shouldShowRequestPermissionRationale`, which is so after a first refusal and no longer after a second.
+/// The camera's permission from Android's answers: whether it is granted, whether it was requested
+/// since the launch, and `shouldShowRequestPermissionRationale`, which is true after a first
+/// refusal and false after a second.
 #[must_use]
 pub fn permission(is_granted: bool, was_asked: bool, may_explain: bool) -> Permission {
     match (is_granted, was_asked, may_explain) {
@@ -49,9 +50,9 @@ pub fn permission(is_granted: bool, was_asked: bool, may_explain: bool) -> Permi
     }
 }
 
-/// How hot the phone is from an `AThermalStatus`, which has seven steps, -1 for an error.
+/// The thermal state from an `AThermalStatus`, which has seven steps, and -1 for an error.
 ///
-/// From "severe" on the system slows down what a person sees; before that only what no one notices.
+/// From "severe" on, the system's throttling is visible to the person; before, it is not.
 #[must_use]
 pub fn thermal(status: i32) -> Thermal {
     match status {

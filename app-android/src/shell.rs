@@ -1,4 +1,5 @@
-//! The shell: what the app asks for is done, and what happens is told. All but Android itself, so that it runs in tests.
+//! The shell: it executes the app's commands and reports events. It contains everything except
+//! Android itself, so that it runs in tests.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -20,31 +21,32 @@ use arcore::tracker::{Geometry, Run};
 
 use crate::phone::{self, Phone};
 
-/// Of the camera, whose pictures a frame is made for each of.
+/// Frame rate of the camera; each of its pictures gives a frame.
 const CAMERA_HZ: u32 = 30;
-/// Google's own words for apps that use ARCore.
+/// The disclosure that Google requires of apps with ARCore.
 const DISCLOSURE: &str = "This application runs on Google Play Services for AR (ARCore), which is provided by Google and governed by the Google Privacy Policy (policies.google.com/privacy).";
-/// Where the size of the camera's pictures is kept, if larger ones do not come.
+/// File with the size of the camera's pictures, if larger ones fail.
 const CAMERA_FILE: &str = "camera.txt";
-/// Time after which the display's turn is looked at anew: half a turn is reported by nothing.
+/// Time between reads of the display's rotation: Android does not report half a turn.
 const TURN: Duration = Duration::from_millis(250);
-/// Time after which heat is looked at anew.
+/// Time between reads of the thermal state.
 const LOOK: Duration = Duration::from_secs(1);
-/// Of videos, the better first.
+/// Formats of videos, in order of preference.
 #[cfg(target_os = "android")]
 const VIDEOS: &[VideoFormat] = &[android_media::video::H264, MOTION_JPEG];
 #[cfg(not(target_os = "android"))]
 const VIDEOS: &[VideoFormat] = &[MOTION_JPEG];
 
-/// The toy that the app comes with: the bundled session's, this project's own.
+/// The toy that is part of the app: that of the bundled session, made by this project.
 ///
 /// # Errors
-/// If it cannot be read.
+///
+/// Fails if it cannot be read.
 pub fn bundled_toy() -> Result<Arc<Toy>, ToyError> {
     Ok(Arc::new(Toy::from_glb("toy.glb", BUNDLED)?))
 }
 
-/// An app and the phone that it runs on.
+/// An app on a phone.
 pub struct Shell<P> {
     live: Live,
     phone: P,
@@ -56,13 +58,13 @@ pub struct Shell<P> {
     size_px: Option<[u32; 2]>,
     pace: Pace,
     start: Instant,
-    /// When heat, and when the display's turn was looked at.
+    /// Times of the last reads of the thermal state and of the display's rotation.
     looked: Option<Instant>,
     turned: Option<Instant>,
 }
 
 impl<P: Phone> Shell<P> {
-    /// A shell that has just been started.
+    /// A shell at its launch.
     pub fn new(mut live: Live, phone: P, feed: Feed) -> Self {
         live.set_clock(record::clock());
         live.set_target_fps(CAMERA_HZ);
@@ -71,7 +73,7 @@ impl<P: Phone> Shell<P> {
             app: concat!("app-android ", env!("CARGO_PKG_VERSION")),
             videos: VIDEOS,
             codec: Arc::new(|| PictureCodec::PHONE),
-            // Android lets an activity that is left go on for minutes.
+            // Android lets an abandoned activity continue for minutes.
             keep_running: || Box::new(()),
         };
         let folders = Folders {
@@ -117,13 +119,14 @@ impl<P: Phone> Shell<P> {
         &self.phone
     }
 
-    /// Tells the app, and does what it asks for.
+    /// Gives an event to the app, and executes its commands.
     pub fn tell(&mut self, event: ShellEvent) {
         let commands = self.live.event(event);
         self.obey(commands);
     }
 
-    /// The activity came to the front, where the camera's permission may have become another, or left it.
+    /// Handles the activity's entry to the foreground, where the camera's permission may have
+    /// changed, or its exit.
     pub fn set_foreground(&mut self, is_foreground: bool) {
         if is_foreground {
             let permission = self.phone.permission();
@@ -134,7 +137,7 @@ impl<P: Phone> Shell<P> {
         self.tell(ShellEvent::Foreground(is_foreground));
     }
 
-    /// There is a window of so many pixels, or none.
+    /// Sets the window's size in pixels; `None` without a window.
     pub fn set_surface(&mut self, size_px: Option<[u32; 2]>) {
         self.size_px = size_px;
         self.follow_display();
@@ -142,7 +145,7 @@ impl<P: Phone> Shell<P> {
         self.tell(ShellEvent::Surface(size_px));
     }
 
-    /// Tells ARCore how the display lies.
+    /// Tells ARCore the display's orientation.
     fn follow_display(&mut self) {
         if let Some(size_px) = self.size_px {
             self.feed.set_display(Geometry {
@@ -152,12 +155,12 @@ impl<P: Phone> Shell<P> {
         }
     }
 
-    /// When pictures are drawn.
+    /// The timing of pictures.
     pub fn pace(&mut self) -> &mut Pace {
         &mut self.pace
     }
 
-    /// The phone's own way back, within the app or out of it.
+    /// The phone's back gesture, within the app or out of it.
     pub fn back(&mut self) {
         self.pace.touched();
         match self.live.back() {
@@ -166,7 +169,7 @@ impl<P: Phone> Shell<P> {
         }
     }
 
-    /// Tells what other threads have done, and the camera's latest frame.
+    /// Reports results of other threads, and the camera's latest frame.
     pub fn tick(&mut self) {
         self.live.begin_picture();
         while let Some(outcome) = self.worker.outcome() {
@@ -194,7 +197,7 @@ impl<P: Phone> Shell<P> {
         }
     }
 
-    /// Draws on the core's surface. A device or surface that is lost is to be brought anew.
+    /// Draws on the core's surface. A lost device or surface must be replaced.
     pub fn present(&mut self, screen: &Screen, time_s: f64) {
         match self.live.present(screen, time_s) {
             Ok(commands) => {
@@ -213,12 +216,12 @@ impl<P: Phone> Shell<P> {
         }
     }
 
-    /// Whether another surface is to be made of the window; asked once.
+    /// Whether the window needs another surface; this resets the request.
     pub fn take_wants_surface(&mut self) -> bool {
         std::mem::take(&mut self.wants_surface)
     }
 
-    /// Whether another core is to be brought; asked once.
+    /// Whether another core is needed; this resets the request.
     pub fn take_wants_device(&mut self) -> bool {
         std::mem::take(&mut self.wants_device)
     }
@@ -227,7 +230,7 @@ impl<P: Phone> Shell<P> {
         event.into_iter().for_each(|event| self.tell(event));
     }
 
-    /// Passes on what came of work.
+    /// Passes on a result of work.
     pub(crate) fn settle(&mut self, outcome: Outcome) {
         match outcome {
             Outcome::Tell(event) => self.tell(event),
@@ -238,7 +241,7 @@ impl<P: Phone> Shell<P> {
         }
     }
 
-    /// Does what the app asks for.
+    /// Executes the app's commands.
     pub(crate) fn obey(&mut self, commands: Vec<ShellCommand>) {
         for command in commands {
             match command {
@@ -275,7 +278,7 @@ impl<P: Phone> Shell<P> {
             PlatformCommand::Announce(_) => self.phone.say(announced(self.live.app())),
             PlatformCommand::Knock => self.phone.knock(),
             PlatformCommand::FrameRate(frames_per_s) => self.pace.set_rate(frames_per_s),
-            // ARCore keeps exposure to itself.
+            // ARCore does not give access to the exposure.
             PlatformCommand::LockExposure(_) | PlatformCommand::Underexpose(_) => {}
         }
     }

@@ -1,4 +1,4 @@
-//! The shell over the fake of ARCore, with an app whose core counts and draws nothing.
+//! The shell over the fake of ARCore, with an app whose core counts the work and draws nothing.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -21,19 +21,19 @@ use crate::input::{BackKey, Finger, Motion, screen, touches};
 use crate::phone::{Phone, permission, thermal};
 use crate::shell::{Shell, bundled_toy};
 
-/// A phone that grants the camera when it is asked for.
+/// A phone that grants the camera on request.
 #[derive(Default)]
 struct Desk {
     allows: bool,
     thermal_status: Option<i32>,
     rotation: i32,
     own: Option<PathBuf>,
-    /// The activity was finished.
+    /// Whether the activity was finished.
     is_left: bool,
-    /// Names of files that were shown in the gallery, and handed on.
+    /// Names of files that were added to the gallery, and shared.
     shown: Vec<String>,
     shared: Vec<String>,
-    /// For those who do not see the screen.
+    /// Announcements to screen readers.
     said: Vec<String>,
     n_knocks: u32,
 }
@@ -126,7 +126,7 @@ fn calls() -> String {
 #[test]
 fn from_the_first_button_to_a_table() {
     world(|world| {
-        // The camera looks straight down on a table half a metre below it.
+        // The camera looks straight down at a table half a metre below it.
         let half = std::f32::consts::FRAC_1_SQRT_2;
         world.pose = [-half, 0.0, 0.0, half, 0.0, 0.5, 0.0];
         world.planes = vec![FakePlane {
@@ -146,7 +146,7 @@ fn from_the_first_button_to_a_table() {
     assert_eq!(calls(), "", "nothing before the person begins");
     shell.tell(ShellEvent::User(UserAction::Begin));
     assert_eq!(shell.live().app().step(), Step::Welcome);
-    // Android's question takes the front for a while.
+    // Android's dialog covers the activity for a while.
     shell.set_foreground(false);
     shell.set_foreground(true);
     assert_eq!(shell.live().app().step(), Step::FindTable);
@@ -237,7 +237,7 @@ fn a_screen_is_measured_in_points_without_what_bars_cover() {
         bottom_px: 0.0,
     };
     assert_eq!(with_bars.insets, insets);
-    // A window that reaches below bars and a cut-out says nothing of them itself.
+    // A window that reaches below bars and a cut-out does not report their sizes itself.
     let edge_to_edge = screen(
         [2400, 1080],
         Some(480),
@@ -258,7 +258,8 @@ fn a_screen_is_measured_in_points_without_what_bars_cover() {
     assert_eq!(unknown.pixels_per_point.to_bits(), 1.0_f64.to_bits());
 }
 
-/// Turns of the loop and pictures in a second of a clock that only sleeping moves on, where drawing takes no time: the worst of displays.
+/// Iterations of the loop and pictures in one second of a clock that advances only during sleep,
+/// with drawing that takes no time: the worst case of a display.
 fn turns_a_second(pace: &mut Pace, camera_hz: u32, touch_hz: u32) -> (u32, u32) {
     let (mut now, end) = (Duration::from_secs(5), Duration::from_secs(6));
     let (mut n_turns, mut n_pictures, mut n_camera, mut n_touches) = (0, 0, 0, 0);
@@ -279,7 +280,7 @@ fn turns_a_second(pace: &mut Pace, camera_hz: u32, touch_hz: u32) -> (u32, u32) 
         }
         let slept = pace.sleep(now);
         assert!(slept > Duration::from_millis(1), "it spins");
-        // An event may wake the loop before.
+        // An event may wake the loop earlier.
         let wake = if touch_hz > 0 {
             Duration::from_secs_f64(1.0 / f64::from(touch_hz))
         } else {
@@ -390,7 +391,7 @@ fn the_manifest_names_the_library_that_cargo_builds() {
     assert!(include_str!("../AndroidManifest.xml").contains(&library_name));
 }
 
-/// Calls of functions that take a callback, without a guard right at its beginning.
+/// Calls of functions that take a callback and do not begin with a guard.
 fn unguarded(source: &str) -> Vec<&str> {
     let takers = [".poll_events(", ".run_on_java_main_thread(", ".spawn(", ".next(|"];
     let calls = takers.iter().flat_map(|taker| source.split(taker).skip(1));

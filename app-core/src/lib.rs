@@ -52,16 +52,19 @@
 //! }
 //! ```
 //!
-//! Where poses come from a tracker, or lights from a person, [`alignment::Aligner`] first corrects them by the picture.
-//! An app that has a device of its own brings it with [`Core::on_device`]; one that shows a window uses
-//! [`Core::on_surface`] and [`Core::present`]. [`Core::warm_up`] compiles on another thread, or in slices.
+//! If poses come from a tracker, or lights from a person, [`alignment::Aligner`] first corrects them
+//! against the picture.
+//! An app with its own device uses [`Core::on_device`]; one with a window uses [`Core::on_surface`]
+//! and [`Core::present`]. [`Core::warm_up`] compiles on another thread, or in slices.
 //!
-//! [`shadow_style`] makes the shown shadow stronger or weaker, harder or softer than it is. Programs that work on a picture further read it
-//! finer than codes with [`Core::read_light`], and in layers, from the clean plate to the toy with its alpha, with [`Core::read_layers`].
+//! [`shadow_style`] makes the shown shadow stronger or weaker, harder or softer than the real one.
+//! For further processing, [`Core::read_light`] reads the picture with more precision than codes,
+//! and [`Core::read_layers`] in layers, from the clean plate to the toy with its alpha.
 //!
-//! How it works, and in which words, is told in the documents of `app-core/doc`: the [architecture], the [spaces] and units,
-//! the [passes] and the [glossary]; the format of sessions stands in [`session`], that of recordings in [`recording`].
-//! `app-core/examples` has programs on a device of their own, with a loop over poses, and with a scene made of values alone.
+//! The documents of `app-core/doc` explain the [architecture], the [spaces] and units, the [passes]
+//! and the terms of the [glossary]; [`session`] has the format of sessions, [`recording`] that of
+//! recordings. The programs in `app-core/examples` use a device of their own, a loop over poses, and
+//! a scene made of values alone.
 #![forbid(unsafe_code)]
 
 pub use app_pipeline::{Core, CoreError, governor, ledger, preset, profile, wgpu};
@@ -70,14 +73,14 @@ pub use app_scene::{
     camera_frame, card, gloss, grain, lens, reflection, scene, shadow_style, sharpness, things, toy,
 };
 
-/// The one object that an app holds.
+/// The main object of an app.
 pub mod core {
     pub use app_pipeline::core::{Canvas, Core, CoreError, WarmUp, as_shown};
     pub use app_pipeline::readback::FloatMap;
     pub use app_pipeline::readback::layers::Layers;
 }
 
-/// The device, and textures that a platform lends on it.
+/// The device, and textures that a platform shares with it.
 pub mod gpu {
     pub use app_pipeline::gpu::{
         AdapterChoice, DeviceHandle, GpuError, LentError, LentTextures, ShaderTexts,
@@ -85,7 +88,7 @@ pub mod gpu {
     };
 }
 
-/// One frame in, one report out.
+/// The input and the report of a frame.
 pub mod frame {
     pub use app_pipeline::frame::*;
     pub use app_scene::frame::FrameInput;
@@ -102,7 +105,8 @@ pub use app_session as session;
 #[cfg(feature = "session")]
 pub use app_session::recording;
 
-/// A document of `app-core/doc` as a page of its own, so that its links are checked and the first page stays short.
+/// A document of `app-core/doc` as a separate page, so that its links are checked and the first
+/// page stays short.
 macro_rules! document {
     ($name:ident, $text:literal) => {
         // These definitions win over those of the documents themselves, which are of files.

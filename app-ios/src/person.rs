@@ -1,4 +1,4 @@
-//! What reaches a person beside the screen: the language they read, words for those who do not see, and knocks.
+//! Output to the person beside the screen, and their language: announcements and haptic pulses.
 
 use app_core::app::Language;
 use objc2::MainThreadMarker;
@@ -7,20 +7,20 @@ use objc2_ui_kit::{
     UIAccessibilityAnnouncementNotification, UIAccessibilityPostNotification, UIImpactFeedbackGenerator,
 };
 
-/// The first of those that the phone is set to.
+/// The first supported language of the phone's list.
 pub(crate) fn language() -> Language {
     let first = NSLocale::preferredLanguages().firstObject();
     first.map_or_else(Language::default, |tag| Language::of_tag(&tag.to_string()))
 }
 
-/// Has VoiceOver say it, if that is on.
+/// Has VoiceOver say the words, if it is on.
 pub(crate) fn say(words: &str) {
     let words = NSString::from_str(words);
     // SAFETY: an announcement takes a string.
     unsafe { UIAccessibilityPostNotification(UIAccessibilityAnnouncementNotification, Some(&words)) };
 }
 
-/// One short knock.
+/// Gives one short haptic pulse.
 pub(crate) fn knock(main_thread: MainThreadMarker) {
     UIImpactFeedbackGenerator::new(main_thread).impactOccurred();
 }

@@ -1,4 +1,4 @@
-//! What the app is told of the phone, and what the phone is asked for by the app.
+//! Events of the phone for the app, and the app's commands to the phone.
 
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -30,7 +30,7 @@ use crate::inbox::{Inbox, Told};
 use crate::person;
 use crate::stage::{Fitted, Stage, StageError};
 
-/// The app's hands.
+/// State of the shell.
 pub(crate) struct Shell {
     main_thread: MainThreadMarker,
     stage: Stage,
@@ -38,26 +38,26 @@ pub(crate) struct Shell {
     inbox: Rc<Inbox>,
     worker: Worker,
     start: Instant,
-    /// As told last.
+    /// The last reported permission.
     permission: Option<Permission>,
     thermal: Option<Thermal>,
     wants_device: bool,
     losses: Losses,
     frames_per_s: u32,
-    /// For the share sheet.
+    /// Files for the share sheet.
     shared: Vec<PathBuf>,
-    /// While the camera is darkened.
+    /// The exposure to restore, while the camera is darkened.
     held_exposure: Option<camera::Exposure>,
-    /// For an app that is about to be made.
+    /// The history for the next app.
     history: Option<LaunchHistory>,
     panics: Panics,
-    /// After a panic, until there is a new app.
+    /// Whether a panic requires a new app.
     begins_anew: bool,
     is_restarted: bool,
 }
 
 impl Shell {
-    /// A shell without an app, which comes with the first fit.
+    /// A shell without an app, which the first fit creates.
     pub(crate) fn new(main_thread: MainThreadMarker, inbox: Rc<Inbox>) -> Self {
         Self {
             main_thread,
@@ -80,15 +80,15 @@ impl Shell {
         }
     }
 
-    /// Lets the app draw on `layer`, and tells it.
+    /// Lets the app draw on `layer`, and reports the surface.
     pub(crate) fn fit(&mut self, layer: &CALayer, size_px: [u32; 2]) -> Result<(), StageError> {
         if self.stage.live().is_none() && self.history.is_none() {
-            // Before a driver is asked for anything.
+            // This precedes every use of a driver.
             self.history = Some(starts::begin(&own_folder(), cfg!(debug_assertions)));
         }
         if self.stage.fit(layer, size_px)? == Fitted::Anew {
             self.lend();
-            // Another app than the one that threads worked for, and that was told.
+            // The new app needs a new worker and new reports.
             self.worker = worker();
             (self.permission, self.thermal) = (None, None);
             if std::mem::take(&mut self.is_restarted) {
@@ -108,13 +108,13 @@ impl Shell {
         Ok(())
     }
 
-    /// The app came to the front.
+    /// The app enters the foreground.
     pub(crate) fn enter_foreground(&mut self) {
         self.inbox.tell(ShellEvent::Foreground(true));
         self.session.enter_foreground();
     }
 
-    /// The app leaves the front: nothing runs and nothing is drawn when this returns.
+    /// The app leaves the foreground: on return nothing runs and nothing is drawn.
     pub(crate) fn enter_background(&mut self) {
         self.inbox.tell(ShellEvent::Foreground(false));
         self.inbox.tell(ShellEvent::Surface(None));
@@ -122,7 +122,7 @@ impl Shell {
         self.stage.suspend();
     }
 
-    /// One picture.
+    /// Draws one picture.
     pub(crate) fn present(&mut self, layer: &CALayer, screen: &Screen) -> Result<(), StageError> {
         self.look();
         self.settle();
@@ -146,7 +146,7 @@ impl Shell {
             Err(error) => {
                 eprintln!("app-ios: {error}");
                 if self.losses.is_of_surface(&error) {
-                    // The next layout or picture makes another on the same device.
+                    // The next layout or picture makes another one on the same device.
                     self.stage.suspend();
                     self.stage.fit(layer, screen.size_px)?;
                 } else {
@@ -158,18 +158,18 @@ impl Shell {
         Ok(())
     }
 
-    /// Pictures a second that the app asks for, or fewer if they take too long.
+    /// Requested pictures per second, or fewer if they take too long.
     pub(crate) fn frames_per_s(&mut self) -> u32 {
         let governed = self.stage.live().and_then(|live| live.frames_per_s());
         governed.map_or(self.frames_per_s, |governed| governed.min(self.frames_per_s))
     }
 
-    /// Follows the screen, as a `UIInterfaceOrientation`.
+    /// Sets the screen's orientation, a `UIInterfaceOrientation`.
     pub(crate) fn set_orientation(&self, orientation: isize) {
         self.session.set_orientation(orientation);
     }
 
-    /// Has ARKit's own guidance shown over the view.
+    /// Shows ARKit's own guidance over the view.
     pub(crate) fn coach_over(&self, view: &UIView) {
         self.session.coach_over(view);
     }
@@ -179,18 +179,18 @@ impl Shell {
         std::mem::take(&mut self.shared)
     }
 
-    /// A panic has left the app half changed.
+    /// Handles a panic, which has left the app in an unknown state.
     pub(crate) fn panicked(&mut self) {
         self.is_restarted = true;
         self.begins_anew = self.panics.begins_anew(self.start.elapsed().as_secs_f64());
     }
 
-    /// Whether a new app is to be made for the one that a panic ended.
+    /// Whether a panic requires a new app.
     pub(crate) fn begins_anew(&self) -> bool {
         self.begins_anew
     }
 
-    /// Drops the app with all it holds.
+    /// Drops the app and everything that it contains.
     pub(crate) fn clear(&mut self) {
         self.session.pause();
         self.session.lend_to(None);
@@ -198,13 +198,13 @@ impl Shell {
         let _ = self.inbox.take();
     }
 
-    /// Has the camera's pictures lent to the app's device.
+    /// Lends the camera's pictures to the app's device.
     fn lend(&mut self) {
         let device = self.stage.live().and_then(|live| live.core_mut().device());
         self.session.lend_to(device);
     }
 
-    /// Tells what has to be looked for, where it changed.
+    /// Reports values that must be polled, if they changed.
     fn look(&mut self) {
         let permission = camera::permission();
         if self.permission.replace(permission) != Some(permission) {
@@ -224,7 +224,7 @@ impl Shell {
         }
     }
 
-    /// Hands over all that was told, until there is no more.
+    /// Processes all events and their commands, until there are no more.
     fn settle(&mut self) {
         loop {
             let told = self.inbox.take();
@@ -308,13 +308,13 @@ impl Shell {
     }
 }
 
-/// Leaves an event for the shell.
+/// Stores an event for the shell.
 fn told_to(inbox: &Rc<Inbox>) -> Rc<dyn Fn(ShellEvent)> {
     let inbox = Rc::clone(inbox);
     Rc::new(move |event| inbox.tell(event))
 }
 
-/// A worker for an app that begins.
+/// A worker for a new app.
 fn worker() -> Worker {
     let platform = Platform {
         app: concat!("app-ios ", env!("CARGO_PKG_VERSION")),
@@ -322,7 +322,7 @@ fn worker() -> Worker {
         codec: Arc::new(jpeg::codec),
         keep_running: hand_on::keep_running,
     };
-    // What Files shows.
+    // The folder that Files displays.
     let documents = PathBuf::from(NSHomeDirectory().to_string()).join("Documents");
     let folders = Folders {
         shared: Some(documents.clone()),
@@ -334,7 +334,7 @@ fn worker() -> Worker {
     worker
 }
 
-/// The folder of what is the app's own; a system makes it with the app's home.
+/// The folder of the app's own files; the system creates it with the app's home.
 fn own_folder() -> PathBuf {
     PathBuf::from(NSHomeDirectory().to_string()).join("Library")
 }

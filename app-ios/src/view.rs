@@ -28,7 +28,7 @@ pub(crate) struct ViewState {
     shell: RefCell<Shell>,
     inbox: Rc<Inbox>,
     in_foreground: Cell<bool>,
-    /// Of the clock.
+    /// Frame rate of the clock.
     frames_per_s: Cell<u32>,
     /// Retains the view, as the view retains it: [`MetalView::retire`] breaks the circle.
     display_link: OnceCell<Retained<CADisplayLink>>,
@@ -65,7 +65,7 @@ define_class!(
                 Ok(())
             });
             if !shared.is_empty() {
-                // The shell is free by now: a sheet may have the view laid out.
+                // The shell is not borrowed now: a sheet may trigger a layout of the view.
                 guarded("a picture", || show_sheet(self, &shared));
             }
         }
@@ -167,7 +167,7 @@ impl MetalView {
         }
     }
 
-    /// One picture, of a new app where a panic ended the one before.
+    /// Draws one picture, with a new app after a panic.
     fn draw(&self, shell: &mut Shell) -> Result<(), StageError> {
         let Some(screen) = self.screen() else {
             return Ok(());
@@ -197,7 +197,7 @@ impl MetalView {
         }
     }
 
-    /// Leaves touches for the app, in pixels of the screen.
+    /// Stores touches for the app, in pixels of the screen.
     fn touch(&self, touches: &NSSet<UITouch>, phase: TouchPhase) {
         let pixels_per_point = self.pixels_per_point();
         for touch in touches {
@@ -216,7 +216,7 @@ impl MetalView {
         unsafe { self.traitCollection().displayScale() }
     }
 
-    /// The screen as the interface has to know it. None before the first layout.
+    /// The screen, as the interface needs it. `None` before the first layout.
     fn screen(&self) -> Option<Screen> {
         let (pixels_per_point, size_points) = (self.pixels_per_point(), self.bounds().size);
         let insets = self.safeAreaInsets();
@@ -238,13 +238,14 @@ impl MetalView {
     fn fit(&self, shell: &mut Shell) -> Result<(), StageError> {
         match self.screen() {
             Some(screen) if self.ivars().in_foreground.get() => shell.fit(&self.layer(), screen.size_px),
-            // In the background, or not laid out yet: layoutSubviews comes back with a size.
+            // The view is in the background or has no layout yet: layoutSubviews will bring a size.
             _ => Ok(()),
         }
     }
 
-    /// Lets `act` work on the shell. After an error the app is dropped, and the next layout or return to the foreground starts a
-    /// new one; after a panic the next picture does, unless one comes after the other. Until then the view keeps its last picture.
+    /// Lets `act` work on the shell. After an error the app is dropped, and the next layout or
+    /// return to the foreground starts a new one; after a panic the next picture does, unless
+    /// panics follow one another. Until then the view keeps its last picture.
     fn run(&self, callback: &str, act: impl FnOnce(&mut Shell) -> Result<(), StageError>) {
         let Ok(mut shell) = self.ivars().shell.try_borrow_mut() else {
             // UIKit laid the view out while the shell was at work; the size is read again at the next layout.

@@ -1,19 +1,19 @@
-//! What the activity's display tells, and a few words over it.
+//! Values of the activity's display, and short messages over it.
 
 use jni::errors::Result;
 use jni::objects::{JObject, JValue};
 use jni::strings::JNIStr;
 use jni::{Env, jni_sig, jni_str};
 
-/// `Toast.LENGTH_LONG`.
+/// The constant `Toast.LENGTH_LONG`.
 const LONG: i32 = 1;
 
-/// A number that a method without arguments returns.
+/// Calls a method without arguments that returns a number.
 fn number(env: &mut Env<'_>, of: &JObject<'_>, method: &JNIStr) -> Result<i32> {
     env.call_method(of, method, jni_sig!("()I"), &[])?.i()
 }
 
-/// `getWindow().getDecorView()`.
+/// Calls `getWindow().getDecorView()`.
 pub(crate) fn decor_view<'local>(env: &mut Env<'local>, activity: &JObject<'_>) -> Result<JObject<'local>> {
     let window = env
         .call_method(
@@ -32,8 +32,8 @@ pub(crate) fn decor_view<'local>(env: &mut Env<'local>, activity: &JObject<'_>) 
     .l()
 }
 
-/// `getWindow().getDecorView().getRootWindowInsets()` and its `getDisplayCutout()`: what bars and cut-outs cover, none while the window
-/// is not shown. Both are there since Android 9.
+/// `getWindow().getDecorView().getRootWindowInsets()` and its `getDisplayCutout()`: insets that
+/// bars and cut-outs cover; `None` while the window is not shown. Both exist since Android 9.
 pub fn covered(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<Option<[i32; 4]>> {
     let view = decor_view(env, activity)?;
     let insets = env
@@ -77,7 +77,7 @@ pub fn covered(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<Option<[i32;
     Ok(Some(covered))
 }
 
-/// `getWindowManager().getDefaultDisplay().getRotation()`.
+/// Calls `getWindowManager().getDefaultDisplay().getRotation()`.
 pub fn rotation(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<i32> {
     let manager = env
         .call_method(
@@ -98,7 +98,8 @@ pub fn rotation(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<i32> {
     number(env, &display, jni_str!("getRotation"))
 }
 
-/// `getResources().getConfiguration().fontScale`. Android makes the activity anew if that changes.
+/// Reads `getResources().getConfiguration().fontScale`. Android recreates the activity if it
+/// changes.
 pub fn font_scale(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<f32> {
     let resources = env
         .call_method(
@@ -120,7 +121,7 @@ pub fn font_scale(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<f32> {
         .f()
 }
 
-/// `Toast.makeText(…).show()`, on the thread that activities live on.
+/// Calls `Toast.makeText(…).show()`, on the activities' thread.
 pub fn toast(env: &mut Env<'_>, activity: &JObject<'_>, words: &str) -> Result<()> {
     let words = env.new_string(words)?;
     let toast = env

@@ -1,5 +1,5 @@
-//! What reaches a person beside the screen: words for those who do not see, and knocks. Both are asked for on the thread that activities
-//! live on.
+//! Output to the person beside the screen: announcements and haptic pulses. Both are requested on
+//! the activities' thread.
 
 use jni::errors::Result;
 use jni::objects::{JObject, JValue};
@@ -7,10 +7,10 @@ use jni::{Env, jni_sig, jni_str};
 
 use super::display::decor_view;
 
-/// `HapticFeedbackConstants.VIRTUAL_KEY`.
+/// The constant `HapticFeedbackConstants.VIRTUAL_KEY`.
 const KNOCK: i32 = 1;
 
-/// Has TalkBack say it, if that is on: `announceForAccessibility`.
+/// Has TalkBack say the words, if it is on: `announceForAccessibility`.
 pub fn say(env: &mut Env<'_>, activity: &JObject<'_>, words: &str) -> Result<()> {
     let view = decor_view(env, activity)?;
     let words = env.new_string(words)?;
@@ -23,7 +23,7 @@ pub fn say(env: &mut Env<'_>, activity: &JObject<'_>, words: &str) -> Result<()>
     Ok(())
 }
 
-/// One short knock, if the person has not switched them off: `performHapticFeedback`.
+/// Gives one short haptic pulse, if the person has not turned them off: `performHapticFeedback`.
 pub fn knock(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<()> {
     let view = decor_view(env, activity)?;
     env.call_method(

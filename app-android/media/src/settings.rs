@@ -6,7 +6,7 @@ use jni::{Env, jni_sig, jni_str};
 
 const DETAILS: &str = "android.settings.APPLICATION_DETAILS_SETTINGS";
 
-/// `startActivity(new Intent(DETAILS, Uri.parse("package:" + getPackageName())))`.
+/// Calls `startActivity(new Intent(DETAILS, Uri.parse("package:" + getPackageName())))`.
 pub fn show(env: &mut Env<'_>, activity: &JObject<'_>) -> Result<()> {
     let scheme = env.new_string("package")?;
     let details = env.new_string(DETAILS)?;

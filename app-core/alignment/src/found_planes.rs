@@ -39,7 +39,7 @@ impl FoundPlanes {
         !self.found.is_empty()
     }
 
-    /// Adds them to a scene, each once.
+    /// Adds the planes to a scene, each once.
     pub(super) fn add_to(&self, scene: &mut Arc<Scene>) {
         for found in &self.found {
             let receivers = &mut Arc::make_mut(scene).receivers;

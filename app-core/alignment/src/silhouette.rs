@@ -1,4 +1,4 @@
-//! What a mesh covers of a camera's picture, to be drawn over it.
+//! Coverage of a camera's picture by a mesh, for drawing over the picture.
 
 use glam::{DVec2, DVec3, UVec2};
 
@@ -6,19 +6,20 @@ use crate::raster::{Rasterizer, project};
 use app_scene::geometry::edges::Faces;
 use app_scene::scene::Intrinsics;
 
-/// How much of each place a mesh covers, over the rectangle of the picture that it is seen in.
+/// Coverage by a mesh, over the rectangle of the picture that contains it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Silhouette {
     /// Columns and rows.
     pub size: [u32; 2],
     /// Upper left and lower right corner of the rectangle, in pixels of the picture.
     pub corners_px: [DVec2; 2],
-    /// 0 to 255 for each place, rows from the top.
+    /// 0 to 255 for each cell, rows from the top.
     pub coverage: Vec<u8>,
 }
 
 impl Silhouette {
-    /// Of faces whose points are in camera space, at most so many places along the picture's longer side; none beside the picture.
+    /// Coverage by faces whose points are in camera space, with at most that many cells along the
+    /// picture's longer side; `None` if they are out of the picture.
     pub fn of(
         points: impl IntoIterator<Item = DVec3>,
         faces: &Faces,

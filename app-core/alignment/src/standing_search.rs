@@ -1,8 +1,10 @@
-//! Search for a toy that was put on a known table, from twelve turns, in steps: what is best so far is known after each of them.
+//! Search for a toy that was put on a known table, from twelve turns, in steps. The best pose so
+//! far is available after each step.
 //!
-//! The plane tells how large the toy is wherever it stands, so a tiny picture suffices to find the best place of each turn
-//! (`pose::standing_guesses`). The best of these are followed to the outline, and those that meet it are refined and told apart by
-//! their colours, as [`find_toy`](crate::find_toy) does without a table.
+//! The plane determines the toy's size at every place, so a tiny picture suffices to find the best
+//! place of each turn (`pose::standing_guesses`). The best of these are followed to the outline,
+//! and those that match it are refined and distinguished by their colours, as
+//! [`find_toy`](crate::find_toy) does without a table.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -19,33 +21,37 @@ use crate::toy_search::{Followed, Search, told_apart};
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 
-/// Turns about the table's normal that are started from.
+/// Number of starting turns about the table's normal.
 const N_TURNS: u32 = 12;
-/// Of guesses that a plate ranks, those that are followed to the outline.
+/// Number of guesses, ranked by a plate, that are followed to the outline.
 const N_FOLLOWED: usize = 8;
-/// Poses that are refined, at most.
+/// Maximum number of refined poses.
 const N_REFINED: usize = 3;
-/// A pose whose outline is farther from the picture's, in pixels, is not refined.
+/// Largest distance between the outlines of a pose and the picture, in pixels, at which the pose is
+/// refined.
 const MOST_REFINED_PX: f64 = 2.0;
-/// Of poses that guesses led to, that many of one pose are enough if their outline is that near, in pixels.
+/// Following ends once that many guesses lead to the same pose with an outline within that
+/// distance, in pixels.
 const N_AGREED: usize = 2;
 const AGREED_PX: f64 = 0.6;
-/// A speck that takes a smaller part of the picture is no toy.
+/// Smallest share of the picture that can be a toy.
 const LEAST_SHARE: f64 = 0.002;
 
 /// Something in a picture that its plate does not show.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Newcomer {
-    /// Where its middle is seen on the first receiver, in the world.
+    /// Its centre on the first receiver, in the world.
     pub at: DVec3,
-    /// The part of the picture that it takes, with its shadow.
+    /// Share of the picture that it covers, with its shadow.
     pub share: f64,
 }
 
 impl Newcomer {
-    /// What is new in a picture: the largest of all that does not reach the picture's border, as an arm does. None without a plate.
+    /// The largest new region of a picture that does not reach the picture's border, as an arm
+    /// does; `None` without a plate.
     ///
     /// # Errors
+    ///
     /// As [`Aligner::align`](crate::Aligner::align).
     pub fn of(scene: &Scene, input: &FrameInput) -> Result<Option<Self>, AlignError> {
         check(scene, input)?;
@@ -66,7 +72,7 @@ impl Newcomer {
     }
 }
 
-/// Where a pixel shows the first receiver, in the world; none above its horizon.
+/// Intersection of a pixel's ray with the first receiver, in the world; `None` above its horizon.
 fn on_receiver(scene: &Scene, input: &FrameInput, pixel: DVec2) -> Option<DVec3> {
     let k = &input.camera.intrinsics;
     let ray = DVec3::new(
@@ -85,7 +91,7 @@ fn on_receiver(scene: &Scene, input: &FrameInput, pixel: DVec2) -> Option<DVec3>
     (height > 0.0 && slope < 0.0).then(|| eye - height / slope * ray)
 }
 
-/// Groups of neighbouring pixels that differ from the plate, but for those at the border.
+/// Groups of neighbouring pixels that differ from the plate and do not touch the border.
 fn within(level: &Level) -> Vec<Vec<IVec2>> {
     let size_px = level.frame.size_px;
     let mut is_open = vec![false; (size_px.x * size_px.y) as usize];
@@ -112,23 +118,24 @@ fn within(level: &Level) -> Vec<Vec<IVec2>> {
     groups
 }
 
-/// A pose that the toy may have.
+/// A possible pose of the toy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandingPose {
-    /// From object space to world.
+    /// Transform from object space to world.
     pub world_from_object: DMat4,
-    /// Root mean square distance of the outline, in pixels; none for a guess that was not followed yet.
+    /// Root mean square distance of the outline, in pixels; `None` for a guess that was not
+    /// followed yet.
     pub outline_px: Option<f64>,
 }
 
-/// What is done next.
+/// The next step.
 #[derive(Debug)]
 enum Stage {
     Guess,
     Register,
-    /// Guesses that wait, the best last.
+    /// Remaining guesses, the best last.
     Follow(Vec<DMat4>),
-    /// Poses that wait, the best last.
+    /// Remaining poses, the best last.
     Refine(Vec<Followed>),
     Done,
 }
@@ -138,7 +145,7 @@ pub struct StandingSearch {
     scene: Arc<Scene>,
     input: FrameInput,
     stage: Stage,
-    /// Once the first guesses are made.
+    /// The search, once the first guesses are made.
     search: Option<Search>,
     guesses: Vec<DMat4>,
     followed: Vec<Followed>,
@@ -147,8 +154,8 @@ pub struct StandingSearch {
 }
 
 impl StandingSearch {
-    /// A search that begins. `input.world_from_object` stands on the first receiver, in any turn: at the toy's place where no plate shows
-    /// what is new, and anywhere else beside a plate.
+    /// Begins a search. `input.world_from_object` stands on the first receiver, in any turn: at the
+    /// toy's place if there is no plate, and anywhere if there is one.
     #[must_use]
     pub fn new(scene: Arc<Scene>, input: FrameInput) -> Self {
         Self {
@@ -163,22 +170,23 @@ impl StandingSearch {
         }
     }
 
-    /// The best that is known; none before the first step.
+    /// The best pose so far; `None` before the first step.
     #[must_use]
     pub fn best(&self) -> Option<StandingPose> {
         self.best
     }
 
-    /// Whether there is nothing more to be done.
+    /// Whether the search has ended.
     #[must_use]
     pub fn is_done(&self) -> bool {
         matches!(self.stage, Stage::Done)
     }
 
-    /// One step.
+    /// Makes one step.
     ///
     /// # Errors
-    /// As [`Aligner::align`](crate::Aligner::align): the search is at its end then.
+    ///
+    /// As [`Aligner::align`](crate::Aligner::align). The search has then ended.
     pub fn step(&mut self) -> Result<(), AlignError> {
         self.stage = match std::mem::replace(&mut self.stage, Stage::Done) {
             Stage::Guess => self.guess()?,
@@ -222,7 +230,7 @@ impl StandingSearch {
         Ok(Stage::Register)
     }
 
-    /// All turns where the toy is given, that of the input first.
+    /// All turns at the given place, starting with that of the input.
     fn turned_in_place(&self) -> Vec<DMat4> {
         let given = self.input.world_from_object;
         let up = self.scene.receivers.first();
@@ -248,7 +256,7 @@ impl StandingSearch {
         let (camera, _) = corrected(&self.input.camera, found);
         if camera != self.input.camera {
             let moved = camera.world_from_camera * self.input.camera.world_from_camera.inverse();
-            // Guesses were made in the picture.
+            // Guesses were made before the camera was corrected.
             for guess in &mut self.guesses {
                 *guess = moved * *guess;
             }
@@ -293,7 +301,7 @@ impl StandingSearch {
         Ok(Stage::Follow(waiting))
     }
 
-    /// Different poses, the nearest to the outline last.
+    /// Distinct poses, the nearest to the outline last.
     fn end_following(&mut self) -> Stage {
         let Some(search) = &self.search else {
             return Stage::Done;

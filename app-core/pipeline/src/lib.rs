@@ -22,7 +22,7 @@ pub use wgpu;
 
 use gpu::shader::{Mirrors, Shader};
 
-/// What the host shares of the parts that shaders import.
+/// Host declarations of the parts that shaders import.
 const SHARED: &[&Mirrors] = &[
     &baseline::uniform::BASELINE,
     &model::capture::appearance::SOURCE,
@@ -40,7 +40,7 @@ const SHARED: &[&Mirrors] = &[
     &passes::pictures::PLANES,
 ];
 
-/// What the host shares of a shader: of the parts that it imports, and of its own file.
+/// Host declarations of a shader: those of the parts that it imports, and those of its own file.
 #[must_use]
 pub fn mirrors(shader: &'static Shader) -> Vec<&'static Mirrors> {
     let imports = shader.imports();

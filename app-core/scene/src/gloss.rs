@@ -1,28 +1,30 @@
-//! How glossy the toy is: its specular reflection, beside the diffuse one that its base colour describes.
+//! Gloss of the toy: its specular reflection, in addition to the diffuse one of its base colour.
 
 use std::ops::RangeInclusive;
 
 use crate::scene::{InputError, check};
 
-/// Materials that have a strength of their own; all later ones share the last.
+/// Number of materials that have a strength of their own; all later ones share the last.
 pub const N_GLOSSES: usize = 8;
-/// Of a mirror, which is hardly one lobe, to a matt surface.
+/// Range from a mirror, which is hardly one lobe, to a matt surface.
 const ROUGHNESS: RangeInclusive<f64> = 0.01..=1.0;
-/// To a mirror: smooth plastic reflects a twenty-fifth.
+/// Range from a matt surface to a mirror: smooth plastic, with strength 1, reflects a twenty-fifth.
 const STRENGTH: RangeInclusive<f64> = 0.0..=25.0;
-/// Roughness below which a toy is a mirror to what stands around it, of which only the lights are known.
+/// Roughness below which a toy mirrors its surroundings, of which only the lights are known.
 const MIRROR_ROUGHNESS: f32 = 0.03;
-/// Strength from which on the surface is no plastic or lacquer.
+/// Strength above which the surface is neither plastic nor lacquer.
 const METAL_STRENGTH: f32 = 2.5;
 
 /// One lobe of specular reflection.
 ///
-/// What reflects is the light that the fit knows from the diffuse reflection, so two kinds of numbers are enough.
+/// It reflects the light that the fit estimates from the diffuse reflection, so two kinds of
+/// numbers suffice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gloss {
     /// Roughness of the surface: the root mean square slope of its facets, times the square root of 2.
     pub roughness: f32,
-    /// Of each material, as the toy's file lists them: reflectance over that of a smooth dielectric of refractive index 1.5. 0 is matt.
+    /// Strength of each material, in the order of the toy's file: reflectance relative to that of a
+    /// smooth dielectric of refractive index 1.5. 0 is matt.
     pub strengths: [f32; N_GLOSSES],
 }
 
@@ -33,7 +35,7 @@ impl Gloss {
         strengths: [0.0; N_GLOSSES],
     };
 
-    /// Whether all of the toy is matt.
+    /// Whether the whole toy is matt.
     #[must_use]
     pub fn is_none(&self) -> bool {
         self.strongest() == 0.0
@@ -45,7 +47,7 @@ impl Gloss {
         self.strengths.iter().copied().fold(0.0, f32::max)
     }
 
-    /// Whether a few lights and an even sky are not all that such a toy visibly reflects.
+    /// Whether such a toy visibly reflects more than a few lights and an even sky.
     #[must_use]
     pub fn is_beyond_model(&self) -> bool {
         let strongest = self.strongest();

@@ -1,39 +1,43 @@
-//! How a glossy receiver reflects: its surroundings, which its plate shows as well, and the toy in their place.
+//! Reflection of a glossy receiver: its surroundings, which its plate shows as well, and the toy in
+//! front of them.
 //!
-//! Source: the lobe is that of Beckmann and Spizzichino 1963, sampled by its slopes; its strength by angle is Karis' fit of a rough
-//! dielectric's reflectance (2014, "Physically Based Shading on Mobile").
+//! Source: the lobe is that of Beckmann and Spizzichino 1963, sampled by its slopes; its strength
+//! by angle is Karis' fit of a rough dielectric's reflectance (2014, "Physically Based Shading on
+//! Mobile").
 
 use glam::{DVec3, DVec4};
 
 use crate::scene::{FieldError, InputError};
 
-/// Eyes behind the receiver that an image of the toy is drawn from.
+/// Number of eyes behind the receiver from which an image of the toy is drawn.
 pub const N_MIRRORED_EYES: usize = 32;
-/// Roughness of the smoothest and of the roughest receiver: no reflection of a rougher one is told from its own colour.
+/// Roughness of the smoothest and of the roughest receiver: the reflection of a rougher one is
+/// indistinguishable from its own colour.
 pub const ROUGHNESS: std::ops::RangeInclusive<f64> = 0.01..=1.0;
-/// Reflectance of a dielectric that is looked at from above.
+/// Reflectance of a dielectric at normal incidence.
 const FROM_ABOVE: f64 = 0.04;
-/// No reflected ray is lower, as a sine.
+/// Sine of the lowest reflected ray.
 const LOWEST: f64 = 0.02;
-/// Most light that a receiver reflects the surroundings of, over white.
+/// Largest light of the surroundings, relative to white.
 const MOST_LIGHT: f32 = 1e3;
 
-/// How the receiver that the toy stands on reflects.
+/// Reflection of the receiver below the toy.
 ///
-/// It shows its own colour in the light that falls on it, and `reflectance` times what it reflects: the surroundings, and in
-/// the part that the toy hides of them the toy.
+/// The receiver shows its own colour in the incident light, plus `reflectance` times the reflected
+/// light: that of the surroundings, or of the toy if it hides them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflection {
     /// Width of the lobe, as Beckmann's alpha: the root of twice the variance of its slopes.
     pub roughness: f64,
-    /// Light of the surroundings in linear light, at the exposure of the plates.
+    /// Linear light of the surroundings, at the exposure of the plates.
     pub surroundings: [f32; 3],
-    /// What the toy's light is above it: below 0 where the toy is darker.
+    /// Light of the toy less that of the surroundings; negative if the toy is darker.
     pub toy_above_surroundings: [f32; 3],
 }
 
 impl Reflection {
-    /// Part of the light that is reflected towards an eye at the angle of this cosine to the receiver's normal.
+    /// Share of the light that is reflected towards an eye, for the cosine between its direction
+    /// and the receiver's normal.
     #[must_use]
     pub fn reflectance(&self, cosine: f64) -> f64 {
         let roughness = self.roughness.sqrt();
@@ -44,9 +48,10 @@ impl Reflection {
         FROM_ABOVE * (z - 1.04 * grazing) + w + 1.04 * grazing
     }
 
-    /// Mirror images of an eye that looks at a foot on the plane y = 0, one for each slope of the lobe: lines from one of them to a
-    /// point meet the plane where that point is seen reflected. Each is homogeneous with w = -1, so that it flattens what is above the
-    /// plane as a light above it does.
+    /// Mirror images of an eye that looks at a foot on the plane y = 0, one for each slope of the
+    /// lobe: the line from one of them to a point meets the plane where the reflected point is
+    /// visible. Each is homogeneous with w = -1, so that it projects points above the plane in the
+    /// same way as a light above it does.
     #[must_use]
     pub fn mirrored_eyes(&self, eye: DVec3, foot: DVec3) -> Vec<DVec4> {
         let to_eye = eye - foot;
@@ -64,7 +69,7 @@ impl Reflection {
     /// Validates the values.
     pub fn check(&self, field: &str) -> Result<(), InputError> {
         let range = |name: &str, value: f64, min: f64, max: f64| {
-            // Written so that what is no number is refused.
+            // The form of this condition refuses NaN.
             if (min..=max).contains(&value) {
                 return Ok(());
             }
@@ -84,7 +89,7 @@ impl Reflection {
     }
 }
 
-/// Normal of one of the lobe's slopes, all equally likely.
+/// Normal of one of the lobe's slopes, which are all equally likely.
 fn slope_normal(roughness: f64, index: usize) -> DVec3 {
     let golden_angle_rad = std::f64::consts::PI * (3.0 - 5f64.sqrt());
     let part = (index as f64 + 0.5) / N_MIRRORED_EYES as f64;

@@ -1,4 +1,4 @@
-//! Toys' files in the folder that people get at.
+//! Toys' files in the folder that the person can access.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -8,11 +8,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use app_core::app::ShellEvent;
 use app_core::toy::Toy;
 
-/// File of the toy that the app comes with: the bundled session's, this project's own.
+/// File of the toy that is part of the app: that of the bundled session, made by this project.
 pub const BUNDLED: &[u8] = include_bytes!("../../../tests/sessions/llama/toy.glb");
-/// What it is called in the list.
+/// Its name in the list.
 const BUNDLED_NAME: &str = "Llama";
-/// A file is not larger: so much is held twice while it is read.
+/// Largest size of a file: the memory holds it twice while it is read.
 const MAX_BYTES: u64 = 64 << 20;
 
 /// The file of the toy that is shown, for recordings of it.
@@ -26,7 +26,7 @@ impl Default for ToyFile {
 }
 
 impl ToyFile {
-    /// Of that file.
+    /// The toy file with these bytes.
     #[must_use]
     pub fn of(file: Arc<[u8]>) -> Self {
         Self(Arc::new(Mutex::new(file)))
@@ -38,7 +38,7 @@ impl ToyFile {
         Arc::clone(&self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Reads another toy: its file is this one's from then on, unless it is refused.
+    /// Reads another toy. Its file replaces this one, unless it is refused.
     #[must_use]
     pub fn read(&self, folder: &Path, name: &str) -> ShellEvent {
         let read = bytes_of(folder, name).and_then(|bytes| {
@@ -50,7 +50,7 @@ impl ToyFile {
     }
 }
 
-/// What a person can choose from: the bundled toy, and the files of the folder in the order of their names.
+/// Names of the available toys: the bundled one, and the files of the folder in alphabetical order.
 #[must_use]
 pub fn list(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
@@ -63,12 +63,13 @@ pub fn list(folder: &Path) -> Vec<String> {
 
 fn is_toy(name: &str) -> bool {
     let extension = Path::new(name).extension();
-    // USDZ is refused with the way from there to a toy.
+    // The refusal of USDZ explains how to convert it.
     let known = ["glb", "usdz"];
     extension.is_some_and(|extension| known.iter().any(|known| extension.eq_ignore_ascii_case(known)))
 }
 
-/// The scan beside a toy's file, by which a platform recognises the toy itself: of the same name, `.arobject`.
+/// The scan beside a toy's file, by which a platform recognises the toy: it has the same name and
+/// the extension `.arobject`.
 #[must_use]
 pub fn scan_beside(folder: &Path, name: &str) -> Option<PathBuf> {
     let scan = folder.join(name).with_extension("arobject");

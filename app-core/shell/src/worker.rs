@@ -1,19 +1,19 @@
-//! What the app asks for that takes no more than files and threads, the same on both phones and on a desktop.
+//! Work of the app that needs only files and threads, the same on both phones and on a desktop.
 //!
-//! | command | what is done | what comes of it |
+//! | command | work | result |
 //! | --- | --- | --- |
 //! | `Plate` | on a thread | `Plated` |
 //! | `Search` | on a thread | `Searched` |
 //! | `Align` | on a thread | `Aligned` |
-//! | `SavePhoto` | the picture is read, and written on a thread | `Saved`, and the file for the gallery |
-//! | `Video` | each picture that is drawn goes to a thread, until the video ends | `Saved`, and the file for the gallery |
+//! | `SavePhoto` | read the picture, and write it on a thread | `Saved`, and the file for the gallery |
+//! | `Video` | pass each drawn picture to a thread, until the video ends | `Saved`, and the file for the gallery |
 //! | `Record` | on a thread, until the recording ends | `Recorded` |
-//! | `Share` | the log and the times are written | `Saved`, and the files to hand on |
-//! | `PickToy` | the folder is looked at | `ToyFiles` |
+//! | `Share` | write the log and the times | `Saved`, and the files to share |
+//! | `PickToy` | list the folder | `ToyFiles` |
 //! | `ReadToy` | on a thread | `Toy` |
-//! | `Remember` | written at once | nothing |
+//! | `Remember` | write the text at once | none |
 //!
-//! A thread that panics, or that cannot be started, is told as work that failed.
+//! A thread that panics, or that cannot be started, is reported as failed work.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -32,55 +32,57 @@ use crate::toys::{self, ToyFile};
 use crate::video::{Video, VideoFormat};
 use crate::{pipelines, record, save, starts};
 
-/// Time after which free space is looked at anew.
+/// Time between two checks of the free space.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// Time after which a log that has grown is written anew.
+/// Time between two writes of a log that has grown.
 const WRITE_LOG: Duration = Duration::from_secs(2);
 
-/// What differs from shell to shell.
+/// Differences between shells.
 #[derive(Clone)]
 pub struct Platform {
-    /// The app with its version, as recordings name it.
+    /// The app with its version, for recordings.
     pub app: &'static str,
-    /// Of videos, the better first.
+    /// Formats of videos, in order of preference.
     pub videos: &'static [VideoFormat],
     /// Encodes the pictures of recordings.
     pub codec: Arc<dyn Fn() -> PictureCodec + Send + Sync>,
-    /// Keeps the app from being suspended until what is returned is dropped: a video has to be made whole.
+    /// Keeps the app from being suspended until the returned value is dropped, so that a video is
+    /// complete.
     pub keep_running: fn() -> Box<dyn Send>,
 }
 
-/// When work is done.
+/// Timing of work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// While the app goes on.
+    /// Work runs while the app goes on.
     Live,
-    /// The same in each run: alignments wait for [`Worker::align_waiting`], the app waits for whatever ends by itself, and files are
-    /// numbered in place of dated.
+    /// The same in each run: alignments wait for [`Worker::align_waiting`], the app waits for work
+    /// that ends without a command, and files have numbers in place of dates.
     Repeatable,
 }
 
-/// What comes of work.
+/// A result of work.
 #[derive(Debug)]
 pub enum Outcome {
-    /// The app is to be told.
+    /// An event for the app.
     Tell(ShellEvent),
-    /// A photo or a video that the phone's gallery can have a copy of.
+    /// A photo or a video that can be copied to the phone's gallery.
     Written(PathBuf),
-    /// Files that the person wants to hand on.
+    /// Files that the person shares.
     Share(Vec<PathBuf>),
-    /// Another toy is shown: the scan beside its file, by which a platform that can may recognise it; none where there is none.
+    /// Another toy is shown: the scan beside its file, by which a capable platform recognises it;
+    /// `None` if there is none.
     Scan(Option<PathBuf>),
 }
 
-/// Does the work.
+/// Executes the work.
 pub struct Worker {
     platform: Platform,
     folders: Folders,
     pace: Pace,
     toy_file: ToyFile,
-    /// Alignments that wait.
+    /// Alignments that wait for their run.
     waiting: Vec<AlignJob>,
     video: Option<Video>,
     /// The thread that writes the latest recording, and its file.
@@ -88,16 +90,16 @@ pub struct Worker {
     recorded: Option<PathBuf>,
     n_files: u128,
     outcomes: (Sender<Outcome>, Receiver<Outcome>),
-    /// When free space was looked at.
+    /// Time of the last check of the free space.
     looked: Option<Instant>,
-    /// How often all was compiled when the driver's pipelines were kept last.
+    /// Number of complete compilations at the time when the driver's pipelines were last stored.
     n_warm_ups: u32,
-    /// When the log was written, and how many lines it had.
+    /// Time at which the log was written, and its number of lines.
     logged: Option<(Instant, u64)>,
 }
 
 impl Worker {
-    /// A worker that was not asked for anything yet.
+    /// A worker without any work.
     #[must_use]
     pub fn new(platform: Platform, folders: Folders) -> Self {
         Self {
@@ -117,7 +119,7 @@ impl Worker {
         }
     }
 
-    /// At another pace, with another toy's file than the bundled one.
+    /// Sets the timing and the toy's file.
     #[must_use]
     pub fn with(self, pace: Pace, toy_file: Arc<[u8]>) -> Self {
         let toy_file = ToyFile::of(toy_file);
@@ -128,7 +130,7 @@ impl Worker {
         }
     }
 
-    /// Does what a command asks for.
+    /// Executes a command.
     pub fn obey(&mut self, live: &Live, command: WorkCommand) {
         match command {
             WorkCommand::Plate(job) => self.run("plate", ShellEvent::Plated(None), move |_| {
@@ -157,14 +159,14 @@ impl Worker {
         }
     }
 
-    /// A log of an earlier start is no longer that of this one: it is put aside under another name.
+    /// Renames the log of an earlier launch.
     pub fn begin_log(&self) {
         if let Some(folder) = &self.folders.shared {
             record::put_log_aside(folder);
         }
     }
 
-    /// Runs the alignments that wait.
+    /// Runs the waiting alignments.
     pub fn align_waiting(&mut self) {
         let waiting = std::mem::take(&mut self.waiting);
         waiting.into_iter().for_each(|job| self.align(job));
@@ -183,13 +185,13 @@ impl Worker {
         self.run("toy", ShellEvent::Toy(Err(died)), read);
     }
 
-    /// Waits until a recording that was ended is written.
+    /// Waits until an ended recording is written.
     pub fn wait_for_recording(&mut self) {
-        // A thread that panicked has told so.
+        // A thread that panicked has reported that.
         let _ = self.recording.take().map(JoinHandle::join);
     }
 
-    /// Takes the picture that was just drawn, for a video.
+    /// Adds the picture that was just drawn to a video.
     pub fn drawn(&mut self, live: &Live, time_s: f64) {
         self.keep_pipelines(live);
         self.keep_log(live);
@@ -201,7 +203,7 @@ impl Worker {
         }
     }
 
-    /// What has come of work since it was asked for last, and what is free where files go.
+    /// The next result of work, or the free space.
     #[must_use]
     pub fn outcome(&mut self) -> Option<Outcome> {
         if self.looked.is_none_or(|looked| looked.elapsed() >= LOOK) {
@@ -215,7 +217,7 @@ impl Worker {
         self.outcomes.1.try_recv().ok()
     }
 
-    /// Keeps what the driver has compiled, once all of it is.
+    /// Stores the driver's compiled pipelines once they are complete.
     fn keep_pipelines(&mut self, live: &Live) {
         let (Some(own), true) = (&self.folders.own, live.n_warm_ups() != self.n_warm_ups) else {
             return;
@@ -239,7 +241,8 @@ impl Worker {
         }
     }
 
-    /// Writes the log where people get at it while the app runs: whoever looks for a fault need not ask the app for it.
+    /// Writes the log to the accessible folder while the app runs, so that it is available without
+    /// an export.
     fn keep_log(&mut self, live: &Live) {
         let n_lines = live.app().log().n_lines();
         let is_due = self
@@ -256,7 +259,7 @@ impl Worker {
         send(&self.outcomes.0, Outcome::Tell(event));
     }
 
-    /// The path of a file that is about to be made, but for its extension; none without a folder.
+    /// The path of a new file without its extension; `None` without a folder.
     fn stem(&mut self, what: &str) -> Option<PathBuf> {
         self.n_files += 1;
         let number = match self.pace {
@@ -347,7 +350,8 @@ impl Worker {
         }
     }
 
-    /// Runs `work`, which ends by itself, on a thread and tells what it comes to, or `otherwise` where it comes to nothing.
+    /// Runs `work`, which ends without a command, on a thread, and reports its result, or
+    /// `otherwise` if there is none.
     fn run(
         &self,
         name: &str,
@@ -356,12 +360,12 @@ impl Worker {
     ) {
         let thread = self.spawn(name, otherwise, work);
         if self.pace == Pace::Repeatable {
-            // A thread that panicked has told so.
+            // A thread that panicked has reported that.
             let _ = thread.map(JoinHandle::join);
         }
     }
 
-    /// The same for work that ends when it is told to.
+    /// The same for work that ends on command.
     fn spawn(
         &self,
         name: &str,
@@ -371,7 +375,7 @@ impl Worker {
         let outcomes = self.outcomes.0.clone();
         let (hand_over, handed_over) = channel();
         let begun = thread::Builder::new().name(name.to_owned()).spawn(move || {
-            // Told here where the thread runs, and by its maker where there is none.
+            // `otherwise` is reported by the thread, or by its creator if there is no thread.
             let Ok(otherwise) = handed_over.recv() else {
                 return;
             };
@@ -379,7 +383,7 @@ impl Worker {
             send(&outcomes, Outcome::Tell(event.unwrap_or(otherwise)));
         });
         if begun.is_ok() {
-            // The thread waits for it.
+            // The thread waits for this value.
             drop(hand_over.send(otherwise));
         } else {
             self.tell(otherwise);
@@ -388,7 +392,7 @@ impl Worker {
     }
 }
 
-/// Whoever waited may be gone by now: then nobody is told.
+/// Sends an outcome; the receiver may no longer exist.
 fn send(outcomes: &Sender<Outcome>, outcome: Outcome) {
     let _ = outcomes.send(outcome);
 }

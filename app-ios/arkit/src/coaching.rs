@@ -1,4 +1,5 @@
-//! ARKit's own guidance over the camera's picture, in the phone's language: it shows how to move the phone until there is a table.
+//! ARKit's own guidance over the camera's picture, in the phone's language: it shows how to move
+//! the phone until a table is found.
 
 use objc2::MainThreadOnly;
 use objc2::rc::Retained;
@@ -9,7 +10,7 @@ use objc2_ui_kit::{UIView, UIViewAutoresizing};
 pub(super) struct Coach(Retained<ARCoachingOverlayView>);
 
 impl Coach {
-    /// Over all of a view, which lets fingers through.
+    /// The guidance over a whole view; it passes touches through.
     pub(super) fn over(view: &UIView, session: &ARSession) -> Self {
         // SAFETY: made on the main thread, as the view was; the session lives as long as what refers to it.
         let overlay = unsafe {
@@ -26,7 +27,7 @@ impl Coach {
         Self(overlay)
     }
 
-    /// Shows itself whenever it helps, or never.
+    /// Lets the guidance appear when it helps, or hides it.
     pub(super) fn helps(&self, is_on: bool) {
         // SAFETY: setting properties of a view, on the main thread.
         unsafe {

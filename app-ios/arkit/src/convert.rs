@@ -1,13 +1,16 @@
-//! ARKit's conventions and numbers turned into ours. The only file that knows its axes.
+//! Conversion of ARKit's conventions and numbers into ours. This is the only file that depends on
+//! its axes.
 //!
-//! Ours: `world` is right-handed, in metres, +Y up. `camera` has +X right, +Y up and looks along -Z in the unrotated
-//! sensor image. `camera_rdf` is the same camera with +X right, +Y down, +Z forward. `sensor_px` has its origin at the
-//! top left corner of the sensor image, so that the centre of the first pixel is at (0.5, 0.5).
+//! Ours: `world` is right-handed, in metres, +Y up. `camera` has +X right, +Y up and looks along -Z
+//! in the unrotated sensor image. `camera_rdf` is the same camera with +X right, +Y down, +Z
+//! forward. `sensor_px` has its origin at the top left corner of the sensor image, so that the
+//! centre of the first pixel is at (0.5, 0.5).
 
 use app_core::app::{ArSession, Permission};
 use glam::{DMat3, DMat4, DVec3};
 
-/// How far ARKit's single precision may be from a rigid motion, with room for the roundings of a product.
+/// Tolerance for ARKit's single precision against a rigid motion, including the roundings of a
+/// product.
 const RIGID_TOLERANCE: f64 = 1e-3;
 
 /// Our `world_from_camera` from the columns of `ARCamera.transform`, metres.
@@ -25,8 +28,8 @@ pub fn world_from_camera(transform_columns: [[f32; 4]; 4]) -> Option<DMat4> {
 
 /// Our `sensor_px_from_camera_rdf` from the columns of `ARCamera.intrinsics`.
 ///
-/// A column is a `simd_float3` of four lanes; the last lane holds nothing in particular and is not read. ARKit puts
-/// (0, 0) on the centre of the first pixel, so the principal point moves by half a pixel.
+/// A column is a `simd_float3` of four lanes; the last lane is undefined and is not read. ARKit
+/// puts (0, 0) on the centre of the first pixel, so the principal point moves by half a pixel.
 pub fn sensor_px_from_camera_rdf(intrinsics_columns: [[f32; 4]; 3]) -> DMat3 {
     let mut sensor_px_from_camera_rdf = DMat3::from_cols_array_2d(
         &intrinsics_columns.map(|[x, y, z, _unused]| [f64::from(x), f64::from(y), f64::from(z)]),
@@ -35,11 +38,12 @@ pub fn sensor_px_from_camera_rdf(intrinsics_columns: [[f32; 4]; 3]) -> DMat3 {
     sensor_px_from_camera_rdf
 }
 
-/// Part of the held exposure that a picture of a lens has.
+/// Exposure of a picture of a lens, relative to the locked one.
 const DARK: f64 = 1.0 / 64.0;
 
-/// Duration in seconds and ISO speed of a picture as dark as that, or as near to it as `least` of both allow: less speed first, then
-/// less time. `None` where the camera tells no exposure.
+/// Duration in seconds and ISO speed of such a dark picture, or of the darkest one that `least` of
+/// both allows: the speed is reduced first, then the time. `None` if the camera does not report its
+/// exposure.
 pub fn darkened(held: [f64; 2], least: [f64; 2]) -> Option<[f64; 2]> {
     let are_numbers = held
         .iter()
@@ -53,7 +57,7 @@ pub fn darkened(held: [f64; 2], least: [f64; 2]) -> Option<[f64; 2]> {
     Some([duration_s, iso])
 }
 
-/// The camera's permission from an `AVAuthorizationStatus`. Once it was refused, iOS asks nobody again.
+/// The camera's permission from an `AVAuthorizationStatus`. After a refusal iOS does not ask again.
 pub fn permission(status: isize) -> Permission {
     match status {
         3 => Permission::Granted,
@@ -62,19 +66,20 @@ pub fn permission(status: isize) -> Permission {
     }
 }
 
-/// What is done about a session of ARKit that failed.
+/// Reaction to a failed session of ARKit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AfterFailure {
-    /// It is run again with less to look for: the toy's scan is left out, or else the picture of the card.
+    /// Run it again without the toy's scan, or without the picture of the card.
     RunWithLess,
-    /// The app is told.
+    /// Report the state to the app.
     Tell(ArSession),
 }
 
-/// What is done after a session failed with an `ARErrorCode`, which had something to look for that can be left out, or not.
+/// Reaction to a session's failure with an `ARErrorCode`, depending on whether its run can do
+/// without something.
 ///
-/// One picture or object that ARKit refuses (300, 301, 302) fails the whole run, and each one after it; so may a configuration that the
-/// phone does not have (100).
+/// One picture or object that ARKit refuses (300, 301, 302) fails the whole run, and each one after
+/// it; so may a configuration that the phone does not have (100).
 pub fn after_failure(code: isize, can_have_less: bool) -> AfterFailure {
     match code {
         100 | 300..=302 if can_have_less => AfterFailure::RunWithLess,
@@ -82,23 +87,23 @@ pub fn after_failure(code: isize, can_have_less: bool) -> AfterFailure {
     }
 }
 
-/// Quarter turns, clockwise, that the sensor's picture is shown by in a `UIInterfaceOrientation`: it is upright where the phone's lower end
-/// is at the right.
+/// Clockwise quarter turns between the sensor's picture and a `UIInterfaceOrientation`: the picture
+/// is upright if the phone's lower end is at the right.
 pub fn quarter_turns(orientation: isize) -> u8 {
     match orientation {
         // Portrait, upside down, landscape with the lower end at the left.
         1 => 1,
         2 => 3,
         4 => 2,
-        // With the lower end at the right, and what is not known.
+        // The lower end at the right, or an unknown value.
         _ => 0,
     }
 }
 
-/// What a session of ARKit is after it failed with an `ARErrorCode`.
+/// State of a session of ARKit after its failure with an `ARErrorCode`.
 pub fn failed_session(code: isize) -> ArSession {
     match code {
-        // The configuration is one that the phone does not have.
+        // The phone does not support the configuration.
         100 => ArSession::Unsupported,
         _ => ArSession::Failed,
     }
@@ -125,10 +130,10 @@ mod tests {
         for code in [100, 300, 301, 302] {
             assert_eq!(after_failure(code, true), AfterFailure::RunWithLess, "{code}");
         }
-        // The run without it failed as well.
+        // The run without it failed, too.
         assert_eq!(after_failure(100, false), tell(ArSession::Unsupported));
         assert_eq!(after_failure(300, false), tell(ArSession::Failed));
-        // Sensors and the camera itself have nothing to do with it.
+        // Errors of sensors and of the camera have another cause.
         for code in [101, 102, 103, 200] {
             assert_eq!(after_failure(code, true), tell(ArSession::Failed), "{code}");
         }

@@ -1,4 +1,4 @@
-//! An ARKit frame in plain numbers, and what becomes of it.
+//! An ARKit frame in plain numbers, and its conversion.
 
 use app_core::camera_frame::{
     Anchor, CameraFrame, CodeRange, Display, Exposure, FoundPlane, LumaCoefficients, PlanarImage, PlaneError,
@@ -9,12 +9,12 @@ use glam::{DMat4, DVec3, Vec3Swizzles};
 
 use crate::convert;
 
-/// `kCVPixelFormatType_420YpCbCr8BiPlanarFullRange`.
+/// The constant `kCVPixelFormatType_420YpCbCr8BiPlanarFullRange`.
 const FULL_RANGE: u32 = u32::from_be_bytes(*b"420f");
-/// `kCVPixelFormatType_420YpCbCr8BiPlanarVideoRange`.
+/// The constant `kCVPixelFormatType_420YpCbCr8BiPlanarVideoRange`.
 const VIDEO_RANGE: u32 = u32::from_be_bytes(*b"420v");
 
-/// `ARTrackingState`.
+/// Values of `ARTrackingState`.
 const NORMAL: isize = 2;
 const LIMITED: isize = 1;
 
@@ -24,9 +24,9 @@ const NS: f64 = 1e9;
 /// A plane of a pixel buffer, while it is locked.
 #[derive(Clone, Copy, Debug)]
 pub struct RawPlane<'a> {
-    /// All of its rows.
+    /// The bytes of all rows.
     pub bytes: &'a [u8],
-    /// Bytes from row to row.
+    /// Bytes per row.
     pub row_stride: usize,
 }
 
@@ -35,26 +35,26 @@ pub struct RawPlane<'a> {
 pub struct RawSurface {
     /// Bytes of its identifier.
     pub id: [u8; 16],
-    /// `ARPlaneAnchorAlignment`: 0 lies, 1 stands.
+    /// `ARPlaneAnchorAlignment`: 0 is horizontal, 1 is vertical.
     pub alignment: isize,
     /// Columns of `transform`.
     pub transform: [[f32; 4]; 4],
-    /// Columns of three numbers and a fourth that holds nothing, in the plane's space.
+    /// Columns of three numbers and an unused fourth, in the plane's space.
     pub boundary: Vec<[f32; 4]>,
 }
 
-/// What one frame of ARKit holds, as it stands there: nothing is turned, scaled or judged.
+/// The content of one frame of ARKit, unchanged: nothing is turned, scaled or validated.
 #[derive(Clone, Debug)]
 pub struct RawFrame<'a> {
     /// Seconds since the phone started.
     pub timestamp: f64,
-    /// The same, when the frame was delivered.
+    /// Time of delivery on the same clock.
     pub delivered: f64,
     /// `OSType` of the pixel buffer.
     pub pixel_format: u32,
     /// Width and height of the luma.
     pub size_px: [usize; 2],
-    /// Luma, then both chroma components by turns; none where the picture was lent.
+    /// Luma, then interleaved chroma; empty if the picture was lent as a texture.
     pub planes: Vec<RawPlane<'a>>,
     /// Columns of `ARCamera.intrinsics`.
     pub intrinsics: [[f32; 4]; 3],
@@ -62,55 +62,56 @@ pub struct RawFrame<'a> {
     pub transform: [[f32; 4]; 4],
     /// `ARTrackingState` and `ARTrackingStateReason`.
     pub tracking: [isize; 2],
-    /// Seconds and ISO speed, where both are told.
+    /// Seconds and ISO speed, if both are reported.
     pub exposure: Option<[f64; 2]>,
-    /// Lumen and kelvin, where light is estimated.
+    /// Lumen and kelvin, if light is estimated.
     pub light: Option<[f64; 2]>,
     /// Planes found so far.
     pub surfaces: Vec<RawSurface>,
-    /// Columns of the `transform` of the card's anchor, while it is followed.
+    /// Columns of the `transform` of the card's anchor, while it is tracked.
     pub card: Option<[[f32; 4]; 4]>,
-    /// The anchor that is held, by the number it was asked for, and the columns of its `transform`.
+    /// The held anchor's requested number, and the columns of its `transform`.
     pub anchor: Option<(u64, [[f32; 4]; 4])>,
-    /// Columns of the `transform` of the anchor of the toy's scan, once it was recognised.
+    /// Columns of the `transform` of the anchor of the toy's scan, once ARKit has recognised it.
     pub toy: Option<[[f32; 4]; 4]>,
-    /// `UIInterfaceOrientation` of the screen that it is shown on.
+    /// `UIInterfaceOrientation` of the screen.
     pub orientation: isize,
 }
 
-/// What the shell counts for a frame, which ARKit does not.
+/// Counts of the shell for a frame, which ARKit does not have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Count {
-    /// Frames delivered before it.
+    /// Number of frames delivered before it.
     pub n_frames: u64,
-    /// Worlds begun before its own.
+    /// Number of worlds before its own.
     pub world_epoch: u32,
 }
 
-/// Why a frame could not be taken.
+/// Reason for refusing a frame.
 #[derive(Debug, thiserror::Error, PartialEq)]
 pub enum FrameError {
-    /// No picture of luma and chroma.
+    /// The picture does not consist of luma and chroma.
     #[error("the camera's picture has format {0:#010x}, neither 420f nor 420v")]
     Format(u32),
-    /// Fewer planes, or more.
+    /// The number of planes is wrong.
     #[error("the camera's picture has {0} planes, not 2")]
     Count(usize),
-    /// Planes that do not hold their picture.
+    /// The planes do not contain their picture.
     #[error(transparent)]
     Planes(#[from] PlaneError),
-    /// Numbers that no camera has.
+    /// The intrinsics are not those of a camera.
     #[error("the camera's focal length is {0} and {1} px")]
     Camera(f64, f64),
-    /// A time that is none.
+    /// The time is not a number.
     #[error("the frame's time is {0} s")]
     Time(f64),
 }
 
-/// The frame of the core that `raw` becomes; its picture is copied where it was not lent.
+/// Converts `raw` into a frame of the core; its picture is copied if it was not lent.
 ///
 /// # Errors
-/// Where its picture or its camera make no sense.
+///
+/// Fails if its picture or its camera is invalid.
 pub fn camera_frame(
     raw: &RawFrame<'_>,
     lent: Option<PlanarImage>,
@@ -157,10 +158,11 @@ pub fn camera_frame(
     })
 }
 
-/// What the codes of a pixel buffer mean.
+/// The encoding of a pixel buffer.
 ///
 /// # Errors
-/// Where it is no picture of luma and chroma.
+///
+/// Fails if it does not consist of luma and chroma.
 pub fn encoding(pixel_format: u32) -> Result<YcbcrEncoding, FrameError> {
     let range = match pixel_format {
         FULL_RANGE => CodeRange::Full,
@@ -176,7 +178,8 @@ pub fn encoding(pixel_format: u32) -> Result<YcbcrEncoding, FrameError> {
 /// A copy of a pixel buffer's planes.
 ///
 /// # Errors
-/// Where they are no picture of luma and chroma.
+///
+/// Fails if they do not consist of luma and chroma.
 pub fn image(
     pixel_format: u32,
     size_px: [usize; 2],
@@ -187,7 +190,7 @@ pub fn image(
         return Err(FrameError::Count(planes.len()));
     };
     let planes = Planes::nv12(
-        // A side that has no room is too long for the planes, too.
+        // A side that overflows is too long for the planes, too.
         size_px.map(|side| u32::try_from(side).unwrap_or(u32::MAX)),
         (luma.bytes, luma.row_stride),
         (chroma.bytes, chroma.row_stride),
@@ -218,7 +221,8 @@ fn time_ns(seconds: f64) -> Result<i64, FrameError> {
     Ok((seconds * NS).round() as i64)
 }
 
-/// A level plane as the rectangle along its own axes that its boundary fills. None where it stands or has no extent.
+/// A level plane as the rectangle along its own axes around its boundary. `None` if it is vertical
+/// or has no extent.
 fn found_plane(raw: &RawSurface) -> Option<FoundPlane> {
     let corners = raw.boundary.iter();
     let corners = corners.map(|corner| DVec3::new(corner[0].into(), 0.0, corner[2].into()));
@@ -395,7 +399,7 @@ mod tests {
             bytes: &[],
             row_stride: 0,
         };
-        #[rustfmt::skip] // One case a line.
+        #[rustfmt::skip] // Each case has a line of its own.
         let wrong = [
             ("format", RawFrame { pixel_format: 0, ..raw() }),
             ("1 planes", RawFrame { planes: vec![none], ..raw() }),
@@ -414,7 +418,7 @@ mod tests {
     #[test]
     fn planes_that_make_no_sense_are_left_out() {
         let good = &raw().surfaces[0];
-        #[rustfmt::skip] // One case a line.
+        #[rustfmt::skip] // Each case has a line of its own.
         let wrong = [
             RawSurface { alignment: 1, ..good.clone() },
             RawSurface { boundary: Vec::new(), ..good.clone() },

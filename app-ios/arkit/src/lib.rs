@@ -1,4 +1,5 @@
-//! Camera frames of ARKit: read into plain numbers in one file, and all after it the same on a desktop.
+//! Camera frames of ARKit: one file reads them into plain numbers, and all other code also runs on
+//! a desktop.
 
 pub mod convert;
 pub mod frame;

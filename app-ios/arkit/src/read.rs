@@ -1,4 +1,5 @@
-//! Reads an `ARFrame` into plain numbers. The only file of this shell that asks ARKit for anything of a frame.
+//! Reads an `ARFrame` into plain numbers. This is the shell's only file that reads a frame of
+//! ARKit.
 
 use std::ffi::c_void;
 
@@ -17,13 +18,14 @@ use super::pixels::Locked;
 use super::shim;
 use super::textures::TextureCache;
 
-/// Corners of a plane beyond which its boundary is none: ARKit's have a few dozen.
+/// Number of a boundary's corners above which it is refused: ARKit's have a few dozen.
 const MAX_CORNERS: usize = 4096;
 
-/// Lets `take` see what `frame` holds, and its picture where `textures` lend it; else the pixels may be read until it returns. None
-/// where the pixels cannot be.
+/// Gives `take` the content of `frame`, with its picture if `textures` lend it; otherwise the
+/// pixels can be read until it returns. `None` if the pixels cannot be read.
 ///
-/// `held` is the anchor to look for: the number it was asked for by, and the bytes of its identifier. `orientation` is that of the screen.
+/// `held` is the requested anchor: its number, and the bytes of its identifier. `orientation` is
+/// that of the screen.
 pub(super) fn with_raw<T>(
     frame: &ARFrame,
     held: Option<(u64, [u8; 16])>,
@@ -62,7 +64,7 @@ pub(super) fn with_raw<T>(
     };
     let raw = RawFrame {
         timestamp,
-        // On the same clock.
+        // This is the same clock.
         delivered: NSProcessInfo::processInfo().systemUptime(),
         pixel_format: CVPixelBufferGetPixelFormatType(&buffer),
         size_px: [CVPixelBufferGetWidth(&buffer), CVPixelBufferGetHeight(&buffer)],
@@ -82,17 +84,17 @@ pub(super) fn with_raw<T>(
     Some(take(&raw, lent))
 }
 
-/// The ISO speed that the picture was taken at; none where its Exif data do not say.
+/// The ISO speed of the picture; `None` if its Exif data do not contain it.
 fn iso(frame: &ARFrame) -> Option<f64> {
     // SAFETY: a property of a frame that was delivered, which never changes.
     let exif = unsafe { frame.exifData() };
-    // Exif has a list of speeds, of which a camera fills the first.
+    // Exif has a list of speeds; a camera sets the first.
     let speeds = exif.objectForKey(ns_string!("ISOSpeedRatings"))?;
     let speed = speeds.downcast::<NSArray>().ok()?.firstObject()?;
     Some(speed.downcast::<NSNumber>().ok()?.doubleValue())
 }
 
-/// Where the anchor of that identifier is.
+/// Pose of the anchor with this identifier.
 fn anchor_of(anchors: &NSArray<ARAnchor>, identifier: [u8; 16]) -> Option<[[f32; 4]; 4]> {
     // SAFETY: properties of an anchor, which never change; the transform is a SIMD matrix of four columns.
     anchors.iter().find_map(|anchor| unsafe {
@@ -101,7 +103,8 @@ fn anchor_of(anchors: &NSArray<ARAnchor>, identifier: [u8; 16]) -> Option<[[f32;
     })
 }
 
-/// Where the card is, if this is its anchor and the card is in view: no other image is looked for.
+/// Pose of the card, if this is its anchor and the card is in view: it is the only image that is
+/// detected.
 fn card(anchor: &ARAnchor) -> Option<[[f32; 4]; 4]> {
     let image = anchor.downcast_ref::<ARImageAnchor>()?;
     // SAFETY: properties of an anchor, which never change; the transform is a SIMD matrix of four columns.
@@ -112,7 +115,7 @@ fn card(anchor: &ARAnchor) -> Option<[[f32; 4]; 4]> {
     }
 }
 
-/// Where the toy was recognised, if this is its anchor: no other object is looked for.
+/// Pose of the recognised toy, if this is its anchor: it is the only object that is detected.
 fn toy(anchor: &ARAnchor) -> Option<[[f32; 4]; 4]> {
     let object = anchor.downcast_ref::<ARObjectAnchor>()?;
     // SAFETY: a property of an anchor, which never changes; it is a SIMD matrix of four columns.

@@ -1,4 +1,5 @@
-//! The scan of a toy, by which ARKit recognises it: an `.arobject` that an app of Apple's writes as a phone goes around the toy.
+//! The scan of a toy, by which ARKit recognises it: an `.arobject`, which an app of Apple's writes
+//! while a phone moves around the toy.
 
 use std::path::Path;
 
@@ -7,7 +8,7 @@ use objc2::rc::Retained;
 use objc2_ar_kit::ARReferenceObject;
 use objc2_foundation::{NSString, NSURL};
 
-/// What is in the file; none, and why in the log, where that is no scan.
+/// The scan in the file; `None` if it is not valid, with the reason in the log.
 pub(super) fn reference_object(path: &Path) -> Option<Retained<ARReferenceObject>> {
     let url = NSURL::fileURLWithPath(&NSString::from_str(path.to_str()?));
     // SAFETY: an initialiser that takes the address of a file, and checks what it reads.

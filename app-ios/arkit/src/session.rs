@@ -1,4 +1,4 @@
-//! A session of ARKit: world tracking, its frames, and what it tells of itself.
+//! A session of ARKit: world tracking, its frames, and its reports.
 
 use std::cell::{Cell, RefCell};
 use std::path::Path;
@@ -26,37 +26,38 @@ use super::{card, read, scan, shim};
 use crate::convert::{self, AfterFailure};
 use app_shell::guard::guarded;
 
-/// An anchor that is held.
+/// A held anchor.
 struct Held {
     id: u64,
     anchor: Retained<ARAnchor>,
 }
 
-/// What the session and its delegate share.
+/// State that the session and its delegate share.
 struct Shared {
     tell: Rc<dyn Fn(ShellEvent)>,
     count: Cell<Count>,
-    /// Frames of before belong to the world before. On the clock of the frames.
+    /// Start of the current world, on the clock of the frames; earlier frames belong to another
+    /// world.
     world_since_s: Cell<f64>,
     held: RefCell<Option<Held>>,
-    /// None until there is a device.
+    /// `None` until there is a device.
     textures: RefCell<Option<TextureCache>>,
     is_interrupted: Cell<bool>,
     /// `UIInterfaceOrientation` of the screen.
     orientation: Cell<isize>,
-    /// What the latest run looks for.
+    /// Detections of the latest run.
     finds: Cell<Finds>,
-    /// What the card is known by; none before anybody has one, or if ARKit has refused it.
+    /// The card's reference image, if a person uses the card and ARKit has not refused it.
     card: RefCell<Card>,
-    /// By which the toy is recognised; none without a scan, or if ARKit has refused it.
+    /// Reference object of the toy; `None` without a scan, or if ARKit has refused it.
     scan: RefCell<Option<Retained<ARReferenceObject>>>,
-    /// None until there is a view.
+    /// `None` until there is a view.
     coach: RefCell<Option<Coach>>,
-    /// A frame was refused, and why was written.
+    /// Whether a frame was refused, with the reason in the log.
     is_refusing: Cell<bool>,
 }
 
-/// What is looked for in the camera's picture.
+/// Objects to detect in the camera's picture.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Finds {
     /// Level planes.
@@ -65,18 +66,18 @@ pub struct Finds {
     pub card: bool,
 }
 
-/// The card's picture, made if somebody has one.
+/// The card's picture, made on first use.
 #[derive(Default)]
 enum Card {
     #[default]
     Unmade,
     Made(Retained<ARReferenceImage>),
-    /// It cannot be made, or ARKit has refused it.
+    /// It could not be made, or ARKit has refused it.
     Refused,
 }
 
 impl Shared {
-    /// Runs `session` with what is looked for.
+    /// Runs `session` with the current detections.
     fn run(&self, session: &ARSession, options: ARSessionRunOptions) {
         let finds = self.finds.get();
         // SAFETY: new has no requirements.
@@ -96,7 +97,7 @@ impl Shared {
         // SAFETY: a configuration of this session's own, with options that every session takes.
         unsafe {
             configuration.setPlaneDetection(planes);
-            // Pictures whose tones are mapped place by place are not comparable with one another.
+            // Pictures with local tone mapping cannot be compared with one another.
             configuration.setVideoHDRAllowed(false);
             if let Some(card) = card {
                 configuration.setDetectionImages(Some(&NSSet::from_slice(&[&*card])));
@@ -120,7 +121,7 @@ impl Shared {
         }
     }
 
-    /// Does what helps after a run that failed.
+    /// Reacts to a failed run.
     fn fail(&self, session: &ARSession, code: isize) {
         let had_card = self.finds.get().card && matches!(*self.card.borrow(), Card::Made(_));
         let had_scan = self.scan.borrow().is_some();
@@ -139,7 +140,7 @@ impl Shared {
         }
     }
 
-    /// Reads a frame and leaves it for the shell; ARKit has it back when this returns.
+    /// Reads a frame and stores it for the shell; ARKit gets it back on return.
     fn take(&self, frame: &ARFrame) {
         // SAFETY: a property of a frame that was delivered, which never changes.
         if unsafe { frame.timestamp() } < self.world_since_s.get() {
@@ -235,16 +236,16 @@ impl Delegate {
     }
 }
 
-/// A session that tells what it sees, on the main thread.
+/// A session that reports on the main thread.
 pub struct Session {
     session: Retained<ARSession>,
-    /// The session does not keep it.
+    /// The session does not retain it.
     _delegate: Retained<Delegate>,
     shared: Rc<Shared>,
 }
 
 impl Session {
-    /// A session that does not run yet.
+    /// A session that is not running yet.
     pub fn new(main_thread: MainThreadMarker, tell: Rc<dyn Fn(ShellEvent)>) -> Self {
         let shared = Rc::new(Shared {
             tell,
@@ -272,18 +273,18 @@ impl Session {
         }
     }
 
-    /// Lends pictures to this device from now on, or copies them where there is none.
+    /// Lends pictures to this device from now on, or copies them without one.
     pub fn lend_to(&self, device: Option<DeviceHandle>) {
         self.shared.textures.replace(device.and_then(TextureCache::new));
     }
 
-    /// Has ARKit's own guidance shown over a view while a table is looked for.
+    /// Shows ARKit's own guidance over a view until a table is found.
     pub fn coach_over(&self, view: &UIView) {
         let coach = Coach::over(view, &self.session);
         self.shared.coach.replace(Some(coach));
     }
 
-    /// Recognises the toy by this scan from the next run on, or no longer.
+    /// Detects the toy by this scan from the next run on; `None` ends that.
     pub fn recognise(&self, scan: Option<&Path>) {
         self.shared.scan.replace(scan.and_then(scan::reference_object));
     }
@@ -295,12 +296,12 @@ impl Session {
         unsafe { msg_send![ARWorldTrackingConfiguration::class(), isSupported] }
     }
 
-    /// Follows the screen, as a `UIInterfaceOrientation`.
+    /// Sets the screen's orientation, a `UIInterfaceOrientation`.
     pub fn set_orientation(&self, orientation: isize) {
         self.shared.orientation.set(orientation);
     }
 
-    /// Begins, or goes on with another configuration.
+    /// Starts, or continues with another configuration.
     pub fn run(&self, finds: Finds, is_new_world: bool) {
         self.shared.finds.set(finds);
         let mut options = ARSessionRunOptions::empty();
@@ -319,7 +320,8 @@ impl Session {
         self.shared.run(&self.session, options);
     }
 
-    /// Pauses. A session that is interrupted has paused by itself, and tells when it goes on only if it is left alone.
+    /// Pauses. An interrupted session has paused already, and reports its end only if it is left
+    /// alone.
     pub fn pause(&self) {
         if !self.shared.is_interrupted.get() {
             // SAFETY: pausing has no requirements.
@@ -327,14 +329,14 @@ impl Session {
         }
     }
 
-    /// The app is in front: whatever interrupted the session there may have ended unheard, and else says so again.
+    /// Handles the foreground: an interruption may have ended unreported, or is reported again.
     pub fn enter_foreground(&self) {
         if self.shared.is_interrupted.get() {
             self.shared.interrupt(false);
         }
     }
 
-    /// Holds a place as an anchor of that number, and lets go of the one before.
+    /// Holds a place as an anchor of this number, and releases the previous one.
     pub fn hold(&self, id: u64, world_from_anchor: &DMat4) {
         let Some(anchor) = anchor_at(world_from_anchor) else {
             return;

@@ -1,4 +1,5 @@
-//! CPU reference of `gloss.wgsl` and `common/gloss.wgsl`: what a glossy toy reflects, and which pixels tell its paint below that.
+//! CPU reference of `gloss.wgsl` and `common/gloss.wgsl`: reflection of a glossy toy, and the
+//! pixels that show its paint below.
 //!
 //! Source: Blinn 1977, Walter et al. 2007, Schlick 1994, Hammon 2017, Karis 2014.
 
@@ -10,49 +11,54 @@ use super::fit::toy_radiance;
 use super::model::{BRIGHTEST_USABLE, Region, Solution};
 use super::smoothstep;
 
-/// Reflectance where light falls straight on a dielectric of refractive index 1.5: ((1.5 - 1) / (1.5 + 1))^2.
+/// Reflectance of a dielectric of refractive index 1.5 at normal incidence: ((1.5 - 1) / (1.5 +
+/// 1))^2.
 const STRAIGHT: f64 = 0.04;
-/// Least cosine to camera or light.
+/// Smallest cosine to camera or light.
 const LEAST_COSINE: f64 = 0.05;
-/// Part of the light from above in what is mirrored: half at the horizon, all from a rise of a fifth on.
+/// Slope of the share of light from above in the mirrored direction: half at the horizon, all from
+/// a rise of a fifth on.
 const RISE_TO_ABOVE: f64 = 0.2;
-/// A light's disc has a quarter of its squared radius as variance, half-way vectors turn by half, and squared roughness is twice a variance.
+/// A light's disc has a quarter of its squared radius as variance, half-way vectors turn by half as
+/// much, and squared roughness is twice a variance.
 const WIDENING: f64 = 2.0 / 4.0 / 4.0;
-/// Materials with a strength of their own.
+/// Number of materials with a strength of their own.
 const N_STRENGTHS: usize = 8;
-/// Part of a pixel's light that lamps' highlights are, up to which the paint is told, and from which on it is not.
+/// Share of lamps' highlights in a pixel's light up to which the paint counts fully, and from which
+/// on it does not count.
 const TOLD: [f64; 2] = [0.5, 0.8];
-/// The same of a pixel that is clipped.
+/// The limit for a clipped pixel.
 const HIGHLIGHT: f64 = 0.1;
 
-/// A glossy toy under lights of some angular radii.
+/// A glossy toy under lights with these angular radii.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Glossy {
-    /// Of its surface.
+    /// Roughness of its surface.
     pub roughness: f64,
-    /// Of its materials, over that of plastic.
+    /// Strengths of its materials, relative to plastic.
     pub strengths: Vec<f64>,
-    /// Of each light, seen from the toy.
+    /// Angular radius of each light, seen from the toy.
     pub angular_radii_rad: Vec<f64>,
 }
 
-/// A point of the toy that a camera sees.
+/// A visible point of the toy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenPoint {
-    /// In metres.
+    /// Position in metres.
     pub in_anchor: DVec3,
-    /// Unit vector.
+    /// Normal, a unit vector.
     pub normal: DVec3,
-    /// Where the camera is.
+    /// The camera's centre.
     pub camera_in_anchor: DVec3,
     /// Index of the material.
     pub material: usize,
-    /// Cosine to each light times its visibility.
+    /// Cosine to each light, multiplied by its visibility.
     pub received: DVec4,
 }
 
 impl Glossy {
-    /// What is reflected of the ambient light from above and from below, and of each light at the plate's level.
+    /// Reflected light of the ambient light from above and from below, and of each light at the
+    /// plate's level.
     #[must_use]
     pub fn columns(&self, region: &Region, point: &SeenPoint) -> Vec<f64> {
         let strength = self.strengths[point.material.min(N_STRENGTHS - 1)];
@@ -93,7 +99,7 @@ fn brdf(squared: f64, normal: DVec3, [to_camera, to_light]: [DVec3; 2]) -> f64 {
     distribution * fresnel * visible
 }
 
-/// Radiance over the gain of what columns tell: of the ambient light, and of the lights.
+/// Radiance of the columns, relative to the gain: of the ambient light, and of the lights.
 #[must_use]
 pub fn reflected(solution: &Solution, columns: &[f64]) -> [DVec3; 2] {
     let (of_sky, of_lights) = columns.split_at(2);
@@ -113,7 +119,8 @@ pub fn reflected(solution: &Solution, columns: &[f64]) -> [DVec3; 2] {
     ]
 }
 
-/// Reflected radiance over the gain, and how far a pixel that shows `shown` tells the paint of `base`.
+/// Reflected radiance relative to the gain, and the weight of a pixel that shows `shown` for the
+/// paint of `base`.
 #[must_use]
 pub fn reflection(
     solution: &Solution,

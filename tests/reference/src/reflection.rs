@@ -1,32 +1,34 @@
-//! What a glossy receiver reflects: CPU reference of `common/reflection.wgsl`.
+//! CPU reference of `common/reflection.wgsl`: the reflection of a glossy receiver.
 
 use glam::{DVec3, DVec4};
 
 use super::model::ReceiverPoint;
 
-/// Reflectance of glass or varnish along the normal.
+/// Reflectance of glass or varnish at normal incidence.
 const ALONG_NORMAL: f64 = 0.04;
-/// Of the fit of a rough dielectric's reflectance, by its published names: what the roughness is multiplied by, and what comes on top.
+/// Published constants of the fit of a rough dielectric's reflectance: factors of the roughness,
+/// and summands.
 const C0: DVec4 = DVec4::new(-1.0, -0.0275, -0.572, 0.022);
 const C1: DVec4 = DVec4::new(1.0, 0.0425, 1.04, -0.04);
 
-/// How the first receiver reflects.
+/// Reflection of the first receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflection {
-    /// Channel of the visibilities that tells how much of the lobe the toy leaves.
+    /// Channel of the visibilities with the share of the lobe that the toy does not hide.
     pub channel: usize,
-    /// Beckmann's alpha.
+    /// Roughness as Beckmann's alpha.
     pub alpha: f64,
     /// Light of the surroundings.
     pub surroundings: DVec3,
-    /// What the toy's light is above that.
+    /// Light of the toy less that of the surroundings.
     pub toy_above_surroundings: DVec3,
     /// The camera's centre in the receiver's space.
     pub eye_in_plane: DVec3,
 }
 
 impl Reflection {
-    /// Light that a point reflects to the camera, over the gain, with `part` of the toy's image.
+    /// Light that a point reflects to the camera, relative to the gain, with `part` of the toy's
+    /// image.
     #[must_use]
     pub fn light(&self, point: ReceiverPoint, visibility: DVec4, part: f64) -> DVec3 {
         if point.receiver != 0 {

@@ -1,4 +1,4 @@
-//! Writes a recording until it is killed, for the test that does so.
+//! Writes a recording until it is killed, for the test of that case.
 
 use std::env;
 use std::path::PathBuf;

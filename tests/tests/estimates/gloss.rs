@@ -1,4 +1,4 @@
-//! How glossy a toy is, by photographs of one that stands on a table under a bulb.
+//! Estimation of a toy's gloss, from photographs of one on a table under a bulb.
 
 use std::sync::{Arc, LazyLock};
 
@@ -10,7 +10,7 @@ use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 use glam::DVec3;
 use measure::photographer::{Part, Shape, Sheen, Shot, Stance, World};
 
-/// A figure of three balls on a box, of two paints.
+/// A figure of three balls on a box, with two paints.
 fn figure(sheen: Option<Sheen>) -> World {
     let mut world = World::boxes().resized([480, 270]);
     let ball = |radius_m: f64, at: DVec3, color: DVec3| Part {
@@ -57,7 +57,8 @@ fn roughness_and_strength_are_found() {
     }
 }
 
-/// What a camera makes of light: darks darker, lights flatter. A broad lobe would do about the same to a matt toy.
+/// Tone curve of a camera: it darkens shadows and flattens lights. A broad lobe would have a
+/// similar effect on a matt toy.
 fn through_a_camera(image: &Image) -> Image {
     let toned = |code: u8| {
         let light = linear_from_srgb(f32::from(code) / 255.0);

@@ -1,4 +1,4 @@
-//! What is estimated from pictures: cameras, poses, lights, lenses and plates.
+//! Estimates from pictures: cameras, poses, lights, lenses and plates.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 

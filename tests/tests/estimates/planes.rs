@@ -1,4 +1,5 @@
-//! A plane that lies above the table where the toy's shadow falls is found by that shadow, and none where none is.
+//! A plane above the table is found by the toy's shadow on it, and no plane is found if there is
+//! none.
 
 use app_core::alignment::Observer;
 use app_core::scene::Scene;
@@ -6,17 +7,17 @@ use glam::{DMat4, DQuat, DVec2, DVec3};
 use measure::photographer::world::toward;
 use measure::photographer::{Ground, Lamp, Paint, Quality, Shot, World};
 
-/// Its height is told to that, in metres: a shadow moves by a pixel for each millimetre.
+/// Tolerance of its height in metres: a shadow moves by a pixel for each millimetre.
 const HEIGHT_M: f64 = 0.001;
 const TILT_RAD: f64 = 0.03;
 
-/// A plane where the shadow of the boxes falls, turned out of their direction.
+/// A plane that catches the shadow of the boxes, and is turned against them.
 fn board(height_m: f64, tilt_rad: f64) -> DMat4 {
     let turn = DQuat::from_rotation_y(0.4) * DQuat::from_rotation_z(tilt_rad);
     DMat4::from_rotation_translation(turn, DVec3::new(-0.1, height_m, 0.0))
 }
 
-/// The boxes beside such a plane, of which the scene does not know.
+/// The boxes beside such a plane, which the scene does not contain.
 fn session(world_from_board: Option<DMat4>) -> (Scene, Shot) {
     let mut world = World::boxes().resized([480, 270]);
     world = world.lit_by(vec![Lamp::bulb(toward(50.0, 90.0), 0.01, 0.75)]);
@@ -44,7 +45,7 @@ fn session(world_from_board: Option<DMat4>) -> (Scene, Shot) {
     (scene, shot)
 }
 
-/// Of its heights above the table in the middle of the board, and its tilts, the found and the true one.
+/// Heights above the table in the middle of the board, and tilts: the estimated and the true ones.
 fn found(height_m: f64, tilt_rad: f64) -> Option<([f64; 2], [f64; 2])> {
     let world_from_board = board(height_m, tilt_rad);
     let (scene, shot) = session(Some(world_from_board));

@@ -1,4 +1,5 @@
-//! How a table reflects, by the bundled session's, which is varnished after it was photographed.
+//! Estimation of a table's reflection, with the bundled session's table, which is varnished after
+//! it was photographed.
 
 use std::sync::Arc;
 
@@ -13,9 +14,9 @@ use reference::occlusion::Occluder;
 
 use super::bundled::SESSION;
 
-/// Pixels that are varnished alike, along each side.
+/// Side of a block of pixels with the same varnish.
 const BLOCK_PX: u32 = 3;
-/// Rays of each.
+/// Rays of each block.
 const N_RAYS: u32 = 48;
 const VARNISH: Reflection = Reflection {
     roughness: 0.2,
@@ -23,18 +24,18 @@ const VARNISH: Reflection = Reflection {
     toy_above_surroundings: [-0.3, -0.45, -0.6],
 };
 
-/// An even number from 0 to 1, of a seed.
+/// A uniform number from 0 to 1, from a seed.
 fn even(seed: u32) -> f64 {
     let mixed = seed.wrapping_mul(0x9E37_79B9) ^ (seed >> 7);
     let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x85EB_CA6B);
     f64::from((mixed ^ (mixed >> 13)).wrapping_mul(0xC2B2_AE35) >> 8) / f64::from(1 << 24)
 }
 
-/// A table that a camera looks at.
+/// A table in a camera's view.
 struct Table {
     plane_from_camera: DMat4,
     camera: Camera,
-    /// In its space.
+    /// The toy in the table's space.
     toy: Occluder,
 }
 
@@ -55,7 +56,7 @@ impl Table {
         }
     }
 
-    /// What the varnish adds at a pixel, with the toy or without it.
+    /// Light that the varnish adds at a pixel, with the toy or without it.
     fn reflected(&self, px: DVec2, has_toy: bool, seed: u32) -> [f32; 3] {
         let k = &self.camera.intrinsics;
         let in_camera = DVec3::new((px.x - k.cx_px) / k.fx_px, (k.cy_px - px.y) / k.fy_px, -1.0);
@@ -66,7 +67,8 @@ impl Table {
         }
         let at = (eye - ray * (eye.y / ray.y)).with_y(0.0);
         let is_hidden = |index: u32| {
-            // Beckmann's slopes are normal, of a variance of half the square of alpha.
+            // Beckmann's slopes are normally distributed, with half the square of alpha as
+            // variance.
             let [radius, turn] = [2 * index, 2 * index + 1].map(|index| even(seed * 128 + index));
             let slope = VARNISH.roughness
                 * (-(1.0 - radius).ln()).sqrt()
@@ -87,7 +89,7 @@ impl Table {
         [0, 1, 2].map(|channel| reflectance * light(channel))
     }
 
-    /// A picture as the table's varnish would have it, of what is seen of the table.
+    /// The picture with varnish on the visible part of the table.
     #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
     fn varnished(&self, image: &Image, has_toy: bool) -> Image {
         let n_columns = image.width_px.div_ceil(BLOCK_PX);

@@ -20,7 +20,7 @@ use crate::setups::{NO_LIGHT, SETUPS};
 use crate::stand::Stand;
 use crate::toy;
 
-/// What the core starts from.
+/// The start values of the core.
 fn start(n_lights: usize) -> Solution {
     let direct_fraction = PRIOR_DIRECT_FRACTION / f64::from(u32::try_from(n_lights).unwrap());
     let bounce = if n_lights == 0 { MAX_BOUNCE } else { PRIOR_BOUNCE };
@@ -65,14 +65,14 @@ pub(crate) fn check_receivers(run: &Run) {
         );
         let values = |solution| receiver_values(solution, receiver);
         let errors = Errors::between(values(&run.solution).zip(values(&expected)));
-        // Sums of some 10^4 terms in 32 bits, times what the priors leave of the condition number, 10^4 at most; and
-        // 8 bits of weight in a graphics card's bilinear filter. Measured in software, which filters in 32 bits:
-        // 4e-6.
+        // Sums of some 10^4 terms in 32 bits, times the condition number, which the priors limit to
+        // 10^4; and 8 bits of weight in a graphics card's bilinear filter. Measured in software,
+        // which filters in 32 bits: 4e-6.
         errors.check_all(&format!("{}, receiver {receiver}", run.stand.setup.name), 1e-3);
     }
 }
 
-/// All is clipped, the shadow too: there is none to be moved.
+/// Everything is clipped, including the shadow: there is no shadow to retarget.
 #[test]
 fn clipped_pictures_tell_of_no_shadow() {
     let stand = Stand::new(SETUPS[0]);
@@ -88,13 +88,13 @@ fn clipped_pictures_tell_of_no_shadow() {
         direct_fraction.max_element() < 0.01,
         "{direct_fraction} of the plate is taken for a light's"
     );
-    // The pixels' own light is not known either: what they show stays.
+    // The light on these pixels is not known either: they stay unchanged.
     assert_eq!(run.solution.receivers[0].clipped, DVec3::ONE);
     check_receiver(&run);
 }
 
-/// Where no light is known, how much of it comes from all around is told by the shadow below the toy; it has none where the picture
-/// shows none.
+/// If no light is known, the shadow below the toy determines the strength of the ambient light; it
+/// is zero if the picture shows no shadow.
 #[test]
 fn without_a_light_the_shadow_is_as_strong_as_it_is_seen() {
     for bounce in [DVec3::new(0.35, 0.2, 0.1), DVec3::ONE] {
@@ -106,18 +106,19 @@ fn without_a_light_the_shadow_is_as_strong_as_it_is_seen() {
         check_receivers(&run);
         check_receiver(&run);
         let found = run.solution.receivers[0].bounce;
-        // 8 bits, and a coarse ambient map near the contact. Measured: .06.
+        // This allows for 8 bits, and a coarse ambient map near the contact. Measured: .06.
         assert!(found.abs_diff_eq(bounce, 0.08), "{bounce} is taken for {found}");
     }
 }
 
-/// The photograph was made from known light: what the device finds is that, as far as 8 bits tell.
+/// The photograph was made with known light: the device must find it, within the precision of 8
+/// bits.
 #[test]
 fn receiver_finds_the_light_that_was_there() {
     for run in runs() {
         let truth = truth(run.region.lights.len());
-        // Codes of 8 bits, decoding by a driver's polynomial, a coarse ambient map, and the faint light that no list
-        // names. Measured: 8e-3 and 8e-4.
+        // This allows for codes of 8 bits, decoding by a driver's polynomial, a coarse ambient map,
+        // and the faint light that is not listed. Measured: 8e-3 and 8e-4.
         let n_receivers = run.stand.receivers.len();
         let direct_fractions = |solution: &Solution| -> Vec<DVec3> {
             let receivers = solution.receivers[..n_receivers].iter();
@@ -135,7 +136,7 @@ fn receiver_finds_the_light_that_was_there() {
     }
 }
 
-/// Pixels that the device took for one surface of the toy, with normals from rays.
+/// Pixels that the device sampled from one surface of the toy, with normals from rays.
 fn toy_samples(run: &Run, glossy: Option<&Glossy>) -> Vec<ToySample> {
     let (stand, stride_px) = (&run.stand, run.plan.fit_stride_px);
     let occluder = stand.occluder(&stand.physical);
@@ -168,7 +169,7 @@ fn matt_toy() {
     runs().iter().for_each(|run| check_toy(run, None, 1e-3));
 }
 
-/// The light on a glossy toy is told by what it reflects, too.
+/// The reflection of a glossy toy contributes to the estimate of its light, too.
 #[test]
 fn glossy_toy() {
     for setup in SETUPS {
@@ -197,14 +198,14 @@ fn check_toy(run: &Run, glossy: Option<&Glossy>, allowed: f64) {
     let constants = FitConstants::default();
     let samples = toy_samples(run, glossy);
     assert!(samples.len() > 80, "the toy is too small");
-    // Exposure and parts of the light are those of the receivers.
+    // Exposure and shares of the light are those of the receivers.
     let start = Solution {
         gain: run.solution.gain,
         receivers: run.solution.receivers.clone(),
         ..start(run.region.lights.len())
     };
     let expected = fit_toy(&run.region, &samples, &start, &constants, run.plan.n_fit_steps);
-    // Three sides of boxes do not tell four unknowns apart; what they make of each normal is what counts.
+    // Three sides of boxes do not constrain four unknowns; only their light on each normal counts.
     let light = |solution: &Solution, sample: &ToySample| -> DVec3 {
         toy_radiance(solution, sample.normal, sample.received)
     };
@@ -215,7 +216,7 @@ fn check_toy(run: &Run, glossy: Option<&Glossy>, allowed: f64) {
     Errors::between(pairs).check_all(&format!("{}, toy", run.stand.setup.name), allowed);
 }
 
-/// The map is worked out in 32 bits from the fit that the references are fed with.
+/// The map is computed in 32 bits from the fit that the references also use.
 #[test]
 fn share_of_the_lights_over_the_receiver() {
     for run in runs() {

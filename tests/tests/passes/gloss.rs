@@ -39,7 +39,7 @@ fn gloss() -> Gloss {
     }
 }
 
-/// The same, as the reference has it.
+/// The same gloss for the reference.
 fn glossy(gloss: &Gloss, radii_rad: &[f64]) -> Glossy {
     Glossy {
         roughness: f64::from(gloss.roughness),
@@ -55,7 +55,7 @@ struct Maps {
     base: Raster<DVec4>,
 }
 
-/// A toy of specks, each turned another way.
+/// A toy of specks, each with another normal.
 fn maps(near_m: f64) -> Maps {
     let texel = |seed: u32| {
         move |at: UVec2| {
@@ -85,7 +85,7 @@ fn maps(near_m: f64) -> Maps {
     }
 }
 
-/// The point at a texel of the box, whose depth along the camera's axis is known.
+/// The point at a texel of the box, for a known depth along the camera's axis.
 fn seen_point(scene: &Scrambled, maps: &Maps, texel: UVec2, near_m: f64) -> SeenPoint {
     let stand = &scene.stand;
     let (origin, direction) =
@@ -136,7 +136,7 @@ fn errors(source: &str) -> Errors {
             reflection(&scene.solution, &columns, &point, (base, shown))
         };
         let actual = actual.at(texel);
-        // A highlight of so many times white, relative to itself.
+        // The error of a highlight that is brighter than white is relative to itself.
         let scale = 1.0_f64.max(expected.truncate().max_element());
         let colors = (0..3).map(move |channel| (actual[channel] / scale, expected[channel] / scale));
         colors.chain([(actual.w, expected.w)])
@@ -178,7 +178,8 @@ fn a_fault_in_the_reflection_is_found() {
     check_faults("gloss", &faults, ALLOWED, errors);
 }
 
-/// Codes by which the toy differs, well within it, from a photograph of its shown pose, if the core is told of so much gloss.
+/// Difference in codes of the toy, away from its outline, from a photograph of its shown pose, if
+/// the core uses that gloss.
 fn error_of_shown(photo: &Photo, told: Gloss) -> (f64, Image) {
     let stand = Stand::new(SETUPS[0]);
     let mut core = core_on(scene(&stand, &photo.plate(&stand)), Preset::Balanced).unwrap();
@@ -198,7 +199,7 @@ fn error_of_shown(photo: &Photo, told: Gloss) -> (f64, Image) {
     (Errors::between(pairs).mean(), picture)
 }
 
-/// As glossy all over as lacquer, and so rough that faces of boxes show it.
+/// Uniform gloss of lacquer, rough enough to be visible on the faces of boxes.
 const LACQUER: Gloss = Gloss {
     roughness: 0.4,
     strengths: [2.5; N_GLOSSES],
@@ -213,7 +214,7 @@ static GLOSSY_PHOTO: LazyLock<Photo> = LazyLock::new(|| Photo {
 fn highlights_move_as_reflections() {
     let (as_paint, _) = error_of_shown(&GLOSSY_PHOTO, Gloss::NONE);
     let (as_reflection, _) = error_of_shown(&GLOSSY_PHOTO, LACQUER);
-    // What was hidden and what is drawn at a slant is off without any gloss, too.
+    // Surfaces that were hidden, or are drawn at grazing angles, have errors even without gloss.
     let (of_matt, _) = error_of_shown(&Photo::plain(SETUPS[0].lights.len()), Gloss::NONE);
     assert!(
         as_reflection - of_matt < 0.5 * (as_paint - of_matt),
@@ -221,7 +222,8 @@ fn highlights_move_as_reflections() {
     );
 }
 
-/// No strength is no gloss, to the last bit, however rough; and one that there is not makes it worse.
+/// Zero strength equals no gloss, to the last bit, for every roughness; a wrong strength increases
+/// the error.
 #[test]
 fn a_matt_toy_stays_as_it_is() {
     let matt = Photo::plain(SETUPS[0].lights.len());

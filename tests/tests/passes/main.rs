@@ -1,5 +1,5 @@
-//! The device against the references, each stage fed with the device's own inputs of that stage, so that errors do not
-//! add up. Small synthetic scenes of odd sizes, whose truth is known.
+//! The device against the references. Each stage gets the device's own inputs, so that errors do
+//! not add up. The synthetic scenes are small, have odd sizes, and their truth is known.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 

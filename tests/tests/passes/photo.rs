@@ -1,4 +1,4 @@
-//! Plate and frame of a stand, made from the model itself: the fit has an answer that is known.
+//! Plate and frame of a stand, made with the model itself: the fit has a known answer.
 
 use std::sync::Arc;
 
@@ -18,9 +18,9 @@ use crate::toy;
 
 const N_POINTS: usize = 64;
 
-/// What the pictures are made with.
+/// The solution with which the pictures are made.
 pub(crate) fn truth(n_lights: usize) -> Solution {
-    // On the table, then on the wall, where the second light is behind it.
+    // Fractions on the table, then on the wall, which has the second light behind it.
     let direct_fractions = [
         [DVec3::new(0.34, 0.38, 0.44), DVec3::new(0.24, 0.2, 0.14)],
         [DVec3::new(0.7, 0.66, 0.58), DVec3::ZERO],
@@ -47,7 +47,7 @@ pub(crate) fn truth(n_lights: usize) -> Solution {
     }
 }
 
-/// A point of a receiver, or where the picture goes on beyond all of them: the table without end.
+/// A point of a receiver, or of the endless table if the pixel shows none.
 fn point_seen(region: &Region, texel: UVec2) -> ReceiverPoint {
     let at = centre_px(texel);
     let beyond = || ReceiverPoint {
@@ -57,7 +57,7 @@ fn point_seen(region: &Region, texel: UVec2) -> ReceiverPoint {
     region.receiver_point(at).unwrap_or_else(beyond)
 }
 
-/// Plate and frame of wood under the true light, with a little that no model explains.
+/// Plate and frame of wood under the true light, with a small part that no model explains.
 pub(crate) fn photograph(stand: &Stand) -> [Arc<Image>; 2] {
     let photo = Photo {
         solution: truth(stand.setup.lights.len()),
@@ -69,21 +69,21 @@ pub(crate) fn photograph(stand: &Stand) -> [Arc<Image>; 2] {
     [photo.plate(stand), photo.frame(stand, &stand.physical)]
 }
 
-/// How pictures of a stand are made.
+/// Parameters of a stand's pictures.
 #[derive(Clone, Debug)]
 pub(crate) struct Photo {
     pub(crate) solution: Solution,
     pub(crate) albedo: fn(ReceiverPoint) -> DVec3,
-    /// What comes to the frame alone, in plates.
+    /// Light that is added to the frame alone, in plates.
     pub(crate) unmodelled: fn(ReceiverPoint) -> DVec3,
-    /// Factor on the toy's base colour, of a triangle.
+    /// Factor on the base colour of a triangle of the toy.
     pub(crate) paint: fn(usize) -> DVec3,
-    /// How glossy the toy is, if it is.
+    /// Gloss of the toy, if there is any.
     pub(crate) gloss: Option<Gloss>,
 }
 
 impl Photo {
-    /// A smooth table under the true light, and nothing else.
+    /// A smooth table under the true light alone.
     pub(crate) fn plain(n_lights: usize) -> Self {
         Self {
             solution: truth(n_lights),
@@ -117,7 +117,7 @@ impl Photo {
         self.frame_casting(stand, posed, |_| posed)
     }
 
-    /// What the toy reflects at a point, over the gain.
+    /// Light that the toy reflects at a point, relative to the gain.
     fn reflected(&self, stand: &Stand, region: &Region, point: &SeenPoint) -> DVec3 {
         let Some(gloss) = &self.gloss else {
             return DVec3::ZERO;
@@ -132,7 +132,7 @@ impl Photo {
             .sum()
     }
 
-    /// The toy in a pose, with each light's shadow of another.
+    /// The toy in a pose, with each light's shadow of another pose.
     pub(crate) fn frame_casting<'a>(
         &self,
         stand: &Stand,
@@ -182,14 +182,14 @@ impl Photo {
     }
 }
 
-/// A place of slow changes of colour, which keep their edges out of comparisons.
+/// A pattern that changes slowly, so that its edges do not disturb comparisons.
 fn smooth(point: ReceiverPoint) -> DVec3 {
     let at = point.in_plane;
     let colors = [DVec3::new(0.42, 0.36, 0.3), DVec3::new(0.3, 0.34, 0.4)];
     colors[point.receiver] * (1.0 + 0.2 * (25.0 * at.x).sin() * (21.0 * at.y).cos())
 }
 
-/// Wood, more or less: grain, knots and a speckle.
+/// A pattern similar to wood: grain, knots and speckle.
 fn wood(point: ReceiverPoint) -> DVec3 {
     let at = point.in_plane;
     let grain = (170.0 * at.x + 2.0 * (31.0 * at.y).sin()).sin();
@@ -198,7 +198,7 @@ fn wood(point: ReceiverPoint) -> DVec3 {
     colors[point.receiver] * (1.0 + 0.22 * grain + 0.08 * speckle)
 }
 
-/// A faint light that no list names.
+/// A faint light that is not listed.
 fn faint_light(point: ReceiverPoint) -> DVec3 {
     let middles = [DVec2::new(0.08, 0.03), DVec2::new(-0.03, 0.01)];
     let from_middle = point.in_plane - middles[point.receiver];
@@ -222,7 +222,7 @@ pub(crate) fn code(linear: f64) -> u8 {
     code
 }
 
-/// The same, before it is rounded. Source: IEC 61966-2-1.
+/// The code before rounding. Source: IEC 61966-2-1.
 pub(crate) fn unrounded_code(linear: f64) -> f64 {
     let linear = linear.clamp(0.0, 1.0);
     255.0

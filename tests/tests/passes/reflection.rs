@@ -1,4 +1,4 @@
-//! A table that reflects: the toy's image in it, what the fits learn beside it, and the picture.
+//! A reflecting table: the toy's image in it, the fits with the image, and the picture.
 
 use std::sync::LazyLock;
 
@@ -33,8 +33,8 @@ static RUN: LazyLock<Run> = LazyLock::new(|| {
     Run::reflecting(REFLECTION, stand, pictures, &Device::shared().decoded()).unwrap()
 });
 
-/// Where the eye's images are behind the table: across it from points of a lobe, one for each of its slopes, of which all are equally
-/// likely: Beckmann's distribution of the tangent t is 1 - exp(-t^2 / alpha^2).
+/// Positions of the eye's images behind the table, opposite points of a lobe, one for each of its
+/// equally likely slopes: Beckmann's distribution of the tangent t is 1 - exp(-t^2 / alpha^2).
 fn mirrored_eyes(run: &Run) -> Vec<DVec3> {
     let stand = &run.stand;
     let (eye, _) = stand.camera_ray(Default::default());
@@ -52,7 +52,7 @@ fn mirrored_eyes(run: &Run) -> Vec<DVec3> {
         .collect()
 }
 
-/// The part of the lobe that a pose leaves, by rays from the table.
+/// The share of the lobe that a pose does not hide, by rays from the table.
 fn left(run: &Run, posed: &PosedMesh) -> Raster<f64> {
     let occluder = run.stand.occluder(posed);
     let eyes = mirrored_eyes(run);
@@ -82,7 +82,8 @@ fn the_toy_is_reflected_where_rays_from_the_table_meet_it() {
         let channel = run.plan.n_lights;
         let actual = visibility.texels().iter().map(|texel| texel[channel]);
         let errors = Errors::between(actual.zip(expected.texels().iter().copied()));
-        // As of lights: a corner that is snapped moves an edge over a position, and what is stored is off by a code.
+        // The same holds for lights: a snapped corner moves an edge over a position, and stored
+        // values are off by a code.
         errors.check(
             "toy's image",
             (0.5 / N_EYES as f64, 0.005),
@@ -91,7 +92,7 @@ fn the_toy_is_reflected_where_rays_from_the_table_meet_it() {
     }
 }
 
-/// The plate without what the table reflects.
+/// The plate without the table's reflection.
 #[test]
 fn the_plate_is_freed_of_its_surroundings() {
     let run = &*RUN;
@@ -104,7 +105,7 @@ fn the_plate_is_freed_of_its_surroundings() {
         let actual = run.pictures.plate.at(texel);
         (0..3).map(move |channel| (actual[channel], expected[channel]))
     });
-    // Floats of 16 bits.
+    // The tolerance is that of floats with 16 bits.
     Errors::between(pairs).check_all("plate", 1e-3);
 }
 
@@ -119,11 +120,11 @@ fn picture_of_a_table_that_reflects_in_codes() {
     check_receiver(&RUN);
 }
 
-/// Four lights leave no channel: the picture is that of a matt table, to the bit.
+/// Four lights leave no channel: the picture is that of a matt table, to the last bit.
 #[test]
 fn four_lights_leave_no_reflection() {
     let decoded = Device::shared().decoded();
-    // What is seen does not matter.
+    // The visible content does not matter.
     let two_lights = Setup {
         lights: &FOUR_LIGHTS.lights[..2],
         ..FOUR_LIGHTS

@@ -1,4 +1,4 @@
-//! The core on each setup, once for all tests, and everything that it made.
+//! The core on each setup, once for all tests, with all of its results.
 
 use std::sync::{Arc, LazyLock};
 
@@ -29,28 +29,28 @@ use crate::photo::{code, photograph, unrounded_code};
 use crate::setups::SETUPS;
 use crate::stand::Stand;
 
-/// What the device made of a setup.
+/// Results of the device for a setup.
 pub(crate) struct Run {
     pub(crate) stand: Stand,
     pub(crate) shadow_style: ShadowStyle,
     pub(crate) plan: Plan,
     pub(crate) region: Region,
-    /// What the passes saw, as they saw it.
+    /// Pictures as the passes read them.
     pub(crate) pictures: Pictures,
-    /// r where the frame shows the receiver, g where it shows the toy.
+    /// Validity: r if the frame shows the receiver, g if it shows the toy.
     pub(crate) validity: Raster<DVec4>,
     pub(crate) gbuffer_base: Raster<DVec3>,
-    /// What the physical toy receives of each light.
+    /// Light that the physical toy receives from each light.
     pub(crate) gbuffer_received: Raster<DVec4>,
     pub(crate) shown_visibility: Raster<DVec4>,
     pub(crate) shown_ambient: Raster<f64>,
-    /// How much of each pixel the shown toy covers.
+    /// Coverage of each pixel by the shown toy.
     pub(crate) coverage: Raster<f64>,
     pub(crate) solution: Solution,
-    /// Filled residuals on each receiver, their certainty, and where their cells lie.
+    /// Filled residuals on each receiver, their certainty, and the places of their cells.
     pub(crate) residuals: Vec<Raster<DVec4>>,
     pub(crate) grids: Vec<PlaneGrid>,
-    /// Tints of the toy's paint, a grid a material.
+    /// Tints of the toy's paint, one grid per material.
     pub(crate) tints: TintMap,
     /// The lights' share of the plate's radiance.
     pub(crate) direct_fraction: Raster<DVec3>,
@@ -71,7 +71,8 @@ static RUNS: LazyLock<Result<Vec<Run>, String>> = LazyLock::new(|| {
 /// A run for each setup.
 ///
 /// # Panics
-/// Where there is no adapter, with what the core says.
+///
+/// Panics without an adapter, with the core's message.
 pub(crate) fn runs() -> &'static [Run] {
     match &*RUNS {
         Ok(runs) => runs,
@@ -80,12 +81,13 @@ pub(crate) fn runs() -> &'static [Run] {
 }
 
 impl Run {
-    /// Of a plate and a frame; `decoded` are the linear values of all codes, as the device decodes them.
+    /// A run for a plate and a frame; `decoded` are the linear values of all codes, as the device
+    /// decodes them.
     pub(crate) fn new(stand: Stand, pictures: [Arc<Image>; 2], decoded: &[f64]) -> Result<Self, CoreError> {
         Self::by(Preset::Balanced, stand, pictures, decoded)
     }
 
-    /// The same, by a preset.
+    /// A run with a preset.
     pub(crate) fn by(
         preset: Preset,
         stand: Stand,
@@ -95,7 +97,7 @@ impl Run {
         Self::of(preset, (stand, Sharpness::SHARP), [plate, frame], decoded)
     }
 
-    /// The same of a picture that is taken to be soft.
+    /// A run with a picture that counts as soft.
     pub(crate) fn of(
         preset: Preset,
         (stand, sharpness): (Stand, Sharpness),
@@ -106,7 +108,7 @@ impl Run {
         Self::made((preset, &input), stand, [plate, frame], decoded)
     }
 
-    /// The same of a glossy toy.
+    /// A run with a glossy toy.
     pub(crate) fn glossy(
         gloss: Gloss,
         stand: Stand,
@@ -117,7 +119,7 @@ impl Run {
         Self::made((Preset::Balanced, &input), stand, [plate, frame], decoded)
     }
 
-    /// The same with a shadow to taste.
+    /// A run with a shadow style.
     pub(crate) fn styled(
         style: ShadowStyle,
         stand: Stand,
@@ -128,7 +130,7 @@ impl Run {
         Self::made((Preset::Balanced, &input), stand, [plate, frame], decoded)
     }
 
-    /// The same on a table that reflects.
+    /// A run with a reflecting table.
     pub(crate) fn reflecting(
         reflection: Reflection,
         stand: Stand,
@@ -185,7 +187,7 @@ impl Run {
                 ambient: visible(map(Map::PhysicalAmbient)?),
             },
             validity,
-            // The map is decoded by the standard, the shader by the driver.
+            // The map is decoded by the standard; the shader uses the driver's decoding.
             gbuffer_base: base.map(|texel| as_decoded(texel.truncate())),
             gbuffer_received: map(Map::GbufferReceived)?,
             shown_visibility: map(Map::Visibility)?,
@@ -204,7 +206,7 @@ impl Run {
     }
 }
 
-/// How a stand's table reflects, as the references have it.
+/// Reflection of a stand's table, for the references.
 fn known_reflection(stand: &Stand, reflection: &Reflection) -> KnownReflection {
     KnownReflection {
         channel: stand.setup.lights.len(),
@@ -247,7 +249,7 @@ pub(crate) fn raster(map: &FloatMap) -> Raster<DVec4> {
     Raster::from_fn(UVec2::new(map.width, map.height), texel)
 }
 
-/// A rectangle of a picture, as shaders see it: `decoded` has the linear value of each code.
+/// A rectangle of a picture, as shaders read it: `decoded` has the linear value of each code.
 pub(crate) fn crop(image: &Image, rect: &PixelRect, decoded: &[f64]) -> Raster<DVec3> {
     Raster::from_fn(rect.size_px, |texel| {
         let [r, g, b, _] = texel_of(image, rect.origin_px + texel).map(|code| decoded[usize::from(code)]);
@@ -270,7 +272,7 @@ pub(crate) fn codes_at(
     (0..3).map(move |channel| (f64::from(actual[channel]), f64::from(expected[channel])))
 }
 
-/// What the device fitted, as the references have it.
+/// The device's fit, for the references.
 pub(crate) fn solution(fit: &Fit, n_lights: usize) -> Solution {
     let color = |value: &[f32; 4]| Vec4::from(*value).truncate().as_dvec3();
     let receiver = |fit: &ReceiverFit| ReceiverSolution {
@@ -286,12 +288,12 @@ pub(crate) fn solution(fit: &Fit, n_lights: usize) -> Solution {
     }
 }
 
-/// What the input of every stage is worth: how far the driver's decoding is from the standard's.
+/// Precision of every stage's input: difference between the driver's decoding and the standard's.
 #[test]
 fn driver_decodes_srgb_within_half_a_code() {
     let pairs = (0..=255u8)
         .zip(Device::shared().decoded())
         .map(|(code, linear)| (unrounded_code(linear), f64::from(code)));
-    // A software driver's polynomial measures as 0.34 of a code at worst.
+    // A software driver's polynomial has an error of at most 0.34 codes.
     Errors::between(pairs).check_all("codes of decoded codes", 0.5);
 }

@@ -1,4 +1,4 @@
-//! Where the toy stands: camera, receivers, and the poses in anchor space.
+//! Setup of a scene: camera, receivers, and the poses in anchor space.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -18,9 +18,9 @@ use reference::model::Region;
 use crate::setups::Setup;
 use crate::toy;
 
-/// Moment of the clip that is shown.
+/// Moment of the shown clip, in seconds.
 const SHOWN_SECS: f64 = 0.8;
-/// What the camera looks at.
+/// The camera's target.
 const TARGET: DVec3 = DVec3::new(0.0, 0.05, 0.0);
 
 /// A toy on its receivers under a camera.
@@ -30,7 +30,7 @@ pub(crate) struct Stand {
     pub(crate) camera: Camera,
     pub(crate) world_from_object: DMat4,
     pub(crate) receivers: Vec<Receiver>,
-    /// As the core has them; the first one's plane is the anchor.
+    /// The receivers as the core has them; the first one's plane is the anchor.
     pub(crate) anchored: Vec<AnchoredReceiver>,
     pub(crate) anchor_from_world: DMat4,
     pub(crate) physical_pose: Pose,
@@ -40,7 +40,7 @@ pub(crate) struct Stand {
 }
 
 impl Stand {
-    /// Of each light, seen from the middle of the toy.
+    /// Angular radius of each light, seen from the toy's centre.
     pub(crate) fn angular_radii_rad(&self) -> Vec<f64> {
         let bounds = self.toy.bounds_of_pose(&self.physical_pose).unwrap();
         let middle = self
@@ -52,7 +52,8 @@ impl Stand {
             .collect()
     }
 
-    /// Height over the first receiver of the box around the toy, over the physical pose and the whole clip.
+    /// Height over the first receiver of the toy's bounding box, over the physical pose and the
+    /// whole clip.
     pub(crate) fn tallest_m(&self) -> f64 {
         let over_clip = self
             .toy
@@ -123,7 +124,7 @@ impl Stand {
         self
     }
 
-    /// The same stand from another camera, at an offset from what it looks at.
+    /// The same stand from another camera, at an offset from its target.
     pub(crate) fn seen_from(setup: Setup, offset: DVec3) -> Self {
         let stand = Self::new(setup);
         Self {
@@ -154,12 +155,12 @@ impl Stand {
         }
     }
 
-    /// What the references know of `rect` of the camera's picture.
+    /// Values of the references for the rectangle `rect` of the camera's picture.
     pub(crate) fn region(&self, rect: &PixelRect) -> Region {
         Region::new(&self.view(), rect, &self.layout())
     }
 
-    /// What the shaders know of it.
+    /// Values of the shaders for the rectangle.
     pub(crate) fn globals(&self, rect: &PixelRect) -> Globals {
         globals(&self.view(), rect, &self.layout())
     }
@@ -179,7 +180,7 @@ impl Stand {
         )
     }
 
-    /// The middle of the physical toy's bounding box.
+    /// The centre of the physical toy's bounding box.
     pub(crate) fn physical_centre(&self) -> DVec3 {
         let positions = self.physical.positions.iter().map(|position| position.as_dvec3());
         let low = positions.clone().fold(DVec3::INFINITY, DVec3::min);
@@ -187,7 +188,7 @@ impl Stand {
     }
 }
 
-/// As the core does.
+/// Computed in the same way as in the core.
 fn anchored(receivers: &[Receiver], toy: &Toy, world_from_object: &DMat4) -> Vec<AnchoredReceiver> {
     let bounds = toy.bounds_of_pose(&Pose::Authored).unwrap();
     let middle = (0.5 * (bounds.min + bounds.max)).as_dvec3();
@@ -198,7 +199,7 @@ fn anchored(receivers: &[Receiver], toy: &Toy, world_from_object: &DMat4) -> Vec
         .collect()
 }
 
-/// The table, and a wall that stands on it behind the toy and reaches a little into it.
+/// The table, and a wall on it behind the toy, which reaches a little into it.
 fn receivers(world_from_table: &DMat4, has_wall: bool) -> Vec<Receiver> {
     let table = Receiver {
         name: "table".to_owned(),

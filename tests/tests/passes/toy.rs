@@ -11,11 +11,11 @@ const HEAD: usize = 3;
 struct BoxPart {
     centre_m: [f32; 3],
     half_m: [f32; 3],
-    /// Linear.
+    /// Linear colour.
     color: [f32; 3],
 }
 
-#[rustfmt::skip] // One part a line.
+#[rustfmt::skip] // Each part has a line of its own.
 const PARTS: [BoxPart; 4] = [
     BoxPart { centre_m: [-0.03, 0.025, 0.0], half_m: [0.012, 0.025, 0.02], color: [0.5, 0.35, 0.2] },
     BoxPart { centre_m: [0.03, 0.025, 0.0], half_m: [0.012, 0.025, 0.02], color: [0.5, 0.35, 0.2] },
@@ -74,7 +74,7 @@ fn box_mesh(half_m: [f32; 3]) -> (Vec<f32>, Vec<f32>, Vec<u32>) {
                 let mut position = half_m;
                 let mut normal = [0.0; 3];
                 position[axis] *= side;
-                // Seen from the other side, the corners go round the other way.
+                // From the other side, the corners are in the opposite order.
                 position[across] *= s * side;
                 position[along] *= t;
                 normal[axis] = side;

@@ -1,4 +1,4 @@
-//! The toy's shadow on itself, by depths from points of a light.
+//! The toy's shadow on itself, from depth maps of points of a light.
 //!
 //! Source: Williams 1978, Heckbert and Herf 1997, Holbert 2011.
 
@@ -10,14 +10,14 @@ use app_scene::scene::Intrinsics;
 
 /// Side of a map.
 const SIDE_PX: i32 = 192;
-/// Relative depth within which a point is the one that the light sees.
+/// Relative depth within which a point counts as the visible one.
 const SAME_DEPTH: f64 = 2e-4;
-/// How far a point is lifted along its normal, in pixels of the map.
+/// Offset of a point along its normal, in pixels of the map.
 const LIFTED_PX: f64 = 1.5;
-/// A point of a light closer than so many radii of the toy sees no shadow that a map could hold.
+/// Distance in radii of the toy below which a point of a light has no usable depth map.
 const NEAREST: f64 = 1.2;
 
-/// What a point of a light sees of the toy.
+/// Depth map of the toy from a point of a light.
 pub(super) struct LightDepth {
     eye: DVec3,
     light_from_camera: DMat3,
@@ -26,7 +26,7 @@ pub(super) struct LightDepth {
 }
 
 impl LightDepth {
-    /// From a point in camera space; none too close to the toy.
+    /// The map from a point in camera space; `None` if it is too close to the toy.
     pub(super) fn new(raster: &mut Rasterizer, shape: &Shape, eye: DVec3) -> Option<Self> {
         let back = eye - shape.centre;
         let distance = back.length();
@@ -57,7 +57,7 @@ impl LightDepth {
         })
     }
 
-    /// Part of a light's point that falls on a surface that faces it by a cosine.
+    /// Visible share of a light's point, at a surface that faces it with the given cosine.
     pub(super) fn visible(&self, point: DVec3, normal: DVec3, cosine: f64) -> f64 {
         let pixel_m = (point - self.eye).length() / self.intrinsics.fx_px;
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();

@@ -1,4 +1,4 @@
-//! What is seen of a toy, and what falls on it of each light.
+//! Visible pixels of a toy, and the light that each receives from every light.
 
 use glam::{DMat4, DVec3};
 
@@ -15,9 +15,9 @@ use app_scene::scene::{Light, MAX_LIGHTS};
 
 /// Points over a light.
 const N_POINTS: usize = 8;
-/// Where a far light is taken to be, in radii of the toy.
+/// Assumed distance of a far light, in radii of the toy.
 const FAR: f64 = 100.0;
-/// Codes that are neither clipped nor mostly rounding.
+/// Range of codes that are neither clipped nor mostly rounding.
 const USABLE_CODES: [usize; 2] = [10, 250];
 
 /// Lights around a toy, in camera space.
@@ -27,7 +27,7 @@ pub(crate) struct Lights {
 }
 
 impl Lights {
-    /// The first few of a list.
+    /// The first lights of a list.
     pub(crate) fn new(listed: &[Light], camera_from_world: &DMat4) -> Self {
         let lights = listed.iter().take(MAX_LIGHTS);
         Self {
@@ -46,25 +46,26 @@ pub(super) struct Sample {
     pub(super) base: [f64; 3],
     /// Index of the strength of its material.
     pub(super) material: usize,
-    /// What a white matt surface there receives of the ambient light from above and below, and of each light.
+    /// Light that a white matt surface there receives from the ambient light above and below, and
+    /// from each light.
     pub(super) received: Columns,
     normal: DVec3,
     to_camera: DVec3,
     to_lights: [DVec3; MAX_LIGHTS],
 }
 
-/// What is seen of a toy.
+/// Observations of a toy.
 pub(crate) struct Look {
     pub(super) samples: Vec<Sample>,
     angular_radii_rad: Vec<f64>,
     up: DVec3,
-    /// Of the columns, those that count.
+    /// Number of columns in use.
     pub(super) n_columns: usize,
     pub(super) n_materials: usize,
 }
 
 impl Look {
-    /// Of a shape that a photograph shows in its place.
+    /// Observations of a shape that a photograph shows at its place.
     pub(crate) fn new(shape: &Shape, surfels: &[Surfel], lights: &Lights) -> Self {
         let mut raster = Rasterizer::default();
         let maps: Vec<Vec<LightDepth>> = lights
@@ -115,12 +116,12 @@ impl Look {
         }
     }
 
-    /// How many pixels tell.
+    /// Number of samples.
     pub(super) fn len(&self) -> usize {
         self.samples.len()
     }
 
-    /// What each sample reflects of each column's light, at strength 1.
+    /// Reflection of each column's light by each sample, at strength 1.
     pub(super) fn reflected(&self, roughness: f64) -> Vec<Columns> {
         let lobes: Vec<f64> = self
             .angular_radii_rad
@@ -160,7 +161,7 @@ fn maps(raster: &mut Rasterizer, shape: &Shape, light: &Light) -> Vec<LightDepth
         .collect()
 }
 
-/// Part of a light that falls on a surfel.
+/// Visible share of a light at a surfel.
 fn visible(maps: &[LightDepth], surfel: &Surfel, cosine: f64) -> f64 {
     if maps.is_empty() {
         return 1.0;

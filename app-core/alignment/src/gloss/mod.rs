@@ -1,11 +1,14 @@
-//! How glossy the toy is, by what its surface shows beside diffuse reflection.
+//! Gloss of the toy, estimated from the reflection of its surface beyond the diffuse one.
 //!
-//! The light on the toy is fitted twice: to a matt toy, and to one that reflects the same light by one lobe as well. Two numbers are new
-//! then, roughness and strength, so what the fit gains by them is not what more freedom gains. The reflection of the **ambient light** is
-//! as important as that of the lamps: a glossy toy is a little brighter all over, the more the lower it is looked at, and only a model that
-//! knows that has its diffuse light right and sees the lobe in what is left.
+//! The light on the toy is fitted twice: to a matt toy, and to one that reflects the same light by
+//! one lobe as well. This adds only two numbers, roughness and strength, so the gain of the fit
+//! does not come from more freedom. The reflection of the **ambient light** is as important as that
+//! of the lamps: a glossy toy is a little brighter everywhere, and more so at grazing angles. Only
+//! a model that includes this estimates the diffuse light correctly and finds the lobe in the
+//! residual.
 //!
-//! A tone curve imitates a broad, weak lobe. So the loss must fall by more than it does for a matt toy whose photograph went through one.
+//! A tone curve imitates a broad, weak lobe. So the loss must fall by more than it does for a matt
+//! toy with a tone curve.
 
 mod columns;
 mod light_depth;
@@ -18,17 +21,18 @@ use app_scene::gloss::{Gloss, N_GLOSSES};
 
 pub(crate) use look::{Lights, Look};
 
-/// Part of the loss that goes where a lobe is first believed, and from which on it is in full. Measured: matt toys 0 to .02, through a phone's
-/// pipeline too; glossy ones .3 and more.
+/// Share of the loss that a lobe must explain: accepted from the first value on, in full from the
+/// second. Measured: matt toys 0 to .02, through a phone's pipeline too; glossy ones .3 and more.
 const BELIEVED: [f64; 2] = [0.15, 0.25];
-/// And by lamps' highlights, without which nothing tells the roughness: where these would be in another pose is a guess then.
+/// The same for lamps' highlights, which alone constrain the roughness: without them their place in
+/// another pose would be a guess.
 const HIGHLIGHTS_BELIEVED: [f64; 2] = [0.005, 0.015];
-/// Fewer pixels tell nothing.
+/// Minimum number of pixels of an estimate.
 const LEAST_SURFELS: usize = 300;
-/// More add nothing.
+/// Maximum number of pixels; more do not improve it.
 pub(crate) const MOST_SURFELS: usize = 2500;
 
-/// How glossy a toy is; none of it where nothing tells.
+/// Estimated gloss of a toy; matt if the pixels do not constrain it.
 pub(crate) fn gloss(look: &Look) -> Gloss {
     if look.len() < LEAST_SURFELS {
         return Gloss::NONE;
@@ -46,7 +50,7 @@ pub(crate) fn gloss(look: &Look) -> Gloss {
         let strength = (believed * strength) as f32;
         *slot = strength;
     }
-    // Materials that the toy does not have are as the last.
+    // Slots beyond the toy's materials repeat the last one.
     let last = strengths[found.strengths.len().clamp(1, N_GLOSSES) - 1];
     strengths[found.strengths.len().min(N_GLOSSES)..].fill(last);
     #[allow(clippy::cast_possible_truncation, reason = "a slope, to 7 digits")]

@@ -1,18 +1,19 @@
-//! Reflectance of a rough dielectric: of lamps by a lobe, and of an even sky.
+//! Reflectance of a rough dielectric for lamps, by a lobe, and for an even sky.
 //!
-//! Source: Blinn 1977, Walter et al. 2007, Schlick 1994, Hammon 2017, Karis 2014; as `common/gloss.wgsl` has them.
+//! Source: Blinn 1977, Walter et al. 2007, Schlick 1994, Hammon 2017, Karis 2014; the same as in
+//! `common/gloss.wgsl`.
 
 use glam::DVec3;
 
-/// Where light falls straight on it, of refractive index 1.5.
+/// Reflectance at normal incidence, for refractive index 1.5.
 const STRAIGHT: f64 = 0.04;
-/// Cosines below this are taken as this.
+/// Smallest cosine; smaller ones are clamped.
 const LEAST_COSINE: f64 = 0.05;
-/// How fast what is mirrored goes over from the light below to that above as the mirrored direction rises.
+/// Slope of the transition from the light below to that above as the mirrored direction rises.
 const HORIZON_SLOPE: f64 = 2.5;
-/// Squared roughness of a lobe, at least and at most.
+/// Smallest and largest squared roughness of a lobe.
 const LOBE: [f64; 2] = [1e-4, 0.98];
-/// What the squared angular radius of a light adds to it.
+/// Share of a light's squared angular radius that adds to it.
 const OF_LIGHT: f64 = 0.125;
 
 /// Squared roughness of the lobe of a light.
@@ -21,7 +22,7 @@ pub(super) fn lobe(roughness: f64, angular_radius_rad: f64) -> f64 {
     squared.clamp(LOBE[0], LOBE[1])
 }
 
-/// Radiance reflected of a light, over that of a white matt surface; all unit vectors.
+/// Reflected radiance of a light, relative to a white matt surface; all vectors are unit vectors.
 pub(super) fn of_light(lobe: f64, normal: DVec3, to_camera: DVec3, to_light: DVec3) -> f64 {
     let half_way = (to_camera + to_light).normalize_or_zero();
     let exponent = 2.0 / lobe - 2.0;
@@ -33,7 +34,7 @@ pub(super) fn of_light(lobe: f64, normal: DVec3, to_camera: DVec3, to_light: DVe
     0.5 * distribution * fresnel / (l * masked_v + v * masked_l)
 }
 
-/// Radiance reflected of the ambient light from above and from below.
+/// Reflected radiance of the ambient light from above and from below.
 pub(super) fn of_ambient(roughness: f64, normal: DVec3, to_camera: DVec3, up: DVec3) -> [f64; 2] {
     let cosine = normal.dot(to_camera).max(LEAST_COSINE);
     let root = roughness.sqrt();

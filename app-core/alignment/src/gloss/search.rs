@@ -1,4 +1,4 @@
-//! Roughness and strengths by which least is left unexplained.
+//! Search for the roughness and the strengths with the smallest residual.
 
 use app_scene::gloss::N_GLOSSES;
 
@@ -6,46 +6,46 @@ use super::columns::{Columns, N_COLUMNS};
 use super::look::Look;
 use super::solve::{Glossy, loss};
 
-/// Where the search starts: slopes of facets of a glaze, of satin and of a sheen.
+/// Start values of the search: slopes of facets of a glaze, of satin and of a sheen.
 const STARTS: [f64; 3] = [0.05, 0.12, 0.24];
 const STRENGTHS: [f64; 3] = [0.5, 1.0, 1.8];
-/// Roughness that is tried with the strengths that were found.
+/// Values of the roughness that are tried with the estimated strengths.
 const ROUGHNESSES: [f64; 8] = [0.03, 0.05, 0.08, 0.12, 0.17, 0.24, 0.33, 0.45];
 /// Factors of the steps that refine both.
 const STRENGTH_STEPS: [f64; 2] = [0.8, 1.25];
 const ROUGHNESS_STEPS: [f64; 2] = [0.85, 1.18];
 const ROUGHNESS_RANGE: std::ops::RangeInclusive<f64> = 0.02..=0.6;
 const STRENGTH_RANGE: std::ops::RangeInclusive<f64> = 0.05..=4.0;
-/// And those that a material's own strength is tried at.
+/// Factors at which a material's own strength is tried.
 const OWN_STEPS: &[f64] = &[0.0, 0.3, 0.7, 1.4, 2.0];
-/// A matt one among others.
+/// Factor of a matt material among others.
 const OFF: &[f64] = &[0.0];
-/// Part of the loss that a material's own strength must take.
+/// Share of the loss that a material's own strength must explain.
 const OWN_GAIN: f64 = 0.02;
-/// Part of the samples that a material needs for that.
+/// Share of the samples that a material needs for a strength of its own.
 const OWN_PART: f64 = 0.03;
-/// A step that gains less is none.
+/// Smallest gain of a step that is accepted.
 const LEAST_STEP: f64 = 1e-4;
 /// Rounds over all numbers.
 const N_ROUNDS: usize = 2;
-/// Factors of all strengths that a toy without highlights is tried at.
+/// Factors of all strengths that are tried for a toy without highlights.
 const WITHOUT_HIGHLIGHTS: [f64; 3] = [0.6, 1.0, 1.5];
 
-/// The best of all that was tried.
+/// The best result of the search.
 pub(super) struct Found {
     pub(super) roughness: f64,
-    /// Of each material.
+    /// Strength of each material.
     pub(super) strengths: Vec<f64>,
-    /// Part of the loss of a matt toy that goes.
+    /// Relative fall of the loss against a matt toy.
     pub(super) fall: f64,
-    /// Part of it that goes by lamps' highlights: all that tells the roughness.
+    /// Share of the fall due to lamps' highlights, which alone constrain the roughness.
     pub(super) of_highlights: f64,
 }
 
-/// What explains a look better than a matt toy, by that part of the loss; else none.
+/// The best explanation of a look, if its loss is lower than a matt toy's by that share.
 pub(super) fn found(look: &Look, least_fall: f64) -> Option<Found> {
     let matt = Trial::new(look, STARTS[0], [0.0; N_GLOSSES]);
-    // What follows gains little more.
+    // The later steps gain little more.
     let most = (1.0 - 0.7 * least_fall) * matt.loss;
     let starts = STARTS.map(|roughness| Trial::best_at(look, roughness));
     let mut promising: Vec<Trial> = starts.into_iter().filter(|start| start.loss < most).collect();
@@ -131,7 +131,7 @@ impl Trial {
         }
     }
 
-    /// As glossy all over as explains most, at a roughness.
+    /// The best uniform gloss at a roughness.
     fn best_at(look: &Look, roughness: f64) -> Self {
         let reflected = look.reflected(roughness);
         let [first, rest @ ..] =
@@ -143,13 +143,13 @@ impl Trial {
         best
     }
 
-    /// The loss, with what matt materials among others must gain.
+    /// The loss, with a penalty for matt materials among others.
     fn with_freedoms(&self) -> f64 {
         let n_off = self.strengths.iter().filter(|strength| **strength == 0.0).count();
         self.loss * (1.0 + OWN_GAIN * n_off as f64)
     }
 
-    /// The least loss if lamps had no highlights.
+    /// The smallest loss if lamps had no highlights.
     fn without_highlights(&self, look: &Look) -> f64 {
         let mut least = f64::INFINITY;
         for roughness in STARTS {
@@ -165,7 +165,7 @@ impl Trial {
         least
     }
 
-    /// Gives materials strengths of their own, the one first that tells most of it.
+    /// Gives materials strengths of their own, the most effective one first.
     fn part_materials(&mut self, look: &Look, steps: &[f64]) {
         for _ in 0..look.n_materials {
             let mut best = self.clone();
@@ -181,7 +181,7 @@ impl Trial {
         }
     }
 
-    /// Those that are tried, of materials that are large enough to tell.
+    /// Candidate strengths for materials that are large enough.
     fn own_strengths(&self, look: &Look, steps: &[f64]) -> Vec<(usize, f64)> {
         let least = OWN_PART * look.len() as f64;
         let count = |material: usize| {

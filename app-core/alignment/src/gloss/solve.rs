@@ -1,6 +1,7 @@
-//! The light on a toy of a given gloss, and what it leaves unexplained.
+//! The light on a toy of a given gloss, and its residual.
 //!
-//! Source: Holland and Welsch 1977 (iteratively reweighted least squares), Lawson and Hanson 1974, 23 (light is not negative).
+//! Source: Holland and Welsch 1977 (iteratively reweighted least squares), Lawson and Hanson 1974,
+//! 23 (light is not negative).
 
 use app_scene::gloss::N_GLOSSES;
 use nalgebra::SMatrix;
@@ -11,29 +12,29 @@ use crate::median::median;
 
 /// Residual, over what is expected, at which a pixel counts half: light between parts of the toy is not modelled.
 const CAUCHY_SCALE: f64 = 0.12;
-/// Least expected linear light: below it residuals are noise.
+/// Smallest expected linear light: below it residuals are noise.
 const DARKEST: f64 = 0.02;
 /// Rounds of reweighting.
 const N_ROUNDS: usize = 6;
-/// Weight of the prior that there is no light, over the mean energy of the unknowns.
+/// Weight of the prior for zero light, relative to the mean energy of the unknowns.
 const PRIOR: f64 = 1e-4;
-/// Paint is told by pixels that reflect less than this part of what it throws back.
+/// Largest share of reflected light in a pixel from which paint is estimated.
 const LITTLE_REFLECTED: f64 = 0.3;
-/// By so many of them, at least.
+/// Minimum number of such pixels.
 const LEAST_OF_MATERIAL: usize = 20;
-/// Tints of a material that are possible.
+/// Range of a material's tint.
 const TINTS: [f64; 2] = [0.3, 3.0];
 
 type Tints = [[f64; 3]; N_GLOSSES];
 
-/// A toy of so much gloss.
+/// A toy with a gloss.
 pub(super) struct Glossy<'a> {
     /// The reflection of each sample at strength 1.
     pub(super) reflected: &'a [Columns],
     pub(super) strengths: [f64; N_GLOSSES],
 }
 
-/// Mean loss that is left where the light on the toy is fitted, with its paints free to differ from their model's.
+/// Mean loss after fitting the light on the toy, with paints that may differ from the model's.
 pub(super) fn loss(look: &Look, glossy: &Glossy<'_>) -> f64 {
     let mut weights = vec![[1.0; 3]; look.len()];
     let mut tints: Tints = [[1.0; 3]; N_GLOSSES];
@@ -64,7 +65,7 @@ struct Part {
     reflected: f64,
 }
 
-/// Light of a channel.
+/// The fitted light of a channel.
 fn fitted(
     look: &Look,
     glossy: &Glossy<'_>,
@@ -85,13 +86,13 @@ fn fitted(
     }
     let prior = PRIOR * normal.trace() / look.n_columns as f64;
     for index in 0..N_COLUMNS {
-        // Columns that there are not stay at 0.
+        // Unused columns stay at 0.
         normal[(index, index)] += prior.max(f64::MIN_POSITIVE);
     }
     non_negative(&normal, &side)
 }
 
-/// Unknowns that would be negative are taken out, the most negative one first.
+/// Removes unknowns that would be negative, the most negative one first.
 fn non_negative(normal: &SMatrix<f64, N_COLUMNS, N_COLUMNS>, side: &Columns) -> Columns {
     let (mut normal, mut side) = (*normal, *side);
     for _ in 0..N_COLUMNS {
@@ -109,7 +110,8 @@ fn non_negative(normal: &SMatrix<f64, N_COLUMNS, N_COLUMNS>, side: &Columns) -> 
     Columns::zeros()
 }
 
-/// Each material's paint in the photograph, over that of the model. On the whole they are equally bright.
+/// Each material's paint in the photograph, relative to the model's. Their mean brightness is the
+/// same.
 fn tint(look: &Look, parts: &[[Part; 3]], tints: &mut Tints) {
     for channel in 0..3 {
         let told = |(sample, part): (&Sample, &[Part; 3])| {
@@ -140,7 +142,7 @@ fn tint(look: &Look, parts: &[[Part; 3]], tints: &mut Tints) {
     }
 }
 
-/// Weighs each pixel by how well it is explained; returns the mean loss.
+/// Weights each pixel by its residual. Returns the mean loss.
 fn reweigh(look: &Look, parts: &[[Part; 3]], tints: &Tints, weights: &mut [[f64; 3]]) -> f64 {
     let (mut sum, mut n) = (0.0, 0.0);
     for ((sample, part), weight) in look.samples.iter().zip(parts).zip(weights) {

@@ -20,15 +20,15 @@ const N_DIRECTIONS: usize = 16;
 /// Least light on a plane without a toy, over the receiver's.
 const LEAST_UNSHADOWED: f64 = 0.05;
 
-/// The light on a receiver, and a toy that stands in it.
+/// The light on a receiver, and a toy in it.
 pub(crate) struct OnPlane<'a> {
     shape: &'a Shape,
     lamps: &'a [Lamp],
     intrinsics: Intrinsics,
     size_px: IVec2,
-    /// Of each channel, over the light at the foot of the toy.
+    /// Factors of each channel, relative to the light at the foot of the toy.
     factors: [Factors; 3],
-    /// Irradiance from each lamp there, up to a factor.
+    /// Irradiance of each lamp at the foot, up to a factor.
     at_foot: Vec<f64>,
 }
 
@@ -121,7 +121,7 @@ impl<'a> OnPlane<'a> {
     }
 }
 
-/// The middle of a lamp in a plane's space, homogeneous.
+/// The centre of a lamp in a plane's space, homogeneous.
 fn middle(lamp: &Lamp, shape: &Shape, plane: &SeenReceiver) -> glam::DVec4 {
     lamp.points(&plane.plane_from_camera, shape.centre, &[DVec2::ZERO])[0]
 }

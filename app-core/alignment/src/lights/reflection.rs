@@ -1,9 +1,10 @@
-//! How the receiver that the toy stands on reflects, by the toy's image in it.
+//! Reflection of the receiver below the toy, estimated from the toy's image in it.
 //!
-//! Frame = gain ((plate - e s) M + e (s + t R)): e is the reflectance at the angle of a pixel, s the light of the surroundings, t what
-//! the toy's is above it, R the part of the lobe that the toy hides, and M the model of what lights leave. The plate holds e s. Of each
-//! of some widths of the lobe all else is linear, once M is known from the round before, and is fitted by reweighted least squares; the
-//! width that leaves least is taken.
+//! Frame = gain ((plate - e s) M + e (s + t R)): e is the reflectance at a pixel's angle, s the
+//! light of the surroundings, t the difference of the toy's light from it, R the part of the lobe
+//! that the toy hides, and M the model of the unshadowed light. The plate holds e s. For a given
+//! width of the lobe and M of the previous round the problem is linear, and is fitted by reweighted
+//! least squares. Several widths are tried; the one with the smallest residual is used.
 
 use glam::{DMat4, DVec3, DVec4, IVec2};
 use nalgebra::{SMatrix, SVector};
@@ -22,11 +23,11 @@ use app_scene::scene::{Light, MAX_LIGHTS};
 
 /// Widths of the lobe that are tried.
 const ROUGHNESSES: [f64; 9] = [0.02, 0.035, 0.06, 0.09, 0.13, 0.18, 0.25, 0.35, 0.5];
-/// Pixels of the level that is looked at, at most.
+/// Maximum number of pixels of the level in use.
 const MOST_PIXELS: i32 = 135_000;
-/// One of so many pixels is taken.
+/// Sampling stride: one pixel in `STRIDE` is used.
 const STRIDE: usize = 3;
-/// Columns of gain, bounce, ambient light and lamps; then of the surroundings and of the toy.
+/// Columns of gain, bounce, ambient light and lamps, followed by the surroundings and the toy.
 const FIRST_AMBIENT: usize = 2;
 const FIRST_LAMP: usize = FIRST_AMBIENT + N_AMBIENT;
 const SURROUNDINGS: usize = FIRST_LAMP + MAX_LIGHTS;
@@ -34,23 +35,25 @@ const TOY: usize = SURROUNDINGS + 1;
 const N_COLUMNS: usize = TOY + 1;
 /// Rounds of reweighting.
 const N_ROUNDS: usize = 5;
-/// Scale of robust weights, in deviations.
+/// Scale of robust weights, in standard deviations.
 const ROBUST: f64 = 5.0;
-/// Keeps an unknown that no pixel shows at 0, against the energy of the gain's column.
+/// Prior that keeps an unobserved unknown at 0, relative to the energy of the gain's column.
 const PRIOR: f64 = 1e-6;
-/// Part of the lobe that is hidden from where a pixel tells of the reflection.
+/// Hidden part of the lobe from which on a pixel constrains the reflection.
 const HIDDEN: f64 = 0.1;
-/// Fewer such pixels tell nothing.
+/// Minimum number of such pixels.
 const LEAST_HIDDEN: usize = 60;
 
-/// A reflection explains that part of what is left without it, where the toy is reflected.
+/// Share of the residual without a reflection that one must explain, in the pixels that reflect the
+/// toy.
 ///
-/// Measured: of tables of alpha .1 to .4 .46 to .9, through a phone's pipeline .24 to .62 (.4 is not told there); a real desk .44; of 40 matt
-/// ones up to .13, and with the widest lobe .16.
+/// Measured: tables of alpha .1 to .4 give .46 to .9, through a phone's pipeline .24 to .62 (.4 is
+/// not detected there), a real desk .44; 40 matt ones give up to .13, and with the widest lobe .16.
 const LEAST_EXPLAINED: f64 = 0.2;
 
-/// And the toy in it is brighter or darker than the surroundings by as much, in the mean over the channels: less is what a shadow
-/// beside its place leaves (.06 if a light is 3 degrees off), and hardly shows.
+/// Minimum difference in brightness between the toy and its surroundings in the reflection, as a
+/// mean over the channels. Less can come from a misplaced shadow (.06 if a light is 3 degrees off),
+/// and is hardly visible.
 const LEAST_LIGHT: f64 = 0.12;
 
 type Row = SVector<f64, N_COLUMNS>;
@@ -59,12 +62,12 @@ type Row = SVector<f64, N_COLUMNS>;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FoundReflection {
     pub(crate) reflection: Reflection,
-    /// Frame over plate where nothing changed.
+    /// Ratio of frame to plate in unchanged pixels.
     pub(crate) gain: [f64; 3],
 }
 
-/// Looks for the reflection of a toy in given lights; none where the receiver is matt, no plate tells what it shows without the toy, too
-/// little of it is seen, or lights leave no channel for it.
+/// Estimates the reflection of a toy in given lights. `None` if the receiver is matt, no plate
+/// shows it without the toy, too little of it is visible, or lights leave no channel for it.
 pub(crate) fn reflection(
     lights: &[Light],
     (shape, receivers): (&Shape, &[SeenReceiver]),
@@ -111,7 +114,7 @@ pub(crate) fn reflection(
     best.found(&without)
 }
 
-/// The largest level that is not too large.
+/// The largest level within the limit.
 fn level_of(pyramid: &Pyramid) -> &Level {
     let mut levels = (0..=Pyramid::SMALLEST).map(|level| pyramid.level(level));
     let fits = |level: &&Level| level.frame.size_px.element_product() <= MOST_PIXELS;
@@ -121,7 +124,7 @@ fn level_of(pyramid: &Pyramid) -> &Level {
 /// A width of the lobe that is tried.
 struct Trial {
     roughness: f64,
-    /// Of each pixel the reflectance, and its product with the part of the lobe that the toy hides.
+    /// Reflectance of each pixel, and its product with the part of the lobe that the toy hides.
     seen: Vec<[f64; 2]>,
     fit: Fit,
 }
@@ -131,7 +134,7 @@ impl Trial {
         self.fit.losses.iter().sum()
     }
 
-    /// What it finds, where it explains enough of what is left without it.
+    /// The reflection of this trial, if it explains enough of the residual without it.
     fn found(&self, without: &Fit) -> Option<FoundReflection> {
         let is_hidden = |seen: &[f64; 2]| seen[1] > HIDDEN * seen[0];
         let hidden: Vec<usize> = (0..self.seen.len())
@@ -158,8 +161,8 @@ impl Trial {
     }
 }
 
-/// The width that leaves least by the parabola through the best trial and those beside it; none where it is the widest, which is not
-/// told from light from all around.
+/// The width with the smallest residual, from the parabola through the best trial and its
+/// neighbours. `None` if it is the widest, which is indistinguishable from ambient light.
 fn between(trials: &[Trial], best: usize) -> Option<f64> {
     let place = |index: usize| trials[index].roughness.ln();
     if best + 1 >= trials.len() {
@@ -180,7 +183,8 @@ fn between(trials: &[Trial], best: usize) -> Option<f64> {
     })
 }
 
-/// What a level's receiver reflects: of each pixel its place, the reflectance and the part of the lobe that the toy hides.
+/// Observation of a level's receiver: the index of each pixel, the reflectance and the part of the
+/// lobe that the toy hides.
 pub(crate) fn reflected(
     (shape, receivers): (&Shape, &[SeenReceiver]),
     level: &Level,
@@ -212,9 +216,9 @@ pub(crate) fn reflected(
 
 /// The toy's image in the first receiver.
 struct Image {
-    /// At the angle of each pixel.
+    /// Reflectance at each pixel's angle.
     reflectances: Vec<f64>,
-    /// The part of the lobe that the toy hides, of each pixel.
+    /// Part of the lobe that the toy hides, for each pixel.
     hidden: Vec<f32>,
 }
 
@@ -248,17 +252,17 @@ impl Image {
     }
 }
 
-/// What the first receiver's pixels show.
+/// Pixels of the first receiver.
 struct Evidence {
-    /// Their places among all pixels.
+    /// Their indices among all pixels.
     places: Vec<usize>,
     pixels: Vec<FloorPixel>,
-    /// Over the plate; the last two are 0.
+    /// Rows relative to the plate; the last two columns are 0.
     rows: Vec<Row>,
     n_columns: usize,
 }
 
-/// What a fit finds, and what it leaves of each pixel.
+/// A fit's solution, and each pixel's residual.
 struct Fit {
     factors: [Row; 3],
     losses: Vec<f64>,
@@ -294,14 +298,14 @@ impl Evidence {
         }
     }
 
-    /// As the plate shows it.
+    /// The start values, which reproduce the plate.
     fn start(&self) -> [Row; 3] {
         let mut lit = Row::zeros();
         lit[0] = 1.0;
         [lit; 3]
     }
 
-    /// Of each pixel the reflectance, and its product with the part of the lobe that the toy hides.
+    /// Reflectance of each pixel, and its product with the part of the lobe that the toy hides.
     fn seen(&self, image: &Image) -> Vec<[f64; 2]> {
         let places = self.places.iter();
         places
@@ -326,7 +330,7 @@ impl Evidence {
         fit
     }
 
-    /// A pixel's equation, by what is known of the light there.
+    /// A pixel's equation, from the current estimate of its light.
     fn equation(&self, index: usize, channel: usize, seen: Option<&[[f64; 2]]>, known: &Row) -> Row {
         let row = &self.rows[index];
         let mut equation = row * f64::from(self.pixels[index].plate[channel]);
@@ -370,7 +374,7 @@ impl Evidence {
         match solved {
             Some(solved) if solved[SURROUNDINGS] >= 0.0 => solved,
             Some(_) => {
-                // Surroundings only give light.
+                // The light of the surroundings is not negative.
                 for i in 0..N_COLUMNS {
                     normal[(i, SURROUNDINGS)] = 0.0;
                     normal[(SURROUNDINGS, i)] = 0.0;

@@ -8,7 +8,7 @@ use crate::receivers::SeenReceiver;
 
 /// Number of trial angles of the rectangle, over a quarter turn.
 const N_TURNS: usize = 45;
-/// The part of the points that may lie beyond each side.
+/// Share of the points that may lie beyond each side.
 const BEYOND: f64 = 0.005;
 /// Least part of the rectangle's pixels that show the thing.
 const FILLED: f64 = 0.6;
@@ -133,14 +133,14 @@ impl Extent {
         }
     }
 
-    /// Of an endless plane.
+    /// The plane, without bounds.
     pub(super) fn plane(&self, plane_from_camera: &DMat4) -> SeenReceiver {
         let moved = DMat4::from_rotation_y(self.turn_rad)
             * DMat4::from_translation(-DVec3::new(self.middle.x, 0.0, self.middle.y));
         SeenReceiver::of_size(moved * *plane_from_camera, self.half_m)
     }
 
-    /// Of its middle above a receiver, in metres.
+    /// Height of its centre above a receiver, in metres.
     pub(super) fn height_m(&self, plane_from_camera: &DMat4, table: &SeenReceiver) -> f64 {
         let middle = DVec3::new(self.middle.x, 0.0, self.middle.y);
         let middle = plane_from_camera.inverse().transform_point3(middle);

@@ -1,6 +1,7 @@
-//! How far things reach: each pixel belongs to the seeds that are nearer, along paths that do not cross edges or the other's colours.
+//! Extent of things: each pixel belongs to the nearest seeds, along paths that do not cross edges
+//! or the other's colours.
 //!
-//! Source: Criminisi et al. 2008, geodesic segmentation, with seeds that are found.
+//! Source: Criminisi et al. 2008, geodesic segmentation, with detected seeds.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -13,35 +14,38 @@ use super::groups::{STEPS, groups};
 use super::seeds::{Seed, Seeds};
 use crate::picture::{bilinear, index_in, places};
 
-/// Cost of a step: for itself, for each code that the plate changes by, and for each part of a log likelihood that speaks against it.
+/// Cost of a step: a constant, a factor for each code of change in the plate, and one for the log
+/// likelihood against it.
 const OF_STEP: f32 = 0.3;
 const OF_CODE: f32 = 1.0 / 6.0;
 const OF_COLOR: f32 = 0.4;
-/// Colours that are so much likelier a thing's, as a log, are its own; a change between two of them costs that part.
+/// Log likelihood ratio from which on a colour is a thing's own, and the reduced cost of a change
+/// between two of them.
 const OWN: f32 = 1.5;
 const WITHIN: f32 = 0.15;
-/// A colour is the place's if it is so much likelier that than a thing's, as a log; of most pixels within some of it.
+/// Log likelihood ratio from which on a colour is the place's, and the radius within which most
+/// pixels must agree.
 const LIKE_PLACE: f32 = 0.5;
 const AROUND_PX: i32 = 2;
-/// Holes of no more pixels are closed.
+/// Maximum number of pixels of a hole that is closed.
 const LARGEST_HOLE: usize = 100;
-/// Nothing grows farther.
+/// Maximum distance of growth.
 const FARTHEST: f32 = 40.0;
 
 /// Things of a level.
 pub(super) struct Grown {
     size_px: IVec2,
-    /// How much farther each pixel is from the receiver's seeds than from those of things.
+    /// Each pixel's distance from the receiver's seeds, less that from the things' seeds.
     nearer: Vec<f32>,
-    /// Of each pixel the thing that it is of.
+    /// The thing of each pixel.
     thing: Vec<Option<u32>>,
     n_seeds: Vec<usize>,
-    /// Whether most pixels around each are in the plate's own colours of the place.
+    /// Whether most pixels around each one have the place's colours in the plate.
     is_like_place: Vec<bool>,
 }
 
 impl Grown {
-    /// From the seeds of a kind; none where there are none.
+    /// Grows from the seeds of a kind; `None` if there are none.
     pub(super) fn from(seeds: &Seeds, kind: Seed, plate: &Codes) -> Option<Self> {
         if !seeds.seeds.contains(&kind) {
             return None;
@@ -70,7 +74,8 @@ impl Grown {
         })
     }
 
-    /// Whether a place in pixels is in the colours of the place that things stand on, such as the shadow of one.
+    /// Whether a place in pixels has the colours of the place below the things, such as a thing's
+    /// shadow.
     pub(super) fn is_like_place(&self, place: DVec2) -> bool {
         index_in(self.size_px, place.floor().as_ivec2()).is_some_and(|index| self.is_like_place[index])
     }
@@ -93,7 +98,7 @@ impl Grown {
         self.thing[index_in(self.size_px, at)?].map(|thing| thing as usize)
     }
 
-    /// The thing at a place in pixels, between the centres of pixels by how much nearer it is.
+    /// The thing at a place in pixels, interpolated between the centres of pixels.
     pub(super) fn at(&self, place: DVec2) -> Option<usize> {
         let last = self.size_px - 1;
         let mut sum = 0.0;
@@ -107,7 +112,7 @@ impl Grown {
     }
 }
 
-/// With small holes closed that nothing is known of.
+/// Closes small holes without seeds.
 fn without_holes(mut nearer: Vec<f32>, seeds: &Seeds) -> Vec<f32> {
     let holes = groups(seeds.size_px, |index| nearer[index] <= 0.0);
     let is_known = |index: &usize| seeds.seeds[*index] == Seed::Receiver;
@@ -122,7 +127,7 @@ fn without_holes(mut nearer: Vec<f32>, seeds: &Seeds) -> Vec<f32> {
     nearer
 }
 
-/// Of each pixel, whether most of the pixels around it are likelier the place's.
+/// For each pixel, whether most pixels around it are likelier the place's.
 fn like_place(size_px: IVec2, plate: &Codes, colors: &Colors) -> Vec<bool> {
     let is_like = |color| {
         colors
@@ -139,7 +144,7 @@ fn like_place(size_px: IVec2, plate: &Codes, colors: &Colors) -> Vec<bool> {
     places(size_px).map(most).collect()
 }
 
-/// From the seeds of one kind to each pixel, at most [`FARTHEST`]. Source: Dijkstra 1959.
+/// Distances from the seeds of one kind to each pixel, at most [`FARTHEST`]. Source: Dijkstra 1959.
 fn distances(seeds: &Seeds, (plate, colors): (&Codes, &Colors), from: Seed) -> Vec<f32> {
     let mut distances = vec![FARTHEST; plate.pixels.len()];
     let mut open = BinaryHeap::new();
@@ -171,18 +176,19 @@ fn distances(seeds: &Seeds, (plate, colors): (&Codes, &Colors), from: Seed) -> V
     distances
 }
 
-/// Of a step to a pixel beside.
+/// Cost of a step to a neighbouring pixel.
 fn cost((plate, colors): (&Codes, &Colors), [from, to]: [usize; 2], of: Seed) -> f32 {
     let [a, b] = [plate.pixels[from], plate.pixels[to]];
     if a[0].is_nan() || b[0].is_nan() {
         return FARTHEST;
     }
-    // The place is known by many pixels, a thing by some: what is new to the place is no part of it, what is new to a thing may be.
+    // The place is known from many pixels, a thing from few: a colour that is new to the place is
+    // not part of it, but one that is new to a thing may be.
     let against = match of {
         Seed::Receiver => colors.unusual(b),
         _ => -colors.likelier(b).unwrap_or(0.0),
     };
-    // A thing may have a pattern: edges between colours that are its own are none of its outline.
+    // A thing may have a pattern: edges between its own colours are not part of its outline.
     let of_code = match (of, colors.likelier(a), colors.likelier(b)) {
         (Seed::Thing, Some(from), Some(to)) if from.min(to) > OWN => WITHIN * OF_CODE,
         _ => OF_CODE,

@@ -1,10 +1,12 @@
-//! Things that stand in the picture beside the toy: on the table where its shadow falls, and before it.
+//! Things that stand in the picture beside the toy: on the table where its shadow falls, and before
+//! it.
 //!
-//! **Seeds** are pixels that no light on a receiver explains, where a change should show (`lights::compare`): frame and plate are alike
-//! there though a shadow should fall, or differ though none should. From them a thing **grows** over the plate, along colours that are
-//! its own and not the receiver's and to the next edge (`grown`), against what is known to show the receiver. What frame and plate show
-//! alike where the toy should be is **before the toy**; what the plate alone shows makes the plate wrong; and what the frame alone shows
-//! matters where it hides the toy.
+//! **Seeds** are pixels that no light on a receiver explains, in places where a change should be
+//! visible (`lights::compare`): frame and plate agree although a shadow should fall there, or
+//! differ although none should. From them a thing **grows** over the plate, along its own colours
+//! and up to the next edge (`grown`), against pixels that are known to show the receiver. A thing
+//! that frame and plate both show in the toy's place is **before the toy**; a thing in the plate
+//! alone makes the plate wrong; and a thing in the frame alone matters if it hides the toy.
 
 mod codes;
 mod colors;
@@ -32,28 +34,33 @@ use grown::Grown;
 use planes::FoundPlane;
 use seeds::{Seed, Seeds};
 
-/// Pixels of the level on which things are looked for, at most: more tell no more and take longer.
+/// Maximum number of pixels of the level for the search: more take longer and find no more.
 const MOST_PIXELS: i32 = 150_000;
-/// Pixels of a level within the toy's outline where something before it may be told.
+/// Distance in pixels of a level from the toy's outline within which something before it is
+/// detected.
 const WITHIN_PX: i32 = 2;
-/// Codes up to which frame and plate are alike.
+/// Largest difference in codes at which frame and plate count as equal.
 const ALIKE_CODES: f32 = 5.0;
-/// A thing is before the toy if at least so many pixels of the level where the toy should be show it, and so many beside the toy.
+/// Minimum number of pixels of the level that show a thing before the toy: in the toy's place, and
+/// beside the toy.
 const LEAST_BEFORE: usize = 5;
 const LEAST_BESIDE: usize = 20;
-/// One that is not before the toy has at least so many seeds: fewer are what a camera's own processing leaves beside it.
+/// Minimum number of seeds of a thing that is not before the toy: fewer may come from the camera's
+/// own processing.
 const LEAST_ALONE: usize = 60;
-/// The same of what the frame alone shows.
+/// The same for a thing that the frame alone shows.
 const LEAST_IN_FRAME: usize = 12;
-/// And that part of where it would be before the toy.
+/// Share of its possible pixels before the toy that must show it.
 const PART_BEFORE: f32 = 0.04;
-/// Of the pixels that are of a thing and show a receiver, fewer are seeds where it is the receiver's own surface.
+/// Share of seeds among a thing's pixels that show a receiver, below which these belong to the
+/// receiver itself.
 const OF_PLANE: f32 = 0.1;
-/// What a plate shows differs from the model by as much around what is wrong in it, in plates; it is wrong for some pixels more.
+/// Difference between plate and model around a wrong part of the plate, in plates, and the margin
+/// in pixels that is wrong, too.
 const DIFFERS: f32 = 0.05;
 const WRONG_PX: i32 = 2;
 
-/// What things are looked for with.
+/// Inputs of the search for things.
 pub(crate) struct Sight<'a> {
     pub(crate) shape: &'a Shape,
     pub(crate) paint: &'a Paint,
@@ -61,20 +68,20 @@ pub(crate) struct Sight<'a> {
     pub(crate) pyramid: &'a Pyramid,
     pub(crate) lights: &'a [Light],
     pub(crate) world_from_camera: &'a DMat4,
-    /// Whether planes of things are looked for.
+    /// Whether planes of things are searched.
     pub(crate) wants_planes: bool,
 }
 
-/// What stands beside the toy.
+/// Things beside the toy.
 pub(crate) struct Sighting {
-    /// Of the pixels of the largest level.
+    /// Size of the largest level in pixels.
     pub(crate) size_px: IVec2,
     pub(crate) marks: Vec<Mark>,
-    /// Planes that things have, where these are wanted.
+    /// Planes of things, if they are wanted.
     pub(crate) planes: Vec<FoundPlane>,
 }
 
-/// None where nothing stands beside the toy, or nothing tells.
+/// Finds the things; `None` if there are none beside the toy, or none can be detected.
 pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
     let level = sight.level();
     let plate = Codes::of(level.plate.as_ref()?);
@@ -121,21 +128,21 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
     })
 }
 
-/// What is found in a level.
+/// Things in a level.
 struct Found {
-    /// Things that plate and frame show, and of each whether it is before the toy.
+    /// Things that plate and frame show, and for each whether it is before the toy.
     grown: Option<Grown>,
     before: Vec<bool>,
-    /// Of each pixel whether it is of a thing, but shows a receiver that is no part of it.
+    /// For each pixel, whether it is in a thing, but shows a receiver that is not part of it.
     on_planes: Vec<bool>,
-    /// Where the plate is wrong.
+    /// The wrong part of the plate.
     wrong: Option<Mask>,
     /// Things that the frame alone shows, such as a hand.
     in_frame: Option<InFrame>,
 }
 
 impl Found {
-    /// At a place in pixels of the level, of what the plate shows.
+    /// The mark at a place in pixels of the level, for things in the plate.
     fn at(&self, place: DVec2) -> Mark {
         let thing = self
             .grown
@@ -161,7 +168,7 @@ impl Found {
         }
     }
 
-    /// The same of what the frame alone shows.
+    /// The same for things in the frame alone.
     fn in_frame_at(&self, place: DVec2) -> Mark {
         let in_frame = self.in_frame.as_ref();
         let thing = in_frame.and_then(|in_frame| Some(in_frame.marks[in_frame.grown.at(place)?]));
@@ -172,11 +179,12 @@ impl Found {
 /// Things that the frame alone shows.
 struct InFrame {
     grown: Grown,
-    /// Of each thing: before the toy, beside it, or none.
+    /// The mark of each thing: before the toy, beside it, or no mark.
     marks: Vec<Mark>,
 }
 
-/// Where a level's plate is wrong: all that hangs together with seeds and differs from the model, and where the toy hides it what it grew to.
+/// Wrong part of a level's plate: everything that is connected with seeds and differs from the
+/// model; behind the toy, the area that it grew to.
 fn wrong_plate(grown: &Grown, toy: &Toy, size_px: IVec2, compared: &[Compared]) -> Mask {
     let mut differs = vec![false; (size_px.x * size_px.y) as usize];
     for pixel in compared {
@@ -195,7 +203,7 @@ fn wrong_plate(grown: &Grown, toy: &Toy, size_px: IVec2, compared: &[Compared]) 
     filled(&wrong.grown(WRONG_PX), size_px)
 }
 
-/// With what a mask encloses.
+/// The mask, with its holes filled.
 fn filled(mask: &Mask, size_px: IVec2) -> Mask {
     let has = |index: usize| mask.has(place_of(index, size_px));
     let last = size_px - 1;
@@ -221,8 +229,9 @@ impl Sight<'_> {
             .unwrap_or(self.pyramid.level(Pyramid::SMALLEST))
     }
 
-    /// Of each pixel of a level whether it is of a thing and shows another receiver than the thing stands on, where the thing has hardly
-    /// a seed: such as the top of a book that is a receiver, while its sides are none.
+    /// For each pixel of a level, whether it is in a thing but shows another receiver than the
+    /// thing stands on, where the thing has few seeds: for example the top of a book that is a
+    /// receiver, in contrast to its sides.
     fn on_planes(&self, (grown, seeds): (&Grown, &Seeds), level: &Level, before: &[bool]) -> Vec<bool> {
         let mut counts = vec![[[0; 2]; MAX_RECEIVERS]; before.len()];
         let pixels: Vec<Option<(usize, usize)>> = places(level.frame.size_px)
@@ -247,11 +256,12 @@ impl Sight<'_> {
             .collect()
     }
 
-    /// In the largest level.
+    /// Marks in the largest level.
     fn marks(&self, level: &Level, found: &Found) -> (IVec2, Vec<Mark>) {
         let largest = self.pyramid.level(0);
         let size_px = largest.frame.size_px;
-        // A level leaves out an odd last row and column: it is half as large as the one above, not stretched.
+        // A level omits an odd last row and column: it is half as large as the one above, not
+        // stretched.
         let per_px = level.intrinsics.fx_px / largest.intrinsics.fx_px;
         let toy = Toy::of(self, largest);
         let codes = largest
@@ -282,7 +292,7 @@ impl Sight<'_> {
 /// The toy in a level.
 struct Toy {
     coverage: Coverage,
-    /// In codes; none where it is not known what it should look like.
+    /// Expected colours in codes; `None` if they are not known.
     shown: Option<Vec<Option<Color>>>,
 }
 
@@ -308,7 +318,7 @@ impl Toy {
             .all(|step| self.coverage.at(at + WITHIN_PX * *step) >= 1.0)
     }
 
-    /// Whether a pixel where the toy should be shows what the plate shows, and the toy should look otherwise.
+    /// Whether a pixel in the toy's place shows the plate, although the toy should look different.
     fn is_hidden(&self, at: IVec2, frame: &Codes, plate: &Codes) -> bool {
         let [Some(frame), Some(plate)] = [frame.get(at), plate.get(at)] else {
             return false;
@@ -319,25 +329,26 @@ impl Toy {
         apart(frame, plate) < ALIKE_CODES && is_unlike
     }
 
-    /// Where a level shows the plate in place of the toy.
+    /// Pixels at which a level shows the plate in place of the toy.
     fn hidden<'a>(&'a self, frame: &'a Codes, plate: &'a Codes) -> impl Iterator<Item = IVec2> + 'a {
         let covered = self.coverage.pixels().filter(|at| self.coverage.at(*at) >= 1.0);
         covered.filter(|at| self.is_hidden(*at, frame, plate))
     }
 
-    /// Whether a pixel of the toy looks as it should.
+    /// Whether a pixel of the toy has its expected colour.
     fn is_as_expected(&self, at: IVec2, frame: &Codes) -> bool {
         let colors = frame.get(at).zip(self.expected(at));
         colors.is_some_and(|(frame, expected)| from_shaded(frame, expected) < UNLIKE_CODES)
     }
 
-    /// Whether most pixels around one of the toy look as they should.
+    /// Whether most pixels around one of the toy have their expected colours.
     fn is_shown(&self, at: IVec2, frame: &Codes) -> bool {
         self.coverage.at(at) > 0.0 && most_around(at, |at| self.is_as_expected(at, frame))
     }
 
-    /// Things that a level's frame alone shows: before the toy if they are seen beside it and the toy does not look as it should, and
-    /// beside it if they are large. `None` without either. `seeds` are those of the plate.
+    /// Things in a level's frame alone. They are before the toy if they are visible beside it and
+    /// the toy does not look as expected, and beside it if they are large. `None` if there are
+    /// neither. `seeds` are those of the plate.
     fn in_frame(&self, seeds: &Seeds, frame: &Codes) -> Option<InFrame> {
         let within: Vec<IVec2> = self.coverage.pixels().filter(|at| self.is_within(*at)).collect();
         let as_expected = within
@@ -390,8 +401,8 @@ impl Toy {
         (0..grown.n_things()).map(is_before).collect()
     }
 
-    /// Whether a pixel shows the toy rather than a thing, which may lie in the toy's shadow: around it the picture is nearer to what the
-    /// toy should look like than to the plate in any light.
+    /// Whether a pixel shows the toy, and not a thing in the toy's shadow: the picture around it is
+    /// nearer to the toy's expected colours than to the plate in any light.
     fn shows(&self, at: IVec2, frame: &Codes, plate: &Codes) -> bool {
         let is_toy = |at: IVec2| match (frame.get(at), plate.get(at), self.expected(at)) {
             (Some(frame), Some(plate), Some(toy)) => apart(frame, toy) < from_shaded(frame, plate),
@@ -401,7 +412,7 @@ impl Toy {
     }
 }
 
-/// Whether most pixels around one are as in the plate, in less light: such as in the shadow of a thing.
+/// Whether most pixels around one agree with the plate in less light, as in a thing's shadow.
 fn is_shade(at: IVec2, frame: &Codes, plate: &Codes) -> bool {
     most_around(at, |at| {
         let colors = frame.get(at).zip(plate.get(at));

@@ -75,7 +75,7 @@ impl FoundPlane {
     }
 }
 
-/// Planes of the things of a level.
+/// Finds the planes of a level's things.
 pub(super) fn find(
     (shape, receivers): (&Shape, &[SeenReceiver]),
     level: &Level,
@@ -174,7 +174,7 @@ struct Search<'a> {
     seen: Vec<(Color, f32)>,
     /// Prediction of the known receivers.
     expected: Vec<Option<Color>>,
-    /// The thing's middle and size on the receiver, in metres.
+    /// The thing's centre and size on the receiver, in metres.
     middle: DVec2,
     size_m: f64,
     radius_m: f64,
@@ -217,7 +217,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The plane that explains the thing best.
+    /// The plane with the smallest residual.
     fn best_plane(&self, raster: &mut Rasterizer) -> Option<Candidate> {
         let (first, step, n) = HEIGHTS;
         let level = (0..n).map(|i| [(first + step * i as f64) * self.radius_m, 0.0, 0.0]);
@@ -236,7 +236,7 @@ impl<'a> Search<'a> {
         self.refined(raster, &level, &tilted)
     }
 
-    /// The best plane down from some level and some tilted ones.
+    /// The best plane after descents from some level and some tilted ones.
     fn refined(
         &self,
         raster: &mut Rasterizer,

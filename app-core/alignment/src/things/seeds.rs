@@ -1,4 +1,4 @@
-//! Pixels that are known to show a receiver, and pixels that are known to show none.
+//! Pixels that certainly show a receiver, and pixels that certainly do not.
 
 use glam::IVec2;
 
@@ -10,42 +10,46 @@ use crate::median::median;
 use crate::picture::{Color, index_in};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 
-/// Least difference from the model, in plates, that no light on a receiver explains; and most that shows a receiver.
+/// Smallest difference from the model, in plates, that no light on a receiver explains; a larger
+/// one excludes a receiver.
 const UNEXPLAINED: f32 = 0.15;
 const EXPLAINED: f32 = 0.06;
-/// Such a difference is that many deviations of the noise, too.
+/// Minimum of that difference in standard deviations of the noise.
 const OF_NOISE: f32 = 4.0;
-/// The model takes at least that much light from a pixel that is known to show a receiver.
+/// Smallest loss of light in the model at which a pixel can certainly show a receiver.
 const SHADOWED: f32 = 0.25;
-/// And no more from one that is known to be in the open.
+/// Largest loss of light in the model of a pixel without shadow.
 const OPEN: f32 = 0.02;
-/// A model that leaves less light of the plate tells nothing of it.
+/// Smallest remaining light at which the model constrains the plate.
 const LEAST_LIGHT: f32 = 0.05;
-/// An open pixel shows a receiver if its colour is so much likelier the place's than a thing's, as a log, and that part of the place is of it.
+/// Log likelihood ratio of the place against a thing at which an open pixel shows a receiver, and
+/// the required share of the place.
 const LIKE_PLACE: f32 = 1.5;
 const COMMON: f32 = 0.02;
-/// What looks like a receiver is none if its colour is so much likelier a thing's, as a log; told in so many rounds.
+/// Log likelihood ratio of a thing against the place at which a pixel shows no receiver, and the
+/// number of rounds.
 const LIKE_THING: f32 = 1.0;
 const N_DROPS: usize = 3;
-/// A group is of what the plate alone shows, if the frame's colours there are no likelier a thing's, as a log.
+/// Largest log likelihood ratio of a thing in the frame's colours for a group in the plate alone.
 const OF_PLACE: f32 = 1.0;
-/// And of what the frame alone shows, if the plate's are no likelier and the frame's are likelier by so much; skin is like wood.
+/// Limits of that ratio for a group in the frame alone: the largest in the plate, and the smallest
+/// in the frame; skin is like wood.
 const OF_FRAME: [f32; 2] = [2.0, 1.5];
-/// Groups of seeds whose colours in the plate are not the receiver's: median of the log of how much likelier they are a thing's, from so many
-/// pixels; and for large groups.
+/// Median log likelihood ratio at which a group's colours in the plate are a thing's, with the
+/// minimum number of pixels; and the limit for large groups.
 const TOLD: (f32, usize) = (3.0, 8);
 const TOLD_LARGE: (f32, usize) = (1.0, 200);
 
-/// What a pixel is known to show.
+/// Content of a pixel, as far as it is certain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Seed {
-    /// Nothing is known.
+    /// The content is unknown.
     None,
     Receiver,
     Thing,
-    /// What the plate shows and the frame does not.
+    /// A thing that the plate shows and the frame does not.
     WrongPlate,
-    /// What the frame shows and the plate does not.
+    /// A thing that the frame shows and the plate does not.
     InFrame,
 }
 
@@ -53,14 +57,14 @@ pub(super) enum Seed {
 pub(super) struct Seeds {
     pub(super) size_px: IVec2,
     pub(super) seeds: Vec<Seed>,
-    /// Pixels that are as bright as in the plate, and should be.
+    /// Pixels that are as bright as in the plate, as expected.
     open: Vec<usize>,
-    /// The colours of receivers and of things, or of what the plate alone shows, in the plate.
+    /// Colours in the plate of receivers and of things, or of things that the plate alone shows.
     pub(super) colors: [Colors; 2],
 }
 
 impl Seeds {
-    /// `hidden`: where the plate shows in place of the toy.
+    /// Finds the seeds. `hidden` are the pixels that show the plate in place of the toy.
     pub(super) fn found(
         compared: &[Compared],
         hidden: impl Iterator<Item = IVec2>,
@@ -103,7 +107,7 @@ impl Seeds {
         index_in(self.size_px, at).map_or(Seed::None, |index| self.seeds[index])
     }
 
-    /// Leaves seeds of things amid others.
+    /// Drops isolated seeds of things among others.
     fn drop_lone(&mut self) {
         let is_lone = |at: IVec2| !most_around(at, |at| self.get(at) == Seed::Thing);
         let kept = crate::picture::places(self.size_px).zip(&self.seeds);
@@ -117,11 +121,12 @@ impl Seeds {
         self.seeds = kept.collect();
     }
 
-    /// Leaves groups of seeds whose colours, in the frame without its shadow or in the plate, tell them from the place, each as what it is.
+    /// Keeps groups of seeds whose colours, in the frame without its shadow or in the plate, differ
+    /// from the place's, and sets their kind.
     fn tell(&mut self, frame: &Codes, lit: &Codes, plate: &Codes) {
         let groups = groups(self.size_px, |index| self.seeds[index] == Seed::Thing);
         let receivers = self.of(Seed::Receiver);
-        // A thing is told apart from all of the place, and grows against what the shadow falls on.
+        // A thing is compared with the whole place, and grows against the shadowed receiver.
         let place: Vec<usize> = receivers.iter().chain(&self.open).copied().collect();
         let seeds = |of: &'_ Codes| -> Vec<Color> {
             groups.iter().flatten().map(|index| of.pixels[*index]).collect()
@@ -157,8 +162,8 @@ impl Seeds {
         self.drop_like_things(plate);
     }
 
-    /// Leaves receivers whose colours in the plate are not a thing's: where a shadow on a thing falls together with the one that the
-    /// receiver would catch, the thing looks like the receiver.
+    /// Keeps receivers whose colours in the plate are not a thing's: if a shadow on a thing
+    /// coincides with the one that the receiver would catch, the thing looks like the receiver.
     fn drop_like_things(&mut self, plate: &Codes) {
         for _ in 0..N_DROPS {
             let is_like_thing = |index: usize| {
@@ -177,7 +182,8 @@ impl Seeds {
         }
     }
 
-    /// Of things, and of what the plate alone shows, against some pixels of the place.
+    /// Colours of things, and of those that the plate alone shows, against some pixels of the
+    /// place.
     fn colors_against(&self, place: &[usize], plate: &Codes) -> [Colors; 2] {
         [Seed::Thing, Seed::WrongPlate].map(|seed| {
             let seeds = self.of(seed).into_iter();
@@ -188,7 +194,8 @@ impl Seeds {
         })
     }
 
-    /// The same for what the frame shows and the plate does not: against the place, and against the toy where a pixel looks as it should.
+    /// The same for things that the frame alone shows: against the place, and against the toy in
+    /// pixels that look as expected.
     pub(super) fn in_frame(&self, frame: &Codes, toy: impl Iterator<Item = usize>) -> Self {
         let keep = |seed: &Seed| match seed {
             Seed::InFrame | Seed::Receiver => *seed,
@@ -220,7 +227,7 @@ impl Seeds {
     }
 }
 
-/// What the frame would show without the toy's shadow, if it shows a receiver.
+/// The frame without the toy's shadow, if it shows a receiver.
 fn lit(compared: &[Compared], (frame, plate): (&Codes, &Codes)) -> Codes {
     let mut lit = frame.pixels.clone();
     for pixel in compared {
@@ -238,8 +245,8 @@ fn lit(compared: &[Compared], (frame, plate): (&Codes, &Codes)) -> Codes {
     }
 }
 
-/// What a group of seeds is of; by how much likelier its colours in frame and plate are its own than the place's, and by how many codes the
-/// frame differs from the plate in less light.
+/// Kind of a group of seeds, from the log likelihood ratios of its colours in frame and plate, and
+/// from the difference in codes between the frame and the plate in less light.
 fn told([by_frame, by_plate]: [f32; 2], differs: f32, n_seeds: usize) -> Seed {
     let passes = |(least, n): (f32, usize)| by_plate > least && n_seeds >= n;
     let is_of_one = differs > UNLIKE_CODES;

@@ -1,4 +1,4 @@
-//! What happens when a person does something, or the platform changes.
+//! Reactions to the person's actions and to changes of the platform.
 
 use super::App;
 use super::event::{
@@ -69,7 +69,7 @@ impl App {
         }
     }
 
-    /// In another world, whatever became of the one before.
+    /// Starts in another world, whatever the state of the previous one.
     pub(super) fn start_over(&mut self) {
         if self.platform.ar_session == ArSession::Failed {
             self.ar_session(ArSession::Able, None);
@@ -78,7 +78,7 @@ impl App {
         self.wants_new_world = self.step == Step::FindTable;
     }
 
-    /// What this device was found not to have is asked for again.
+    /// Asks again for things that this device was found to lack.
     fn try_again(&mut self) {
         if self.platform.ar_session == ArSession::Unsupported {
             self.ar_session(ArSession::Able, None);
@@ -86,7 +86,7 @@ impl App {
         }
     }
 
-    /// What the phone's own way back means now; none if it leaves the app.
+    /// The action of the platform's back gesture; `None` if it leaves the app.
     #[must_use]
     pub fn back(&self) -> Option<UserAction> {
         if self.step == Step::Welcome {
@@ -94,7 +94,7 @@ impl App {
         }
         let through = match self.obstacle() {
             Some(Obstacle::ArFailed) => Some(UserAction::StartOver),
-            // The step stays below what is only looked for.
+            // The step stays visible below a message about tracking.
             Some(Obstacle::Tracking(_)) | None => None,
             Some(_) => Some(UserAction::Leave),
         };
@@ -137,7 +137,7 @@ impl App {
         }
     }
 
-    /// A person moves the ghost: nobody else does any longer.
+    /// Changes the ghost for the person; nothing else moves it afterwards.
     fn by_hand(&mut self, change: impl FnOnce(&mut Ghost, &Camera)) {
         if self.step != Step::PlaceToy {
             return;
@@ -185,7 +185,7 @@ impl App {
     pub(super) fn foreground(&mut self, is_foreground: bool, commands: &mut Vec<ShellCommand>) {
         self.platform.is_foreground = is_foreground;
         self.follow_start(is_foreground, commands);
-        // What comes after a pause is far from what was before it: no pose of then is drawn over it.
+        // The picture after a pause differs from the one before: no old pose is faded in over it.
         self.fade = app_scene::camera_frame::Fade::default();
     }
 
@@ -209,7 +209,7 @@ impl App {
         }
     }
 
-    /// The platform does not look for the card: the table is found as without one.
+    /// Handles a platform that does not detect the card: the table is found without it.
     pub(super) fn refuse_card(&mut self) {
         self.uses_card = false;
         self.tell(Notice::CardRefused);
@@ -224,7 +224,7 @@ impl App {
 
     pub(super) fn saved(&mut self, saved: Saved) {
         if saved != Saved::Done {
-            // A video that cannot be written goes on in vain.
+            // A video that cannot be written need not go on.
             self.captures.video = false;
         }
         self.tell(Notice::Saved(saved));

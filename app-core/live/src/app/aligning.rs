@@ -1,4 +1,4 @@
-//! The toy's place as the picture tells it, found on another thread.
+//! The toy's pose as estimated from the picture, on another thread.
 
 use std::sync::Arc;
 
@@ -14,12 +14,14 @@ use app_scene::reflection::Reflection;
 use app_scene::scene::{Camera, Light, Scene};
 use app_scene::things::Things;
 
-/// The outline of a toy that was found lies this near to the picture's, root mean square in pixels: exact poses reach 1.2 where a
-/// shadow hides a part of it, and 2 is that of no toy at all.
+/// Largest distance between the outlines of a found toy and the picture, root mean square in
+/// pixels: exact poses reach 1.2 if a shadow hides a part of the outline, and a picture without a
+/// toy gives 2.
 const FOUND_PX: f64 = 1.5;
-/// Pictures, one after the other, that do not show the toy where it should be, before it counts as lost.
+/// Number of consecutive pictures without the toy at its place after which it counts as lost.
 const N_MISSES: u32 = 2;
-/// Time between the beginnings of two alignments, in seconds: trackers drift by millimetres in some seconds.
+/// Time between the starts of two alignments, in seconds: trackers drift by millimetres in some
+/// seconds.
 const PERIOD_S: f64 = 1.0;
 
 /// One alignment, for another thread.
@@ -31,19 +33,19 @@ pub struct AlignJob {
 }
 
 impl AlignJob {
-    /// What is to be aligned.
+    /// The frame to align.
     #[must_use]
     pub fn input(&self) -> &FrameInput {
         &self.input
     }
 
-    /// The scene that it is aligned with.
+    /// The scene of the alignment.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         self.aligner.scene()
     }
 
-    /// Takes what is known from elsewhere in place of aligning.
+    /// Uses an alignment from another source instead of running one.
     #[must_use]
     pub fn known(self, alignment: Alignment) -> AlignedJob {
         AlignedJob {
@@ -54,7 +56,7 @@ impl AlignJob {
         }
     }
 
-    /// Aligns; a second or more.
+    /// Runs the alignment, which takes a second or more.
     #[must_use]
     pub fn run(mut self) -> AlignedJob {
         let result = self.aligner.align(&self.input);
@@ -67,7 +69,7 @@ impl AlignJob {
     }
 }
 
-/// What came of it.
+/// The result of an alignment.
 #[derive(Debug)]
 pub struct AlignedJob {
     place: u64,
@@ -76,40 +78,41 @@ pub struct AlignedJob {
     result: Result<Alignment, AlignError>,
 }
 
-/// What an alignment says of the toy.
+/// The state of the toy according to an alignment.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// It is where it is shown.
+    /// It is at its place.
     Found {
-        /// Outline to picture, in pixels; none where too little of it is seen, so that nobody knows.
+        /// Distance of the outlines in pixels; `None` if too little is visible to decide.
         outline_px: Option<f64>,
-        /// Why no light is known, where none is.
+        /// The reason why no light is known, if none is.
         no_light: Option<NoLight>,
     },
-    /// It is not.
+    /// It is not at its place.
     Missed {
-        /// Outline to picture, in pixels.
+        /// Distance of the outlines in pixels.
         outline_px: f64,
     },
-    /// Nothing could be said, and why.
+    /// The alignment failed, for this reason.
     Failed(String),
 }
 
-/// A toy that was placed, with its scene.
+/// A placed toy with its scene.
 #[derive(Debug)]
 pub(super) struct Place {
-    /// Counts places: results of another are not taken.
+    /// Number of the place: results of another place are dropped.
     number: u64,
-    /// What frames are shown with: another one is another allocation.
+    /// The scene of the frames; another one is another allocation.
     pub(super) scene: Arc<Scene>,
-    /// None while it is at work.
+    /// `None` while it runs on its thread.
     aligner: Option<Aligner>,
     started_s: Option<f64>,
     n_misses: u32,
-    /// The platform's anchor when the toy was placed, and as it is told since: trackers correct their worlds.
+    /// The platform's anchor when the toy was placed, and its latest pose: trackers correct their
+    /// worlds.
     world_from_anchor: DMat4,
     anchor: PoseFilter,
-    /// From the world that the anchor tells to that of the scene, as alignment found it.
+    /// Transform from the anchor's world to the scene's, as estimated by alignment.
     world_from_anchored: DMat4,
     world_from_object: DMat4,
     lights: Option<Arc<[Light]>>,
@@ -138,29 +141,29 @@ impl Place {
         }
     }
 
-    /// Whether the picture shows the toy where it is drawn, as far as anyone knows.
+    /// Whether the picture shows the toy at its drawn place, as far as it was checked.
     pub(super) fn is_known(&self) -> bool {
         matches!(self.verdict, Some(Verdict::Found { .. })) || (1..N_MISSES).contains(&self.n_misses)
     }
 
-    /// The toy's transform, as it was found.
+    /// The toy's estimated transform.
     pub(super) fn world_from_object(&self) -> &DMat4 {
         &self.world_from_object
     }
 
-    /// The number and the pose of the anchor that is to be held.
+    /// The number and the pose of the anchor that the platform must hold.
     pub(super) fn anchor(&self) -> (u64, DMat4) {
         (self.number, self.world_from_anchor)
     }
 
-    /// Takes where the platform says that the anchor is, after `elapsed_s`.
+    /// Adopts the platform's pose of the anchor, after `elapsed_s`.
     pub(super) fn follow_anchor(&mut self, anchors: &[Anchor], elapsed_s: f64) {
         let own = anchors.iter().find(|anchor| anchor.id == self.number);
         let measured = own.map(|anchor| anchor.world_from_anchor);
         self.anchor.step(elapsed_s, measured);
     }
 
-    /// The input in the world as it was when the toy was placed.
+    /// The input in the world of the time when the toy was placed.
     pub(super) fn anchored(&self, input: FrameInput) -> FrameInput {
         let Some(now_from_anchor) = self.anchor.pose() else {
             return input;
@@ -170,7 +173,7 @@ impl Place {
         input.with_camera(camera)
     }
 
-    /// The input as it was corrected.
+    /// The input with its corrections.
     pub(super) fn corrected(&self, input: FrameInput) -> FrameInput {
         let input = self.anchored(input);
         let camera = moved(&input.camera, &self.world_from_anchored);
@@ -182,7 +185,7 @@ impl Place {
             .with_reflection(self.reflection)
     }
 
-    /// An alignment of `input`, where it is time for one.
+    /// An alignment of `input`, if one is due.
     pub(super) fn job(&mut self, time_s: f64, input: FrameInput) -> Option<AlignJob> {
         let is_due = self
             .started_s
@@ -192,7 +195,7 @@ impl Place {
         }
         let aligner = self.aligner.take()?;
         self.started_s = Some(time_s);
-        // The job runs for a second or more, and a platform has few pictures to lend.
+        // The job runs for a second or more, and a platform lends only a few pictures.
         let kept = input.image.kept();
         let input = input.with_image(kept);
         Some(AlignJob {
@@ -202,7 +205,7 @@ impl Place {
         })
     }
 
-    /// Takes what an alignment found; whether it was of this place.
+    /// Adopts the result of an alignment. Returns whether it belonged to this place.
     pub(super) fn take(&mut self, done: AlignedJob) -> bool {
         if done.place != self.number {
             return false;
@@ -218,7 +221,7 @@ impl Place {
         true
     }
 
-    /// Tells a recording where the toy was found, and the lights.
+    /// Gives the toy's estimated pose and the lights to a recording.
     pub(super) fn tell(&self, recorder: &Recorder) {
         recorder.aligned(
             &self.world_from_object,
@@ -226,7 +229,7 @@ impl Place {
         );
     }
 
-    /// The thread of an alignment did not come to an end: begins with a new one.
+    /// Starts with a new aligner if the thread of an alignment did not end.
     pub(super) fn begin_anew(&mut self) {
         self.aligner = Some(Aligner::new(Arc::clone(&self.scene)));
         self.things = None;
@@ -246,7 +249,7 @@ impl Place {
         self.lights = alignment.lights;
         self.things = alignment.things;
         self.reflection = alignment.reflection;
-        // What an alignment told that missed the toy counts from here on, too.
+        // Results of an alignment that missed the toy are used from now on, too.
         self.scene = Arc::clone(aligner.scene());
         self.verdict = Some(verdict);
     }

@@ -1,4 +1,4 @@
-//! What reaches the app, and what it asks of its shell.
+//! Events for the app, and commands to its shell.
 
 use std::sync::Arc;
 
@@ -16,37 +16,37 @@ use app_session::recording::{RecordingJob, RecordingOutcome};
 
 pub use app_pipeline::governor::Thermal;
 
-/// Whether the camera may be used.
+/// Permission to use the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Permission {
-    /// Nobody was asked yet.
+    /// The person was not asked yet.
     #[default]
     Unknown,
-    /// It may.
+    /// The camera may be used.
     Granted,
-    /// It may not; asking again is possible.
+    /// The camera may not be used; asking again is possible.
     Denied,
-    /// It may not, and only the system's settings change that.
+    /// The camera may not be used, and only the system's settings can change that.
     Barred,
 }
 
-/// How the platform's AR session is.
+/// State of the platform's AR session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ArSession {
-    /// It runs, or would if it were asked to.
+    /// It runs, or can run.
     #[default]
     Able,
-    /// What it needs is looked for or being installed: it is asked for all the same.
+    /// A required part is being checked or installed: the session can be requested nevertheless.
     Installing,
-    /// Something else has the camera, such as a call.
+    /// Something else uses the camera, such as a call.
     Interrupted,
-    /// The device has none, or one that is too old.
+    /// The device has no AR session, or a version that is too old.
     Unsupported,
-    /// It ended by itself and may be started again.
+    /// It ended unexpectedly and can be started again.
     Failed,
 }
 
-/// How the graphics device is.
+/// State of the graphics device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum GraphicsState {
     /// Pipelines are being compiled.
@@ -54,157 +54,158 @@ pub enum GraphicsState {
     Starting,
     /// It draws.
     Ready,
-    /// It was lost and is opened anew.
+    /// It was lost and is being opened again.
     Lost,
 }
 
-/// What became of something that was to be saved.
+/// Outcome of saving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Saved {
-    /// It is where people look for it.
+    /// It is saved at the usual place.
     Done,
-    /// There is no room left.
+    /// There is not enough space.
     NoRoom,
-    /// It may not be put there.
+    /// The place is not writable.
     NotAllowed,
-    /// It failed otherwise.
+    /// It failed for another reason.
     Failed,
 }
 
 /// A recording that has ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recorded {
-    /// Where a person finds it.
+    /// The file's place, for the person.
     pub file: String,
-    /// What became of it.
+    /// The recording's outcome.
     pub outcome: RecordingOutcome,
 }
 
-/// What a person does, by a touch or a button.
+/// An action of the person, by a touch or a button.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UserAction {
-    /// The first button.
+    /// The button of the first screen.
     Begin,
-    /// The system's settings, where the camera can be allowed.
+    /// Open the system's settings, which can allow the camera.
     OpenSettings,
     /// A point of the camera's picture was tapped, in its pixels.
     Tap(DVec2),
-    /// The place that the reticle lies on.
+    /// The place under the reticle was tapped.
     TapReticle,
-    /// A finger went from one pixel of the camera's picture to another.
+    /// A finger moved from one pixel of the camera's picture to another.
     Drag {
-        /// Where it was.
+        /// The finger's previous pixel.
         from_px: DVec2,
-        /// Where it is.
+        /// The finger's new pixel.
         to_px: DVec2,
     },
-    /// Two fingers turned by so much, counterclockwise in the picture; radians.
+    /// Two fingers turned by this angle in radians, counterclockwise in the picture.
     Twist(f64),
-    /// The place stays without a picture of its own.
+    /// Go on without a photograph of the empty place.
     SkipPlate,
-    /// The lens lies in its place on the card: it is to be photographed.
+    /// The lens is at its place on the card: photograph it.
     TakeLens,
-    /// The ghost stands where the toy does.
+    /// The ghost is at the toy's place.
     Placed,
-    /// It does not: a person moves and turns it.
+    /// The ghost is not at the toy's place: the person moves and turns it.
     ByHand,
-    /// The toy is to be searched for where the ghost is.
+    /// Search for the toy at the ghost's place.
     LookAgain,
-    /// Back to the ghost.
+    /// Return to the ghost.
     Replace,
-    /// The toy was lifted away: the place is to be photographed.
+    /// The toy was removed: photograph the place.
     RetakePlate,
-    /// All from the table on.
+    /// Start again from the table.
     StartOver,
-    /// To the first screen, and out of whatever is in the way.
+    /// Return to the first screen, and close messages.
     Leave,
-    /// What this device was found not to have may be there by now.
+    /// Check again for a part that this device lacked.
     TryAgain,
-    /// The printed card is to be looked for, which costs the camera time, or no longer.
+    /// Turn detection of the printed card, which costs the camera time, on or off.
     UseCard(bool),
-    /// Another clip, or the pose as authored.
+    /// Select another clip, or the pose as authored.
     Choose(Option<ClipId>),
-    /// On or off.
+    /// Start or pause the clip.
     Play(bool),
-    /// To a time of the clip, in seconds.
+    /// Go to a time of the clip, in seconds.
     Scrub(f64),
-    /// The next picture.
+    /// Save the next picture.
     SavePhoto,
-    /// On or off.
+    /// Turn the video on or off.
     Video(bool),
-    /// On or off.
+    /// Turn the recording on or off.
     Record(bool),
-    /// Times of passes over the picture, on or off.
+    /// Show or hide times of passes over the picture.
     ShowProfile(bool),
-    /// The questions of a new phone, from the first on, or no more of them.
+    /// Start the questions of a new phone from the first one, or end them.
     CheckPhone(bool),
-    /// To the question of [`App::phone_question`](super::App::phone_question).
+    /// Answer the question of [`App::phone_question`](super::App::phone_question).
     Answer(bool),
-    /// A toy of the person's own.
+    /// Select a toy of the person's own.
     PickToy,
-    /// That of [`ShellEvent::ToyFiles`], by its place there; none to keep the one of now.
+    /// Select a toy of [`ShellEvent::ToyFiles`] by its index; `None` keeps the current one.
     ChooseToy(Option<usize>),
-    /// The log, and the latest recording and profile.
+    /// Share the log, and the latest recording and profile.
     Share,
-    /// The preset that the shell has chosen, in place of the simplest.
+    /// Use the preset that the shell has chosen, in place of the simplest.
     RestorePreset,
 }
 
-/// What a shell tells.
+/// An event from a shell.
 #[derive(Debug)]
 pub enum ShellEvent {
     /// The camera's permission, at the start and whenever it changes.
     Permission(Permission),
-    /// The app came to the front, or left it.
+    /// The app came to the foreground, or left it.
     Foreground(bool),
-    /// There is something to draw on, of so many pixels, or no longer.
+    /// The size in pixels of the surface to draw on; `None` if there is none any longer.
     Surface(Option<[u32; 2]>),
-    /// The graphics device.
+    /// The state of the graphics device.
     Graphics(GraphicsState),
-    /// The AR session.
+    /// The state of the AR session.
     ArSession(ArSession),
-    /// The same, with what the platform says of it in a sentence or two.
+    /// The state of the AR session, with the platform's description of one or two sentences.
     ArTrouble(ArSession, String),
-    /// The platform does not look for the printed card, though it was asked to.
+    /// The platform does not detect the printed card, though it was asked to.
     CardRefused,
     /// A camera frame.
     Frame(Box<CameraFrame>),
-    /// How hot the device is.
+    /// The device's thermal state.
     Thermal(Thermal),
     /// Memory is short.
     MemoryLow,
-    /// [`WorkCommand::Plate`] ended; none where its thread did not come to an end.
+    /// [`WorkCommand::Plate`] ended; `None` if its thread did not end normally.
     Plated(Option<Box<PlatedJob>>),
-    /// [`WorkCommand::Search`] ended; none where its thread did not come to an end.
+    /// [`WorkCommand::Search`] ended; `None` if its thread did not end normally.
     Searched(Option<Box<SearchedJob>>),
-    /// [`WorkCommand::Align`] ended; none where its thread did not come to an end.
+    /// [`WorkCommand::Align`] ended; `None` if its thread did not end normally.
     Aligned(Option<Box<AlignedJob>>),
-    /// Names of toys' files that a person can choose from, in answer to [`WorkCommand::PickToy`].
+    /// Names of available toy files, in answer to [`WorkCommand::PickToy`].
     ToyFiles(Vec<String>),
-    /// A toy was read, or why it was not.
+    /// A toy was read, or could not be read for this reason.
     Toy(Result<Arc<Toy>, String>),
-    /// A photo, a video or what is to be shared was saved, or not.
+    /// The outcome of saving a photo, a video or files to share.
     Saved(Saved),
-    /// [`WorkCommand::Record`]: it has ended, by itself or since it was asked to.
+    /// The recording of [`WorkCommand::Record`] has ended.
     Recorded(Recorded),
-    /// What is free where recordings go, in bytes; once a second.
+    /// Free space at the recordings' place, in bytes; once a second.
     FreeSpace(u64),
-    /// What was kept from start to start, once this one has [begun](LaunchHistory::begin): before anything else.
+    /// The history of launches, after this one has [begun](LaunchHistory::begin); the first event
+    /// of all.
     Started(LaunchHistory),
-    /// This app has taken the place of one that a panic ended; see [`Panics`](super::Panics).
+    /// This app replaces one that a panic ended; see [`Panics`](super::Panics).
     Restarted,
-    /// The language that the person reads, before anything is shown in it.
+    /// The person's language, before any text is shown.
     Language(Language),
-    /// What a person does with the interface, which [`Live`](crate::live::Live) has.
+    /// An action in the interface, which [`Live`](crate::live::Live) contains.
     User(UserAction),
 }
 
-/// What a shell is to do.
+/// A command to a shell.
 #[derive(Debug)]
 pub enum ShellCommand {
-    /// What takes the platform.
+    /// A command that needs the platform.
     Platform(PlatformCommand),
-    /// What takes no more than files and threads.
+    /// A command that needs only files and threads.
     Work(WorkCommand),
 }
 
@@ -220,70 +221,71 @@ impl From<WorkCommand> for ShellCommand {
     }
 }
 
-/// What a platform is asked for, by its shell.
+/// A command to the platform, executed by its shell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlatformCommand {
-    /// Ask for the camera, and tell.
+    /// Ask for permission to use the camera, and report the answer.
     AskPermission,
     /// Show the system's settings of this app.
     OpenSettings,
-    /// Run the AR session, from its start where it ran before and the world is to be another.
+    /// Run the AR session, restarted if it ran before and a new world is required.
     RunTracking {
-        /// Whether level planes are looked for, which costs.
+        /// Whether horizontal planes are detected, which costs time.
         finds_planes: bool,
-        /// Whether the printed card is, which costs more.
+        /// Whether the printed card is detected, which costs more.
         finds_card: bool,
-        /// Whether the world begins anew.
+        /// Whether the session starts a new world.
         is_new_world: bool,
     },
-    /// Pause it.
+    /// Pause the AR session.
     PauseTracking,
-    /// Hold exposure, white balance and focus, or let go of them.
+    /// Lock exposure, white balance and focus, or release them.
     LockExposure(bool),
-    /// Expose at a sixty-fourth of what is held, or as near to that as the camera can, and hold that; or hold again what was held
-    /// before. Where the camera cannot, nothing is to be done.
+    /// Set the exposure to a sixty-fourth of the locked one, or as near as the camera can, and lock
+    /// it; or restore the exposure from before. If the camera cannot, do nothing.
     Underexpose(bool),
-    /// Hold a place of the world as an anchor of that number, in place of the one before.
+    /// Hold a place of the world as an anchor of this number, in place of the previous one.
     HoldAnchor {
-        /// Its number.
+        /// Number of the anchor.
         id: u64,
-        /// Rigid.
+        /// Rigid transform of the anchor.
         world_from_anchor: glam::DMat4,
     },
-    /// Keep the screen on, or let it go off.
+    /// Keep the screen on, or let it turn off.
     KeepAwake(bool),
-    /// Frames a second to ask the camera for.
+    /// Set the camera's frames per second.
     FrameRate(u32),
-    /// Open the graphics device anew.
+    /// Open the graphics device again.
     ReopenDevice,
-    /// A step has begun: say it to those who do not see the screen, in the words of [`announced`](crate::interface::announced).
+    /// Announce the step that has begun to screen readers, in the words of
+    /// [`announced`](crate::interface::announced).
     Announce(Step),
-    /// Something was found: one short knock that a hand feels.
+    /// Give one short haptic pulse: something was found.
     Knock,
 }
 
-/// Work that is the same on each platform.
+/// Work that does not depend on the platform.
 #[derive(Debug)]
 pub enum WorkCommand {
-    /// Run this on another thread, and tell.
+    /// Run this on another thread, and report its result.
     Plate(Box<PlateJob>),
-    /// The same.
+    /// Run this on another thread, and report its result.
     Search(Box<SearchJob>),
-    /// The same.
+    /// Run this on another thread, and report its result.
     Align(Box<AlignJob>),
     /// Save the next finished picture.
     SavePhoto,
-    /// Begin a video of the finished pictures, or end and save it.
+    /// Start a video of the finished pictures, or end and save it.
     Video(bool),
-    /// Write this recording on another thread, and tell; none where the one before was ended: what waits of it is still
-    /// written.
+    /// Write this recording on another thread, and report its outcome; `None` if the previous one
+    /// was ended: its remaining data is still written.
     Record(Option<Box<RecordingJob>>),
-    /// Let a person choose a toy's file and tell the toy, or tell the files that there are.
+    /// Let the person choose a toy's file and report the toy, or report the available files.
     PickToy,
-    /// Read the toy's file of that name, on another thread, and tell.
+    /// Read the toy's file of this name on another thread, and report the toy.
     ReadToy(String),
-    /// Hand log, recording and profile to whoever the person chooses.
+    /// Share log, recording and profile.
     Share,
-    /// Keep this text for the next start, at once: see [`LaunchHistory`].
+    /// Store this text for the next launch, at once: see [`LaunchHistory`].
     Remember(String),
 }

@@ -1,4 +1,4 @@
-//! What happens with a camera frame.
+//! Processing of a camera frame.
 
 use std::sync::Arc;
 
@@ -13,13 +13,13 @@ use app_scene::camera_frame::{Arrival, CameraFrame, FoundPlane, Tracking};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Receiver, Scene, Surface};
 
-/// A tracker may look for the place of before for so long while nothing was chosen there.
+/// Time after which relocalisation is given up if nothing was placed yet.
 const RELOCALISING_S: f64 = 10.0;
 
 impl App {
     pub(super) fn frame(&mut self, frame: CameraFrame, commands: &mut Vec<ShellCommand>) {
         if !self.commanded.is_tracking() {
-            // One that was under way when the camera was paused.
+            // This frame was on its way when the camera was paused.
             return;
         }
         let arrival = self.arrivals.arrive(frame.stamp);
@@ -69,7 +69,8 @@ impl App {
         self.record(&frame);
     }
 
-    /// A tracker that looks for a place may, before anything was chosen, look for ever, in another room: it begins anew.
+    /// Restarts a tracker that tries to relocalise before anything was placed: in another room it
+    /// would never succeed.
     fn follow_relocalising(&mut self, elapsed_s: f64) {
         let is_in_vain = self.platform.tracking == Tracking::Relocalising && self.table.is_none();
         self.relocalising_s = if is_in_vain {
@@ -83,7 +84,7 @@ impl App {
         }
     }
 
-    /// Whether poses or pixels of before mean nothing in a frame.
+    /// Whether earlier poses or pixels are meaningless for a frame.
     fn is_of_another_place(&self, frame: &CameraFrame, arrival: Arrival) -> bool {
         let is_new_world = arrival == Arrival::NewWorld;
         let is_other_size = self
@@ -97,7 +98,7 @@ impl App {
         self.table.is_some() && (is_new_world || is_other_size || is_other_place)
     }
 
-    /// The table as the tracker has corrected it, as long as nothing was placed on it.
+    /// Adopts the tracker's corrections of the table until something is placed on it.
     fn follow_table(&mut self, frame: &CameraFrame) {
         let Some(table) = &mut self.table else { return };
         let same = as_told_now(table, frame);
@@ -109,7 +110,8 @@ impl App {
         }
     }
 
-    /// A scene of the table, the plates and the ghost, or a toy in the middle of the table before there is one.
+    /// A scene of the table, the plates and the ghost; without a ghost, the toy is in the middle of
+    /// the table.
     pub(super) fn placed_scene(&self) -> Option<Scene> {
         let (table, latest) = (self.table.as_ref()?, self.latest.as_ref()?);
         let ghost = match &self.ghost {
@@ -172,7 +174,7 @@ impl App {
         }
     }
 
-    /// That of a frame over that of the plates; 1 where the platform does not tell.
+    /// The frame's exposure relative to that of the plates; 1 if the platform does not report it.
     pub(super) fn exposure_of(&self, frame: &CameraFrame) -> f64 {
         let amount = frame.exposure.and_then(|exposure| exposure.amount());
         match (amount, self.plate_exposure) {
@@ -181,7 +183,7 @@ impl App {
         }
     }
 
-    /// The latest frame with the moment that is shown, as the tracker gives it.
+    /// The latest frame with the shown moment, with the tracker's pose.
     pub(super) fn input(&self, effect: f64) -> Option<FrameInput> {
         let (latest, place) = (self.latest.as_ref()?, self.place.as_ref()?);
         let camera = latest.camera().or(self.camera)?;

@@ -1,4 +1,4 @@
-//! A toy put on a table by hand: by a tap, a drag and a turn.
+//! A toy that a person puts on a table by a tap, a drag and a turn.
 
 use std::f64::consts::TAU;
 
@@ -8,38 +8,40 @@ use app_scene::camera_frame::FoundPlane;
 use app_scene::scene::{Camera, Pose};
 use app_scene::toy::{Toy, ToyError};
 
-/// A line of sight that meets the table at less than this to its surface tells no place on it: sine of 3 degrees.
+/// Sine of 3 degrees: smallest angle between a line of sight and the table that gives a usable
+/// place.
 const LEAST_SLOPE: f64 = 0.052;
-/// A table is not looked for farther away, in metres.
+/// Largest distance of a table, in metres.
 const FARTHEST_M: f64 = 10.0;
 
-/// Where a toy stands on a plane.
+/// Pose of a toy on a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ghost {
     world_from_plane: DMat4,
-    /// In the plane, x and z, in metres.
+    /// Place in the plane, x and z in metres.
     place_m: DVec2,
-    /// About the plane's normal, in radians.
+    /// Angle about the plane's normal, in radians.
     yaw_rad: f64,
-    /// From the lowest point of the toy to its origin, in metres.
+    /// Height of the toy's origin above its lowest point, in metres.
     lift_m: f64,
-    /// Radius of the ring around it that turns it, in metres.
+    /// Radius of the surrounding ring for turning, in metres.
     ring_m: f64,
 }
 
-/// The ring that turns a ghost, over the toy's reach.
+/// Radius of the ring relative to the toy's reach.
 const RING: f64 = 1.25;
-/// A finger within that part of it moves the ghost.
+/// Share of the ring's radius within which a finger moves the ghost.
 const WITHIN: f64 = 0.8;
-/// Its corners.
+/// Number of the ring's corners.
 const N_CORNERS: u32 = 64;
 
 impl Ghost {
-    /// A toy that stands where a camera sees the plane at `pixel`, its front, which is object space's +Z, towards the camera; none
-    /// where that is no place on the plane.
+    /// A toy at the plane's place at `pixel`, with its front, object space's +Z, towards the
+    /// camera; `None` if `pixel` does not show the plane.
     ///
     /// # Errors
-    /// When the toy cannot be posed.
+    ///
+    /// Fails if the toy cannot be posed.
     pub(super) fn at(
         toy: &Toy,
         plane: &FoundPlane,
@@ -62,7 +64,8 @@ impl Ghost {
         }))
     }
 
-    /// One that stands on the plane where a toy of that transform is, turned as that is; none if the toy cannot be posed.
+    /// A toy on the plane at the place of the given transform, with the same turn; `None` if the
+    /// toy cannot be posed.
     pub(super) fn standing(toy: &Toy, plane: &FoundPlane, world_from_object: &DMat4) -> Option<Self> {
         let [lift_m, ring_m] = sizes(toy).ok()?;
         let in_plane = plane.world_from_plane.inverse() * *world_from_object;
@@ -77,14 +80,14 @@ impl Ghost {
         in_plane.is_finite().then_some(ghost)
     }
 
-    /// Puts it where a camera sees the plane at `pixel`; where that is no place on the plane it stays.
+    /// Moves it to the plane's place at `pixel`; it stays if there is none.
     pub(super) fn move_to(&mut self, camera: &Camera, pixel: DVec2) {
         if let Some(place_m) = seen_at(&self.world_from_plane, camera, pixel) {
             self.place_m = place_m;
         }
     }
 
-    /// Moves it as a finger goes over the plane within the ring, and turns it as one goes around it anywhere else.
+    /// Moves it if a finger drags within the ring, and turns it if one drags around it elsewhere.
     pub(super) fn drag(&mut self, camera: &Camera, [from_px, to_px]: [DVec2; 2]) {
         let places = [from_px, to_px].map(|pixel| seen_at(&self.world_from_plane, camera, pixel));
         let [Some(from_m), Some(to_m)] = places else {
@@ -94,12 +97,12 @@ impl Ghost {
         if from.length() < WITHIN * self.ring_m {
             self.place_m += to_m - from_m;
         } else if to.length() > 0.0 {
-            // A plane's x goes to its z by a turn to the right, seen from above.
+            // From above, the turn from a plane's x to its z is clockwise.
             self.turn(-from.angle_to(to));
         }
     }
 
-    /// The ring that turns it, corner by corner, and its knob, before the toy's front; in pixels.
+    /// The ring's corners and its knob, in front of the toy, in pixels.
     pub(super) fn ring_px(&self, camera: &Camera) -> Option<(Vec<DVec2>, DVec2)> {
         let pixel = |at_m: DVec2| {
             let at = self
@@ -113,14 +116,14 @@ impl Ghost {
         Some((corners.collect(), pixel(self.place_m + self.ring_m * front)?))
     }
 
-    /// Turns it, counterclockwise from above.
+    /// Turns it counterclockwise from above.
     pub(super) fn turn(&mut self, angle_rad: f64) {
         if angle_rad.is_finite() {
             self.yaw_rad = (self.yaw_rad + angle_rad).rem_euclid(TAU);
         }
     }
 
-    /// Follows the plane, as the tracker corrects it.
+    /// Adopts the tracker's corrections of the plane.
     pub(super) fn follow(&mut self, plane: &FoundPlane) {
         self.world_from_plane = plane.world_from_plane;
     }
@@ -132,7 +135,7 @@ impl Ghost {
     }
 }
 
-/// From the lowest point of a toy to its origin, and the radius of its ring.
+/// Height of a toy's origin above its lowest point, and the radius of its ring.
 fn sizes(toy: &Toy) -> Result<[f64; 2], ToyError> {
     let bounds = toy.bounds_of_pose(&Pose::Authored)?;
     let [x, z] = [(bounds.min.x, bounds.max.x), (bounds.min.z, bounds.max.z)]
@@ -140,7 +143,8 @@ fn sizes(toy: &Toy) -> Result<[f64; 2], ToyError> {
     Ok([-f64::from(bounds.min.y), RING * x.hypot(z)])
 }
 
-/// The place of a plane that a camera sees at `pixel`, as its x and z; none above the horizon, from below, or far away.
+/// The place of a plane at `pixel`, as its x and z; `None` above the horizon, from below, or far
+/// away.
 pub(super) fn seen_at(world_from_plane: &DMat4, camera: &Camera, pixel: DVec2) -> Option<DVec2> {
     let k = &camera.intrinsics;
     let direction = DVec3::new(
@@ -159,7 +163,7 @@ pub(super) fn seen_at(world_from_plane: &DMat4, camera: &Camera, pixel: DVec2) -
     (distance_m <= FARTHEST_M).then_some(DVec2::new(place.x, place.z))
 }
 
-/// Corners of a circle, the first on the first axis.
+/// Corners of a circle, starting on the first axis.
 pub(super) fn circle(middle: DVec2, radius: f64, n: u32) -> impl Iterator<Item = DVec2> {
     let step_rad = TAU / f64::from(n);
     (0..n).map(move |corner| middle + radius * DVec2::from_angle(step_rad * f64::from(corner)))

@@ -1,4 +1,4 @@
-//! The shape of a toy's ghost over the camera's picture.
+//! The ghost's shape over the camera's picture.
 
 use glam::{DMat4, DVec3};
 
@@ -7,19 +7,20 @@ use app_scene::geometry::edges::Faces;
 use app_scene::scene::{Camera, Pose};
 use app_scene::toy::{PosedMesh, Toy};
 
-/// Pixels of a silhouette along the picture's longer side, at most: it is drawn anew for each picture.
+/// Maximum size of a silhouette along the picture's longer side, in pixels: it is drawn again for
+/// each picture.
 const MOST_PX: u32 = 640;
 
-/// A toy as authored, as its silhouette needs it.
+/// A toy as authored, prepared for its silhouette.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GhostShape {
-    /// In object space.
+    /// Points in object space.
     points: Vec<DVec3>,
     faces: Faces,
 }
 
 impl GhostShape {
-    /// Of a toy that can be posed; of none otherwise, and there is no silhouette.
+    /// The shape of a toy; empty if the toy cannot be posed.
     pub(super) fn of(toy: &Toy) -> Self {
         let mut posed = PosedMesh::default();
         if toy.pose(&Pose::Authored, &DMat4::IDENTITY, &mut posed).is_err() {
@@ -32,7 +33,7 @@ impl GhostShape {
         }
     }
 
-    /// What it covers of a camera's picture of that size; none where it is not in it.
+    /// The silhouette in a camera's picture of that size; `None` if it is out of the picture.
     pub(super) fn silhouette(
         &self,
         world_from_object: &DMat4,

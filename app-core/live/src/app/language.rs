@@ -1,9 +1,9 @@
-//! The language that a person reads.
+//! The person's language.
 
 /// A language of the interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Language {
-    /// Also for whoever reads none of these.
+    /// English, also the fallback for all other languages.
     #[default]
     English,
     /// German.
@@ -11,10 +11,10 @@ pub enum Language {
 }
 
 impl Language {
-    /// All there are.
+    /// All languages.
     pub const ALL: [Self; 2] = [Self::English, Self::German];
 
-    /// That of a tag such as `de-AT`.
+    /// The language of a tag such as `de-AT`.
     #[must_use]
     pub fn of_tag(tag: &str) -> Self {
         let first = tag.split(['-', '_']).next().unwrap_or_default();

@@ -1,8 +1,10 @@
-//! The logic of an app: what both phones' shells and the desktop have in common, from the first button to the toy that moves.
+//! The app's logic, common to both phones' shells and the desktop, from the first button to the
+//! moving toy.
 //!
-//! A shell tells what happens ([`ShellEvent`]) and does what it is asked for ([`ShellCommand`]); it decides nothing. Here is no
-//! clock, no file, no device and no thread: time comes with the frames, and an alignment, which takes a second, is a job that the
-//! shell runs where it likes. So every order of events can be tested on a desktop.
+//! A shell reports events ([`ShellEvent`]) and executes commands ([`ShellCommand`]); it decides
+//! nothing. There is no clock, no file, no device and no thread here: time comes with the frames,
+//! and an alignment, which takes a second, is a job that the shell runs on any thread. So every
+//! order of events can be tested on a desktop.
 
 mod actions;
 mod aligning;
@@ -82,45 +84,45 @@ pub struct App {
     captures: Captures,
     recorder: Option<Recorder>,
     n_recordings: u64,
-    /// The person began before the camera was allowed.
+    /// Whether the person began before the camera was allowed.
     wants_to_begin: bool,
-    /// The tracker is to begin another world.
+    /// Whether the tracker must start a new world.
     wants_new_world: bool,
-    /// The platform is to hold the toy's place.
+    /// Whether the platform must hold the toy's place.
     wants_anchor: bool,
-    /// A person has the printed card.
+    /// Whether a person uses the printed card.
     uses_card: bool,
-    /// What the platform says of its AR session.
+    /// The platform's description of its AR session.
     ar_words: Option<String>,
     language: Language,
-    /// What has to be said on the first screen, by the terms of what it runs on.
+    /// Disclosure on the first screen that the platform's terms require.
     disclosure: Option<&'static str>,
-    /// For so long the tracker has looked for a place where nothing was chosen.
+    /// Time since the tracker began to relocalise with nothing placed.
     relocalising_s: f64,
     shows_profile: bool,
-    /// While a new phone is looked at.
+    /// The check of a new phone, while it runs.
     phone_check: Option<PhoneCheck>,
     arrivals: Arrivals,
-    /// Seconds between frames that were taken, all in all.
+    /// Sum of the seconds between accepted frames.
     time_s: f64,
     fade: Fade,
     latest: Option<Arc<CameraFrame>>,
-    /// The latest that could be trusted.
+    /// The latest reliable camera.
     camera: Option<Camera>,
     toy: Arc<Toy>,
-    /// While a person chooses another one.
+    /// The files of toys, while a person selects one.
     toy_files: Option<Vec<String>>,
     table: Option<FoundPlane>,
     plating: Plating,
     plates: Vec<Plate>,
-    /// That of the plates, where the platform tells; frames are told relative to it.
+    /// Exposure of the plates, if the platform reports it; frames are relative to it.
     plate_exposure: Option<f64>,
     ghost: Option<Ghost>,
     ghost_shape: GhostShape,
     search: Search,
-    /// Where the platform has recognised the toy.
+    /// The place at which the platform has recognised the toy.
     scanned_at: Option<DVec3>,
-    /// Whether the reticle lay on a table in the frame before.
+    /// Whether the reticle was on a table in the previous frame.
     had_reticle: bool,
     lens: Lens,
     place: Option<Place>,
@@ -128,12 +130,12 @@ pub struct App {
     playback: Playback,
     notices: Notices,
     log: Log,
-    /// None where the shell keeps nothing from start to start.
+    /// `None` if the shell stores nothing between launches.
     start: Option<Start>,
 }
 
 impl App {
-    /// An app with a toy to begin with.
+    /// An app with its first toy.
     #[must_use]
     pub fn new(toy: Arc<Toy>) -> Self {
         Self {
@@ -179,7 +181,7 @@ impl App {
         }
     }
 
-    /// Takes what happened, and returns what is to be done about it, in this order.
+    /// Processes an event, and returns the resulting commands in their order.
     #[must_use]
     pub fn event(&mut self, event: ShellEvent) -> Vec<ShellCommand> {
         let step = self.step;
@@ -211,7 +213,7 @@ impl App {
         let asked = Asked {
             lens: self.lens.is_awaited(),
             held_exposure: self.phone_check.is_some_and(|check| check.holds_exposure()),
-            // Later steps have the table, and need no more of it.
+            // Later steps already have the table.
             card: (self.uses_card && self.step <= Step::PlaceToy)
                 || self.phone_check.is_some_and(|check| check.shows_card()),
         };
@@ -226,60 +228,61 @@ impl App {
         commands
     }
 
-    /// What a person is about to do.
+    /// The current step.
     #[must_use]
     pub fn step(&self) -> Step {
         self.step
     }
 
-    /// What is in the way of that.
+    /// The obstacle to the current step.
     #[must_use]
     pub fn obstacle(&self) -> Option<Obstacle> {
         self.platform.obstacle(self.step)
     }
 
-    /// What the platform says of its AR session, in a sentence or two; none while it is able.
+    /// The platform's description of its AR session, in one or two sentences; `None` while it is
+    /// able.
     #[must_use]
     pub fn ar_words(&self) -> Option<&str> {
         self.ar_words.as_deref()
     }
 
-    /// Whether a person has the printed card, and it is looked for up to [`Step::PlaceToy`].
+    /// Whether a person uses the printed card, which is detected up to [`Step::PlaceToy`].
     #[must_use]
     pub fn uses_card(&self) -> bool {
         self.uses_card
     }
 
-    /// What it speaks.
+    /// The language of its texts.
     #[must_use]
     pub fn language(&self) -> Language {
         self.language
     }
 
-    /// Says this on the first screen, by the terms of what the app runs on.
+    /// Sets the disclosure on the first screen that the platform's terms require.
     pub fn disclose(&mut self, words: &'static str) {
         self.disclosure = Some(words);
     }
 
-    /// What is said there.
+    /// The disclosure.
     #[must_use]
     pub fn disclosure(&self) -> Option<&'static str> {
         self.disclosure
     }
 
-    /// What a person should hear of, for some seconds.
+    /// The current notice, which is shown for some seconds.
     #[must_use]
     pub fn notice(&self) -> Option<&Notice> {
         self.notices.at(self.time_s)
     }
 
-    /// How far the photograph of the empty place is, in its step.
+    /// The progress of the photograph of the empty place, in its step.
     #[must_use]
     pub fn plate_step(&self) -> Option<&PlateStep> {
         self.plating.step.as_ref()
     }
 
-    /// What the latest alignment says.
+    /// The result of the latest alignment.
     #[must_use]
     pub fn verdict(&self) -> Option<&Verdict> {
         self.place.as_ref()?.verdict.as_ref()
@@ -293,7 +296,7 @@ impl App {
             .is_some_and(|frame| frame.world_from_card.is_some())
     }
 
-    /// Whether a dark picture of the lens is waited for.
+    /// Whether the app waits for a dark picture of the lens.
     #[must_use]
     pub fn is_taking_lens(&self) -> bool {
         self.lens.is_awaited()
@@ -305,7 +308,7 @@ impl App {
         !self.plates.is_empty()
     }
 
-    /// The moment that is shown.
+    /// The moment of the clip.
     #[must_use]
     pub fn playback(&self) -> &Playback {
         &self.playback
@@ -329,31 +332,31 @@ impl App {
         self.commanded.captures.recording
     }
 
-    /// Whether times are shown over the picture.
+    /// Whether times are displayed over the picture.
     #[must_use]
     pub fn shows_profile(&self) -> bool {
         self.shows_profile
     }
 
-    /// Pictures a second that the shell was asked for.
+    /// The requested number of pictures per second.
     #[must_use]
     pub fn frames_per_s(&self) -> u32 {
         self.commanded.frames_per_s
     }
 
-    /// How hot the device is.
+    /// The device's thermal state.
     #[must_use]
     pub fn thermal(&self) -> Thermal {
         self.platform.thermal
     }
 
-    /// What happened, for an export.
+    /// The log of events, for an export.
     #[must_use]
     pub fn log(&self) -> &Log {
         &self.log
     }
 
-    /// Goes where a cause leads, and makes ready for it.
+    /// Moves to the step that follows from a cause, and prepares for it.
     fn go(&mut self, cause: Cause) {
         let next = self.step.after(cause);
         self.note(&(cause, next));
@@ -363,7 +366,7 @@ impl App {
         self.step = next;
         self.lens.give_up();
         self.toy_files = None;
-        // What was said of the step before helps no longer.
+        // Notices of the previous step are no longer useful.
         self.notices = Notices::default();
         match next {
             Step::Welcome | Step::FindTable => {
@@ -385,7 +388,8 @@ impl App {
         }
     }
 
-    /// Where the toy is is asked: it is searched for where it was just put down, and a person goes on by hand where it was seen before.
+    /// Starts the question about the toy's place: a toy that was just put down is searched, and one
+    /// that was seen before is placed by hand.
     fn enter_ghost(&mut self, cause: Cause) {
         let place = self.place.take();
         match cause {
@@ -398,7 +402,7 @@ impl App {
         self.ghost = seen.or(self.ghost.take());
     }
 
-    /// All that is of one place is dropped.
+    /// Drops all state of the current place.
     fn forget_place(&mut self) {
         self.table = None;
         self.plates.clear();

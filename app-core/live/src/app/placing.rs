@@ -1,4 +1,4 @@
-//! Where the toy is and where the plate is from: what threads find, as the app takes it.
+//! The toy's pose and the plate: the app's use of results from threads.
 
 use super::App;
 use super::event::{PlatformCommand, ShellCommand, WorkCommand};
@@ -9,21 +9,22 @@ use super::step::{Cause, Step};
 use app_scene::camera_frame::{Anchor, CameraFrame};
 use app_scene::frame::FrameInput;
 
-/// A toy that the platform sees farther from where it saw it before was moved, in metres.
+/// Distance in metres from its earlier place at which a toy that the platform recognises counts as
+/// moved.
 const MOVED_M: f64 = 0.03;
 
 impl App {
-    /// How the person is asked where the toy is; in [`Step::PlaceToy`].
+    /// The state of the question about the toy's place; in [`Step::PlaceToy`].
     #[must_use]
     pub fn placing(&self) -> Placing {
         match self.search.placing() {
-            // Nothing tells where it is but a tap.
+            // Only a tap can give the place.
             Placing::ByHand if self.ghost.is_none() => Placing::Waiting { is_long: true },
             placing => placing,
         }
     }
 
-    /// Whether the ghost means anything yet.
+    /// Whether the ghost has a meaningful pose.
     pub(super) fn shows_ghost(&self) -> bool {
         match self.step {
             Step::Align => true,
@@ -32,8 +33,8 @@ impl App {
         }
     }
 
-    /// The platform recognises the toy by its scan, or sees it elsewhere than before: the search begins there, in all turns, since the
-    /// scan's axes are its own.
+    /// Starts the search, in all turns, at the place where the platform recognises the toy by its
+    /// scan or sees it moved: the scan has axes of its own.
     pub(super) fn follow_scan(&mut self, frame: &CameraFrame) {
         let own = frame.anchors.iter().rfind(|anchor| anchor.id == Anchor::OF_TOY);
         let (Some(own), Some(table)) = (own, &self.table) else {
@@ -65,7 +66,7 @@ impl App {
                 .filter(|_| is_trusted && !self.lens.is_awaited())?;
             let latest = self.latest.as_ref()?;
             let camera = latest.camera()?;
-            // The job runs for some tenths of a second, and a platform has few pictures to lend.
+            // The job runs for some tenths of a second, and a platform lends only a few pictures.
             let input = FrameInput::new(latest.image.kept(), camera, scene.world_from_object);
             Some((scene, input.with_exposure(self.exposure_of(latest))))
         });
@@ -73,7 +74,7 @@ impl App {
         commands.extend(job.map(|job| WorkCommand::Search(Box::new(job)).into()));
     }
 
-    /// Takes what came of a part of the search; none if its thread did not come to an end.
+    /// Adopts the result of a part of the search; `None` if its thread did not end normally.
     pub(super) fn searched(&mut self, done: Option<Box<SearchedJob>>, commands: &mut Vec<ShellCommand>) {
         let Some(done) = done else {
             return self.search.die();
@@ -104,10 +105,10 @@ impl App {
         commands.extend(job.map(|job| WorkCommand::Plate(Box::new(job)).into()));
     }
 
-    /// Takes what came of a shot; none if its thread did not come to an end.
+    /// Adopts the result of a shot; `None` if its thread did not end normally.
     pub(super) fn plated(&mut self, done: Option<Box<PlatedJob>>) {
         let Some(done) = done else {
-            // Another thread may have more luck.
+            // Another thread may succeed.
             return self.plating.begin();
         };
         let plate = done.plate();

@@ -1,10 +1,10 @@
-//! The photograph of the empty place, made on another thread: its pictures are decoded there.
+//! The photograph of the empty place, made on another thread, which also decodes its pictures.
 
 use app_alignment::plate_taker::{PlateShot, PlateStep, PlateTaker};
 use app_scene::camera_frame::CameraFrame;
 use app_scene::scene::Plate;
 
-/// A picture that may become part of a plate, for another thread.
+/// A picture for a plate, as a job for another thread.
 #[derive(Debug)]
 pub struct PlateJob {
     number: u64,
@@ -14,7 +14,7 @@ pub struct PlateJob {
 }
 
 impl PlateJob {
-    /// Looks at the picture; some hundredths of a second.
+    /// Examines the picture; some hundredths of a second.
     #[must_use]
     pub fn run(mut self) -> PlatedJob {
         let step = self.taker.offer(&self.shot);
@@ -27,7 +27,7 @@ impl PlateJob {
     }
 }
 
-/// What came of it.
+/// The result of a plate job.
 #[derive(Debug)]
 pub struct PlatedJob {
     number: u64,
@@ -36,20 +36,20 @@ pub struct PlatedJob {
     exposure: Option<f64>,
 }
 
-/// A plate that is being taken.
+/// A plate in progress.
 #[derive(Debug, Default)]
 pub(super) struct Plating {
-    /// Counts plates: results of another are not taken.
+    /// Number of the plate: results of another plate are dropped.
     number: u64,
-    /// None while it is at work.
+    /// `None` while it runs on its thread.
     taker: Option<PlateTaker>,
-    /// Since the shot before.
+    /// Seconds since the previous shot.
     waited_s: f64,
     pub(super) step: Option<PlateStep>,
 }
 
 impl PlatedJob {
-    /// The plate, and its exposure; none while it grows.
+    /// The plate and its exposure; `None` while it is in progress.
     pub(super) fn plate(&self) -> Option<(Plate, Option<f64>)> {
         match &self.step {
             PlateStep::Taken { plate, .. } => Some((plate.clone(), self.exposure)),
@@ -59,7 +59,7 @@ impl PlatedJob {
 }
 
 impl Plating {
-    /// Another plate is to be taken.
+    /// Starts another plate.
     pub(super) fn begin(&mut self) {
         *self = Self {
             number: self.number + 1,
@@ -68,7 +68,7 @@ impl Plating {
         };
     }
 
-    /// A shot of `frame`, if none is looked at.
+    /// A shot of `frame`, if no other is being examined.
     pub(super) fn job(&mut self, frame: &CameraFrame, elapsed_s: f64) -> Option<PlateJob> {
         self.waited_s += elapsed_s;
         let taker = self.taker.take()?;
@@ -76,7 +76,7 @@ impl Plating {
             number: self.number,
             taker,
             shot: PlateShot {
-                // A platform has few pictures to lend.
+                // A platform lends only a few pictures.
                 image: frame.image.kept(),
                 camera: frame.camera(),
                 elapsed_s: std::mem::take(&mut self.waited_s),
@@ -85,7 +85,7 @@ impl Plating {
         })
     }
 
-    /// Takes what came of a shot; whether it was of this plate.
+    /// Adopts the result of a shot. Returns whether it belonged to this plate.
     pub(super) fn take(&mut self, done: PlatedJob) -> bool {
         if done.number != self.number {
             return false;

@@ -1,4 +1,4 @@
-//! What shows that a table was found: a reticle that lies on it, and dots in a grid around that.
+//! The sign that a table was found: a reticle on it, and a grid of dots around the reticle.
 
 use glam::{DVec2, DVec3};
 
@@ -13,22 +13,22 @@ use app_scene::scene::Camera;
 /// Radius of the reticle, in metres, and its corners.
 const RADIUS_M: f64 = 0.04;
 const N_CORNERS: u32 = 40;
-/// Dots are that far apart, and reach as far around the reticle, in metres.
+/// Distance of the dots, and their reach around the reticle, in metres.
 const PITCH_M: f64 = 0.05;
 const REACH_M: f64 = 0.35;
 
 /// The reticle on a table, in pixels of the camera's picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reticle {
-    /// Corners of its circle, one after the other.
+    /// Corners of its circle, in order.
     pub ring_px: Vec<DVec2>,
-    /// Places of the grid, each with how much of it is seen: 1 at the reticle, and less the farther away.
+    /// Places of the grid with their opacity: 1 at the reticle, and less farther away.
     pub dots_px: Vec<(DVec2, f64)>,
 }
 
 impl App {
-    /// The reticle on the table in the middle of the picture; none where no table was found, and in other steps than
-    /// [`Step::FindTable`].
+    /// The reticle on the table in the middle of the picture; `None` if no table was found, and in
+    /// steps other than [`Step::FindTable`].
     #[must_use]
     pub fn reticle(&self) -> Option<Reticle> {
         let latest = self.latest.as_ref().filter(|_| self.step == Step::FindTable)?;
@@ -52,7 +52,7 @@ impl App {
         })
     }
 
-    /// A person feels it when the reticle comes to lie on a table.
+    /// Gives a haptic pulse when the reticle reaches a table.
     pub(super) fn follow_reticle(&mut self, commands: &mut Vec<ShellCommand>) {
         let has_reticle = self.step == Step::FindTable && self.reticle_px().is_some();
         if has_reticle && !std::mem::replace(&mut self.had_reticle, has_reticle) {
@@ -61,7 +61,7 @@ impl App {
         self.had_reticle = has_reticle;
     }
 
-    /// The pixel that the reticle points at.
+    /// The pixel at which the reticle points.
     pub(super) fn reticle_px(&self) -> Option<DVec2> {
         let latest = self.latest.as_ref()?;
         let camera = latest.camera()?;
@@ -81,7 +81,8 @@ fn hit(frame: &CameraFrame, camera: &Camera) -> Option<(FoundPlane, DVec2)> {
     Some((plane, place_m))
 }
 
-/// Places of a plane's grid around one, within its extent. They belong to the plane, and stay as the reticle moves.
+/// Places of a plane's grid around a point, within its extent. They belong to the plane, and stay
+/// when the reticle moves.
 fn grid(around_m: DVec2, half_extent_m: DVec2) -> impl Iterator<Item = DVec2> {
     #[allow(clippy::cast_possible_truncation, reason = "a dozen")]
     let n = (REACH_M / PITCH_M).ceil() as i32;

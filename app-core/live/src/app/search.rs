@@ -1,4 +1,4 @@
-//! A toy that was put on the table, found on another thread: when something stands there, and how it is turned.
+//! Search on another thread for a toy that was put on the table: its presence and its turn.
 
 use std::sync::Arc;
 
@@ -8,37 +8,37 @@ use app_alignment::{Newcomer, StandingPose, StandingSearch};
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 
-/// Time between two looks at the table, in seconds.
+/// Time between two examinations of the table, in seconds.
 const LOOK_S: f64 = 0.4;
-/// What is new there stands still if it moves by less from look to look, in metres, and its size changes by a smaller part: the phone is
-/// held by a hand.
+/// Largest movement in metres and relative change of size between examinations at which a new thing
+/// counts as standing still: a hand holds the phone.
 const STILL_M: f64 = 0.015;
 const STILL_SHARE: f64 = 0.25;
-/// A person who waits for longer is told what else helps.
+/// Waiting time after which the person gets more advice.
 const LONG_S: f64 = 6.0;
-/// An outline that comes no nearer to the picture's, in pixels, is no find.
+/// Largest distance between the outlines of a found pose and the picture, in pixels.
 const FOUND_PX: f64 = 1.5;
 
-/// How a person is asked where the toy is.
+/// State of the question about the toy's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Placing {
-    /// The toy is waited for.
+    /// The app waits for the toy.
     Waiting {
-        /// For so long that it may stand there unseen.
+        /// Whether it waits so long that the toy may be there undetected.
         is_long: bool,
     },
-    /// Something stands there and is looked at.
+    /// Something is there and is being examined.
     Looking,
-    /// The ghost shows where the toy seems to be.
+    /// The ghost shows the estimated pose of the toy.
     Asked {
-        /// It may still become better.
+        /// Whether the pose may still improve.
         is_searching: bool,
     },
     /// The person moves and turns the ghost.
     ByHand,
 }
 
-/// A part of the search, for another thread.
+/// A part of the search, as a job for another thread.
 #[derive(Debug)]
 pub struct SearchJob {
     number: u64,
@@ -52,7 +52,7 @@ enum Part {
 }
 
 impl SearchJob {
-    /// Searches on; some tenths of a second.
+    /// Continues the search; some tenths of a second.
     #[must_use]
     pub fn run(self) -> SearchedJob {
         let come = match self.part {
@@ -69,7 +69,7 @@ impl SearchJob {
     }
 }
 
-/// What came of it.
+/// The result of a search job.
 #[derive(Debug)]
 pub struct SearchedJob {
     number: u64,
@@ -83,37 +83,38 @@ enum Come {
     Refused,
 }
 
-/// What is going on.
+/// Stage of the search.
 #[derive(Debug, Default)]
 enum Stage {
-    /// The table is looked at from time to time; what was new there at the last look.
+    /// The table is examined from time to time; holds the new thing of the last examination.
     Watch(Option<Newcomer>),
     /// A search begins with the next frame that has a pose.
     Begin,
-    /// It waits for its next step.
+    /// The search waits for its next step.
     Step(Box<StandingSearch>),
-    /// It has come to its end.
+    /// The search has ended.
     Ended,
     /// The person moves the ghost.
     #[default]
     ByHand,
 }
 
-/// The search for a toy that is placed.
+/// The search for a placed toy.
 #[derive(Debug, Default)]
 pub(super) struct Search {
-    /// Counts searches: results of another are not taken.
+    /// Number of the search: results of another search are dropped.
     number: u64,
     stage: Stage,
     is_at_work: bool,
-    /// Since the last look, and since the search was begun.
+    /// Seconds since the last examination, and since the start of the search.
     looked_s: f64,
     waited_s: f64,
     pub(super) best: Option<StandingPose>,
 }
 
 impl Search {
-    /// Begins anew: with a plate it waits until something new stands on the table, else it is where the ghost is.
+    /// Starts again: with a plate it waits for a new thing on the table, otherwise it searches at
+    /// the ghost's place.
     pub(super) fn begin(&mut self, has_plate: bool) {
         let stage = if has_plate {
             Stage::Watch(None)
@@ -123,12 +124,12 @@ impl Search {
         self.turn_to(stage);
     }
 
-    /// The ghost is a person's from now on.
+    /// Leaves the ghost to the person from now on.
     pub(super) fn give_up(&mut self) {
         self.turn_to(Stage::ByHand);
     }
 
-    /// Begins at once, where a ghost was put.
+    /// Starts at once, at a ghost's place.
     pub(super) fn look_again(&mut self, world_from_object: DMat4) {
         self.turn_to(Stage::Begin);
         self.best = Some(StandingPose {
@@ -137,7 +138,7 @@ impl Search {
         });
     }
 
-    /// The thread of a part did not come to an end: the person goes on by hand.
+    /// Handles a thread that did not end: the person goes on by hand.
     pub(super) fn die(&mut self) {
         if self.is_at_work {
             self.give_up();
@@ -148,19 +149,19 @@ impl Search {
         *self = Self {
             number: self.number + 1,
             stage,
-            // A thread that works on what was before is not waited for.
+            // A thread that works on an earlier place is not waited for.
             ..Self::default()
         };
     }
 
-    /// How the person is asked.
+    /// The state of the question.
     pub(super) fn placing(&self) -> Placing {
         match (&self.stage, self.best) {
             (Stage::ByHand, _) => Placing::ByHand,
             (Stage::Ended, Some(best)) if best.outline_px.is_some_and(|px| px <= FOUND_PX) => {
                 Placing::Asked { is_searching: false }
             }
-            // Nothing meets the outline: the best start is the person's to turn.
+            // No pose matches the outline: the person turns the best start.
             (Stage::Ended, _) => Placing::ByHand,
             (_, Some(_)) => Placing::Asked { is_searching: true },
             (Stage::Watch(_), None) => Placing::Waiting {
@@ -170,7 +171,7 @@ impl Search {
         }
     }
 
-    /// The next part, if it is time for one; `frame` is the latest that has a pose.
+    /// The next part, if one is due; `frame` is the latest with a pose.
     pub(super) fn job(
         &mut self,
         elapsed_s: f64,
@@ -212,7 +213,7 @@ impl Search {
         })
     }
 
-    /// Takes what came of a part; whether there is a better pose.
+    /// Adopts the result of a part. Returns whether there is a better pose.
     pub(super) fn take(&mut self, done: SearchedJob) -> bool {
         if done.number != self.number {
             return false;
@@ -245,7 +246,7 @@ impl Search {
     }
 }
 
-/// Whether what is new is the same, in the same place.
+/// Whether the new thing is the same, at the same place.
 fn is_still([before, now]: [Newcomer; 2]) -> bool {
     before.at.distance(now.at) < STILL_M && (now.share - before.share).abs() < STILL_SHARE * before.share
 }

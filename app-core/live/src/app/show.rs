@@ -1,4 +1,4 @@
-//! What is to be drawn.
+//! The content to draw below the interface.
 
 use std::sync::Arc;
 
@@ -13,26 +13,26 @@ use super::search::Placing;
 use super::step::Step;
 use app_alignment::Silhouette;
 
-/// What is to be drawn below the interface.
+/// The content to draw below the interface.
 #[derive(Debug)]
 pub enum Show<'a> {
-    /// Nothing has come from the camera.
+    /// There is no camera frame yet.
     Nothing,
-    /// The camera's picture as it is.
+    /// The camera's picture, unchanged.
     Camera(&'a CameraFrame),
-    /// The toy in motion, as far as the effect is shown.
+    /// The toy in motion, with the effect at its current strength.
     Toy {
         /// The scene: another one is another allocation.
         scene: &'a Arc<Scene>,
-        /// For [`Core::frame`](app_pipeline::Core::frame).
+        /// The input of [`Core::frame`](app_pipeline::Core::frame).
         input: Box<FrameInput>,
-        /// How the picture lies on the screen.
+        /// Placement of the picture on the screen.
         display: Display,
     },
 }
 
 impl App {
-    /// What is to be drawn below the interface.
+    /// The content to draw below the interface.
     #[must_use]
     pub fn show(&self) -> Show<'_> {
         let Some(latest) = &self.latest else {
@@ -49,7 +49,7 @@ impl App {
         }
     }
 
-    /// What the toy covers of the camera's picture where it seems to be, or where a person puts it; none while nobody knows.
+    /// Silhouette of the ghost in the camera's picture; `None` while its pose is unknown.
     #[must_use]
     pub fn ghost(&self) -> Option<Silhouette> {
         let (ghost, camera) = (self.ghost.as_ref()?, self.camera.as_ref()?);
@@ -59,7 +59,8 @@ impl App {
             .silhouette(&ghost.world_from_object(), (camera, size_px))
     }
 
-    /// The ring that turns the ghost, corner by corner, and its knob, in pixels of the camera's picture; none where nobody turns it.
+    /// The corners of the ghost's ring and its knob, in pixels of the camera's picture; `None` if
+    /// nobody turns it.
     #[must_use]
     pub fn ring_px(&self) -> Option<(Vec<DVec2>, DVec2)> {
         let is_turned = self.step == Step::PlaceToy && self.placing() == Placing::ByHand;
@@ -67,7 +68,8 @@ impl App {
         ghost.ring_px(self.camera.as_ref()?)
     }
 
-    /// The camera's picture: its size, and how it lies on the screen; none before the first.
+    /// The size of the camera's picture and its placement on the screen; `None` before the first
+    /// frame.
     #[must_use]
     pub fn picture(&self) -> Option<([u32; 2], Display)> {
         let latest = self.latest.as_ref()?;

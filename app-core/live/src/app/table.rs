@@ -1,4 +1,4 @@
-//! Which plane is the table: that of the card, where it is seen, or one that the platform has found.
+//! Choice of the table: the card's plane if it is visible, otherwise a plane of the platform.
 
 use glam::{DMat4, DVec2};
 
@@ -7,20 +7,22 @@ use app_scene::camera_frame::{CameraFrame, FoundPlane};
 use app_scene::scene::{Camera, MAX_RECEIVERS, Pose};
 use app_scene::toy::Toy;
 
-/// Number of the card's plane, which no platform gives.
+/// Number of the card's plane, which no platform assigns.
 const CARD: u64 = u64::MAX;
-/// The table reaches so far around the card, in metres.
+/// Extent of the table around the card, in metres.
 const AROUND_CARD_M: f64 = 0.6;
 
-/// A level plane no higher than that above the table is a piece of it, as trackers find them: in metres.
+/// Largest height in metres at which a level plane above the table counts as a piece of it, as
+/// trackers find them.
 const LEAST_STEP_M: f64 = 0.008;
-/// So is one that is tilted by less, in radians; one that is tilted by more than the other is no plane that things stand on.
+/// Largest tilt in radians of such a piece, and the tilt above which a plane cannot support things.
 const SAME_TILT: f64 = 0.06;
 const STEEPEST: f64 = 0.8;
-/// Shadows reach no farther than so many times the toy's size: of light from 18 degrees above the table.
+/// Largest reach of a shadow, relative to the toy's size: that of light from 18 degrees above the
+/// table.
 const REACH: f64 = 3.0;
 
-/// The table that a tap on a pixel means.
+/// The table below a tapped pixel.
 pub(super) fn table_at(frame: &CameraFrame, camera: &Camera, pixel: DVec2) -> Option<FoundPlane> {
     let hit = |plane: &FoundPlane| {
         let place = seen_at(&plane.world_from_plane, camera, pixel)?;
@@ -29,7 +31,7 @@ pub(super) fn table_at(frame: &CameraFrame, camera: &Camera, pixel: DVec2) -> Op
         let eye = plane.world_from_plane.inverse().transform_point3(eye);
         is_on.then_some(place.distance(DVec2::new(eye.x, eye.z)))
     };
-    // A printed length tells the card's plane better than motion tells the others.
+    // The printed length gives a more accurate plane than motion does.
     let card = frame.world_from_card.as_ref().map(around_card);
     if let Some(card) = card.filter(|card| hit(card).is_some()) {
         return Some(card);
@@ -40,7 +42,7 @@ pub(super) fn table_at(frame: &CameraFrame, camera: &Camera, pixel: DVec2) -> Op
     nearest.map(|(_, plane)| plane.clone())
 }
 
-/// The same table as it is told now; none where it is not.
+/// The same table in the frame's version; `None` if the frame does not contain it.
 pub(super) fn as_told_now(table: &FoundPlane, frame: &CameraFrame) -> Option<FoundPlane> {
     if table.id == CARD {
         return frame.world_from_card.as_ref().map(around_card);
@@ -48,7 +50,8 @@ pub(super) fn as_told_now(table: &FoundPlane, frame: &CameraFrame) -> Option<Fou
     frame.planes.iter().find(|plane| plane.id == table.id).cloned()
 }
 
-/// Planes above the table that the shadow of a toy may reach, from the nearest: no more than shadows are moved on.
+/// Planes above the table that the shadow of a toy may reach, from the nearest, at most as many as
+/// shadows are retargeted on.
 pub(super) fn beside<'a>(
     table: &FoundPlane,
     planes: &'a [FoundPlane],
@@ -68,7 +71,7 @@ pub(super) fn beside<'a>(
         let height_m = table_from_world
             .transform_point3(plane.world_from_plane.w_axis.truncate())
             .y;
-        // A tracker finds a table in pieces, and what lies beneath it.
+        // A tracker finds a table in pieces, and surfaces below it.
         let is_above = height_m > LEAST_STEP_M || tilt_cosine < SAME_TILT.cos() && height_m > 0.0;
         plane.id != table.id && is_above && height_m < size_m && tilt_cosine > STEEPEST.cos()
     });

@@ -1,4 +1,5 @@
-//! Another toy: by the platform's own picker, or from the files that the shell has found.
+//! Selection of another toy: by the platform's own picker, or from the files that the shell has
+//! found.
 
 use std::sync::Arc;
 
@@ -11,20 +12,20 @@ use super::step::{Cause, Step};
 use app_scene::toy::Toy;
 
 impl App {
-    /// Files of toys to choose from, while a person chooses.
+    /// Available files of toys, while a person selects one.
     #[must_use]
     pub fn toy_files(&self) -> Option<&[String]> {
         self.toy_files.as_deref()
     }
 
-    /// A person chose one of the files, or none.
+    /// Handles the person's choice of a file, or of none.
     pub(super) fn choose_toy(&mut self, chosen: Option<usize>, commands: &mut Vec<ShellCommand>) {
         let files = self.toy_files.take().unwrap_or_default();
         let file = chosen.and_then(|chosen| files.into_iter().nth(chosen));
         commands.extend(file.map(|file| WorkCommand::ReadToy(file).into()));
     }
 
-    /// A toy of the person's own; what was photographed of the place stays.
+    /// Adopts a toy of the person's own; the photograph of the place stays.
     pub(super) fn take_toy(&mut self, read: Result<Arc<Toy>, String>) {
         match read {
             Ok(toy) => {

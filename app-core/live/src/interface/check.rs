@@ -10,18 +10,18 @@ use crate::app::{App, CheckInk, PhoneQuestion, UserAction};
 
 /// Side of a patch, in points.
 const PATCH_POINTS: f32 = 64.0;
-/// White paper and black card, as a camera should show them.
+/// Expected colours of white paper and black card in a camera picture.
 const GREYS: [Color32; 2] = [Color32::from_gray(242), Color32::from_gray(16)];
 const COLOURS: [Color32; 3] = [
     Color32::from_rgb(200, 30, 30),
     Color32::from_rgb(30, 140, 50),
     Color32::from_rgb(30, 60, 180),
 ];
-/// Cells of the clock that is seen in a mirror: each is lit for a tenth of a second.
+/// Cells of the clock that is visible in a mirror: each is lit for a tenth of a second.
 const N_CELLS: u16 = 10;
 const CELL_POINTS: [f32; 2] = [64.0, 18.0];
 
-/// The question, its number, and what can be answered.
+/// The question, its number, and the possible answers.
 pub(super) fn sheet(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     let Some((question, number)) = app.phone_question() else {
         return;
@@ -42,7 +42,7 @@ pub(super) fn sheet(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     });
 }
 
-/// What the question is about; `at` is where a pixel of the camera's picture is.
+/// The object of the question; `at` maps a pixel of the camera's picture to the screen.
 pub(super) fn picture(ui: &Ui, app: &App, at: impl Fn(DVec2) -> Pos2) {
     let Some((question, _)) = app.phone_question() else {
         return;
@@ -69,7 +69,8 @@ fn colour(ink: CheckInk) -> Color32 {
     }
 }
 
-/// The middle of the left third, which no sheet covers on a wide screen, and at the top of a narrow one.
+/// The centre of the left third, which no sheet covers on a wide screen, or a place at the top of a
+/// narrow one.
 fn free_place(ui: &Ui) -> Pos2 {
     let area = ui.ctx().content_rect();
     let part = if area.width() > area.height() {
@@ -80,7 +81,7 @@ fn free_place(ui: &Ui) -> Pos2 {
     area.left_top() + part * area.size()
 }
 
-/// One below the other.
+/// Patches of these colours, one below the other.
 fn patches(ui: &Ui, colours: &[Color32]) {
     let n = colours.len() as f32;
     let mut middle = free_place(ui) - vec2(0.0, 0.5 * (n - 1.0) * PATCH_POINTS);
@@ -98,7 +99,7 @@ fn circle(ui: &Ui) {
     ui.painter().circle_stroke(free_place(ui), radius, stroke);
 }
 
-/// A column of cells, which a mirror does not turn around: the lit one climbs.
+/// A column of cells, which a mirror does not reverse: the lit one climbs.
 fn clock(ui: &Ui) {
     let [width, height] = CELL_POINTS;
     let tenths = (10.0 * ui.input(|input| input.time)).rem_euclid(f64::from(N_CELLS));

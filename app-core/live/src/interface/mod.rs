@@ -1,7 +1,9 @@
-//! The app's interface: screens for touch over the camera's picture, drawn by egui, the same on phones and on a desktop.
+//! The app's interface: screens for touch over the camera's picture, drawn by egui, the same on
+//! phones and on a desktop.
 //!
-//! It reads the [`App`] and returns what the person does; it keeps nothing but where fingers are and which menu is open.
-//! Sizes are in points of the platform, and nothing to be touched is lower than 44 of them.
+//! It reads the [`App`] and returns what the person does; it stores only the fingers' positions and
+//! the open menu. Sizes are in points of the platform, and no touch target is lower than 44 of
+//! them.
 
 mod check;
 mod input;
@@ -24,16 +26,17 @@ pub(crate) use painter::Painter;
 pub use text::{CLOSED, announced, of_no_graphics};
 pub use words::all_words;
 
-/// A font of 18 KB: Roboto Medium, Copyright 2015 Google, Apache License 2.0, cut to Latin letters and signs.
+/// A font of 18 KB: Roboto Medium, Copyright 2015 Google, Apache License 2.0, reduced to Latin
+/// letters and signs.
 const FONT: &[u8] = include_bytes!("roboto_medium.ttf");
 
-/// What is to be painted over the picture.
+/// The shapes to paint over the picture.
 pub(crate) struct Painting {
     pub(crate) primitives: Vec<egui::ClippedPrimitive>,
     pub(crate) pixels_per_point: f32,
 }
 
-/// Textures that the painter does not have yet, and those that it may let go of.
+/// Textures that the painter lacks, and those that it may release.
 #[derive(Default)]
 pub(crate) struct Textures {
     pub(crate) set: Vec<(egui::TextureId, egui::epaint::ImageDelta)>,
@@ -49,12 +52,12 @@ impl Textures {
     }
 }
 
-/// Something that a screen reader finds.
+/// A widget that a screen reader finds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Widget {
-    /// Such as `Button` or `Label`.
+    /// The role, such as `Button` or `Label`.
     pub role: String,
-    /// What is read out.
+    /// The text that is read out.
     pub label: String,
     /// Left, top, right and bottom, in physical pixels of the screen.
     pub bounds_px: [f64; 4],
@@ -92,7 +95,7 @@ impl Interface {
         self.touches.touch(touch);
     }
 
-    /// The wheel of a mouse over the picture, which turns the ghost; in steps.
+    /// The wheel of a mouse over the picture, in steps; it turns the ghost.
     pub fn wheel(&mut self, steps: f64) {
         self.touches.wheel(steps);
     }
@@ -102,7 +105,8 @@ impl Interface {
         std::mem::take(&mut self.is_menu_open)
     }
 
-    /// One picture of the interface at `time_s`, which goes on from call to call, and what the person does.
+    /// One picture of the interface at `time_s`, which continues from call to call, and the
+    /// person's actions.
     pub(crate) fn run(
         &mut self,
         app: &App,
@@ -118,12 +122,12 @@ impl Interface {
         (actions, painting)
     }
 
-    /// What changed of the textures since this was asked for.
+    /// Changes of the textures since the last call.
     pub(crate) fn take_textures(&mut self) -> Textures {
         std::mem::take(&mut self.textures)
     }
 
-    /// What the person does, without a picture.
+    /// The person's actions, without a picture.
     pub fn actions(&mut self, app: &App, screen: &Screen) -> Vec<UserAction> {
         self.time_s += 0.1;
         self.laid_out(app, screen, self.time_s, "").0
@@ -159,14 +163,14 @@ impl Interface {
         (actions, output.shapes, output.pixels_per_point)
     }
 
-    /// What a screen reader finds in the latest picture.
+    /// The widgets for a screen reader in the latest picture.
     #[must_use]
     pub fn widgets(&self) -> &[Widget] {
         &self.widgets
     }
 }
 
-/// Labels and places of what is in the interface's tree for screen readers.
+/// Labels and places of the widgets in the interface's accessibility tree.
 fn widgets(output: &egui::PlatformOutput, pixels_per_point: f32) -> Vec<Widget> {
     let update = output.accesskit_update.as_ref();
     let nodes = update.map(|update| update.nodes.as_slice()).unwrap_or_default();

@@ -1,4 +1,5 @@
-//! What is drawn over the camera's picture: the reticle on the table, the toy's ghost, and the ring that turns it.
+//! Shapes over the camera's picture: the reticle on the table, the toy's ghost, and the ring for
+//! turning it.
 
 use egui::epaint::Vertex;
 use egui::{Color32, ColorImage, Mesh, Pos2, Shape, Stroke, TextureHandle, TextureOptions, Ui, pos2};
@@ -9,7 +10,7 @@ use super::style;
 use crate::app::{App, Reticle, Step};
 use app_alignment::Silhouette;
 
-/// How much the ghost covers of the picture, of 255, and how much its border does.
+/// Opacity of the ghost and of its border, of 255.
 const FILL: f32 = 90.0;
 const BORDER: f32 = 255.0;
 /// Radius of the largest dot of the grid, of the knob, and of the reticle while no table is found, in points.
@@ -17,7 +18,7 @@ const DOT_POINTS: f32 = 2.5;
 const KNOB_POINTS: f32 = 14.0;
 const RETICLE_POINTS: f32 = 34.0;
 
-/// `at` is where a pixel of the camera's picture is.
+/// Draws the shapes; `at` maps a pixel of the camera's picture to the screen.
 pub(super) fn show(ui: &Ui, app: &App, at: impl Fn(DVec2) -> Pos2) {
     if app.step() == Step::FindTable && app.obstacle().is_none() && app.phone_question().is_none() {
         match app.reticle() {
@@ -72,7 +73,7 @@ fn ghost(ui: &Ui, silhouette: &Silhouette, at: impl Fn(DVec2) -> Pos2) {
     }));
 }
 
-/// The latest silhouette as a texture, which is kept as long as there is one to be shown.
+/// The latest silhouette as a texture, which exists as long as a silhouette is shown.
 fn texture(ui: &Ui, silhouette: &Silhouette) -> TextureHandle {
     let id = egui::Id::unique("ghost");
     let [columns, rows] = silhouette.size.map(|side| side as usize);
@@ -83,7 +84,7 @@ fn texture(ui: &Ui, silhouette: &Silhouette) -> TextureHandle {
     };
     let pixels = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
     let pixels = pixels.map(|(x, y)| {
-        // What lies farthest outside of the places around tells how near the border is.
+        // The lowest coverage among the neighbours gives the distance from the border.
         let least = [(0, 1), (2, 1), (1, 0), (1, 2)].map(|(right, down)| match (x + right, y + down) {
             (0, _) | (_, 0) => 0.0,
             (x, y) if x > columns || y > rows => 0.0,

@@ -1,4 +1,4 @@
-//! What sheets are made of.
+//! Widgets of the sheets.
 
 use egui::{Button, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
@@ -8,13 +8,13 @@ use super::style;
 const KNOB_POINTS: f32 = 11.0;
 const LEAST_SLIDER_POINTS: f32 = 60.0;
 
-/// A title, and what to do.
+/// A title and instructions.
 pub(super) fn words(ui: &mut Ui, title: &str, hint: &str) {
     ui.label(RichText::new(title).heading());
     ui.label(RichText::new(hint).color(style::MUTED));
 }
 
-/// The button that leads on, as wide as the sheet.
+/// The button for the next step, as wide as the sheet.
 pub(super) fn lead(ui: &mut Ui, label: &str) -> bool {
     let label = RichText::new(label).color(style::ON_ACCENT);
     let button = Button::new(label).fill(style::ACCENT);
@@ -22,14 +22,15 @@ pub(super) fn lead(ui: &mut Ui, label: &str) -> bool {
         .clicked()
 }
 
-/// A button that leads elsewhere.
+/// A button for another action.
 pub(super) fn other(ui: &mut Ui, label: &str) -> bool {
     ui.add(Button::new(label).min_size(vec2(style::TOUCH_POINTS, style::TOUCH_POINTS)))
         .clicked()
 }
 
-/// A knob on a line over all the width that is left, and to which part of it a person drags it. A screen reader reads `value` and `label`.
-/// egui's own slider brings fields of numbers and of text along.
+/// A knob on a line over the remaining width; returns the part of it to which a person drags it. A
+/// screen reader reads `value` and `label`. egui's own slider includes fields of numbers and of
+/// text.
 pub(super) fn slider(ui: &mut Ui, part: f64, (value, label): (f64, &str)) -> Option<f64> {
     let width = ui.available_width().max(LEAST_SLIDER_POINTS);
     let size = vec2(width, style::TOUCH_POINTS);

@@ -1,4 +1,4 @@
-//! The camera's picture below the sheets: taps, drags and turns on it, and what is drawn over it.
+//! The camera's picture below the sheets: taps, drags and turns on it, and the shapes over it.
 
 use egui::{Pos2, Sense, Ui};
 use glam::{DAffine2, DVec2};
@@ -7,7 +7,7 @@ use super::input::{Screen, narrowed};
 use super::{check, overlay};
 use crate::app::{App, UserAction};
 
-/// What one step of a mouse's wheel turns, in radians.
+/// Turn for one step of a mouse's wheel, in radians.
 const WHEEL_RAD: f64 = 0.05;
 
 pub(super) fn show(ui: &mut Ui, app: &App, screen: &Screen, wheel_steps: f64, actions: &mut Vec<UserAction>) {
@@ -24,7 +24,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, screen: &Screen, wheel_steps: f64, ac
     );
     let fingers = ui.ctx().multi_touch();
     if let Some(fingers) = fingers {
-        // Screens have y downwards: a turn to the right is a negative one, seen from above.
+        // Screens have y downwards: seen from above, a turn to the right is negative.
         actions.push(UserAction::Twist(-f64::from(fingers.rotation_delta)));
     } else if response.clicked() {
         actions.extend(
@@ -46,7 +46,7 @@ pub(super) fn show(ui: &mut Ui, app: &App, screen: &Screen, wheel_steps: f64, ac
     check::picture(ui, app, |pixel| on_screen(&picture_from_screen, units, pixel));
 }
 
-/// Where a pixel of the camera's picture is on the screen, in the interface's points.
+/// Position on the screen of a pixel of the camera's picture, in the interface's points.
 fn on_screen(picture_from_screen: &DAffine2, units: f64, pixel: DVec2) -> Pos2 {
     let at = picture_from_screen.inverse().transform_point2(pixel) / units;
     Pos2::new(narrowed(at.x), narrowed(at.y))

@@ -1,4 +1,4 @@
-//! The sheet while the toy moves: clip, time, photo, video, and all else behind one button.
+//! The sheet while the toy moves: clip, time, photo, video, and a button for the other actions.
 
 use egui::{ComboBox, Ui};
 

@@ -1,4 +1,4 @@
-//! Sheets over the picture: what to do, what is in the way, what happened.
+//! Sheets over the picture: instructions, obstacles and notices.
 
 use egui::{Align2, Area, Id, Order, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
 
@@ -7,7 +7,7 @@ use super::text::{self, say};
 use super::{check, play, style};
 use crate::app::{App, Obstacle, Placing, Step, UserAction};
 
-/// The sheet at the bottom, or at the right of a wide screen: the toy is mostly in the middle.
+/// The sheet at the bottom, or at the right of a wide screen; the toy is mostly in the middle.
 pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, actions: &mut Vec<UserAction>) {
     let area = ui.ctx().content_rect();
     let (align, offset, width) = if let Some(width) = width_at_right(area) {
@@ -24,7 +24,7 @@ pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, actions: &m
                 ui.set_width(width - 32.0);
                 // 16 points of margin within, 12 without, on either side.
                 let tallest = area.height() - 56.0;
-                // Without the least height a sheet would stay as low as the one before it.
+                // Without a minimum height a sheet would stay as low as the previous one.
                 let scrolled = ScrollArea::vertical()
                     .max_height(tallest)
                     .min_scrolled_height(tallest);
@@ -93,7 +93,7 @@ fn step(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     }
 }
 
-/// Where the toy is: it is waited for, asked, or turned.
+/// The question about the toy's place: waiting, asking, or turning by hand.
 fn place(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     let placing = app.placing();
     match placing {
@@ -136,7 +136,7 @@ fn place(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     });
 }
 
-/// Toys to choose from.
+/// The list of toys.
 fn toys(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     words(ui, say(app, text::PICK_TOY), say(app, text::WHERE_TOYS_ARE));
     for (index, name) in app.toy_files().unwrap_or_default().iter().enumerate() {
@@ -164,7 +164,7 @@ fn in_the_way(ui: &mut Ui, app: &App, obstacle: Obstacle, actions: &mut Vec<User
     );
     let said = app.ar_words().filter(|_| is_of_ar);
     let title = match (obstacle, said) {
-        // What is said may be that the app is too old, or lacks a part.
+        // The platform may report that its app is too old, or lacks a part.
         (Obstacle::NoAr, Some(_)) => text::NO_AR,
         _ => title,
     };
@@ -184,13 +184,13 @@ fn in_the_way(ui: &mut Ui, app: &App, obstacle: Obstacle, actions: &mut Vec<User
     actions.extend(way_back);
 }
 
-/// Width of a sheet that stands at the right, on a wide screen.
+/// Width of a sheet at the right of a wide screen.
 fn width_at_right(area: Rect) -> Option<f32> {
     let width = (0.4 * area.width()).clamp(style::NARROW_POINTS[0], style::NARROW_POINTS[1]);
     (area.width() > 1.2 * area.height()).then_some(width)
 }
 
-/// What happened, at the top and beside a sheet at the right; the place that it takes.
+/// The notice at the top, beside a sheet at the right; returns its rectangle.
 pub(super) fn notice(ui: &Ui, app: &App) -> Option<Rect> {
     let notice = app.notice()?;
     let area = ui.ctx().content_rect();
@@ -209,11 +209,11 @@ pub(super) fn notice(ui: &Ui, app: &App) -> Option<Rect> {
     Some(shown.response.rect)
 }
 
-/// Times, in the top left corner, or below a notice that would lie on them.
+/// Times in the top left corner, or below a notice that would cover them.
 pub(super) fn profile(ui: &Ui, lines: &str, notice: Option<Rect>) {
     let id = Id::unique("profile");
     let area = ui.ctx().content_rect();
-    // As wide as in the picture before; at first there is none.
+    // The width is that of the previous picture; at first there is none.
     let right = ui
         .ctx()
         .memory(|memory| memory.area_rect(id))

@@ -6,19 +6,19 @@ use egui::{
     Color32, Context, CornerRadius, FontId, Frame, Margin, Shadow, Stroke, TextStyle, Theme, Vec2, Visuals,
 };
 
-/// Nothing to be touched is lower, in points: what both platforms ask for.
+/// Smallest height of a touch target, in points, as both platforms recommend.
 pub(super) const TOUCH_POINTS: f32 = 44.0;
-/// A sheet is not wider than that.
+/// Largest width of a sheet.
 pub(super) const SHEET_POINTS: f32 = 460.0;
-/// At the right of a wide screen it has so much.
+/// Range of its width at the right of a wide screen.
 pub(super) const NARROW_POINTS: [f32; 2] = [220.0, 300.0];
-/// The button that leads on.
+/// The button for the next step.
 pub(super) const ACCENT: Color32 = Color32::from_rgb(255, 190, 60);
-/// Letters on it.
+/// Letters on that button.
 pub(super) const ON_ACCENT: Color32 = Color32::from_rgb(40, 26, 0);
-/// What is less important.
+/// Less important text.
 pub(super) const MUTED: Color32 = Color32::from_rgb(190, 194, 204);
-/// The line that a knob moves on.
+/// The line below a slider's knob.
 pub(super) const TRACK: Color32 = Color32::from_rgb(92, 97, 112);
 /// The contour of the ghost.
 pub(super) const GHOST: Color32 = Color32::from_rgb(255, 214, 120);

@@ -1,4 +1,4 @@
-//! Which words belong to what.
+//! Selection of the texts for each state.
 
 use super::words::Words;
 use crate::app::{
@@ -12,7 +12,7 @@ use app_session::recording::{Ending, RecordingOutcome};
 
 pub(super) use super::words::*;
 
-/// What a person is about to do, and how.
+/// Title and instructions of the current step.
 pub(super) fn of_step(app: &App) -> Option<(Words, Words)> {
     Some(match app.step() {
         Step::Welcome => (WELCOME, WELCOME_HINT),
@@ -27,7 +27,7 @@ pub(super) fn of_step(app: &App) -> Option<(Words, Words)> {
     })
 }
 
-/// Words in the language of the app.
+/// Text in the language of the app.
 pub(super) fn say(app: &App, words: Words) -> &'static str {
     words.in_language(app.language())
 }
@@ -43,7 +43,7 @@ fn of_placing(placing: Placing) -> (Words, Words) {
     }
 }
 
-/// What is in the way, and what helps.
+/// The obstacle and its remedy.
 pub(super) fn of_obstacle(obstacle: Obstacle) -> (Words, Words) {
     match obstacle {
         Obstacle::NoAr => (NO_AR_HERE, NO_AR_HINT),
@@ -98,7 +98,7 @@ pub(super) fn of_notice(notice: &Notice, language: Language) -> String {
     words.in_language(language).to_owned()
 }
 
-/// What the platform itself has to tell where nothing can be drawn: in two short lines.
+/// Text for the platform's own view if nothing can be drawn, in two short lines.
 #[must_use]
 pub fn of_no_graphics(error: &CoreError) -> &'static str {
     match error {
@@ -112,7 +112,7 @@ pub fn of_no_graphics(error: &CoreError) -> &'static str {
     }
 }
 
-/// The same where it ended by itself more than once.
+/// The same if the app ended unexpectedly more than once.
 pub const CLOSED: &str = "The app was closed: something went wrong again and again.";
 
 fn of_recorded(recorded: &Recorded, language: Language) -> String {
@@ -136,7 +136,7 @@ fn of_recorded(recorded: &Recorded, language: Language) -> String {
     RECORDED.filled(language, &[&why, n_frames, &lacks, &recorded.file])
 }
 
-/// How well the toy was found, and what is not known.
+/// Accuracy of the toy's pose, and missing knowledge.
 pub(super) fn of_verdict(verdict: &Verdict, language: Language) -> String {
     let tenths = |px: &f64| format!("{px:.1}");
     match verdict {
@@ -154,7 +154,7 @@ pub(super) fn of_verdict(verdict: &Verdict, language: Language) -> String {
     }
 }
 
-/// What is asked of a new phone.
+/// The question for a new phone.
 pub(super) fn of_question(question: PhoneQuestion) -> Words {
     match question {
         PhoneQuestion::Axes => ASK_AXES,
@@ -170,7 +170,7 @@ pub(super) fn of_question(question: PhoneQuestion) -> Words {
     }
 }
 
-/// What is said to those who do not see the screen when a step begins.
+/// Announcement for screen readers when a step begins.
 #[must_use]
 pub fn announced(app: &App) -> String {
     let said = of_step(app);
@@ -180,7 +180,7 @@ pub fn announced(app: &App) -> String {
     })
 }
 
-/// How far the photograph of the empty place is, from 0 to 1, and what helps.
+/// Progress of the photograph of the empty place, from 0 to 1, and advice.
 pub(super) fn of_plate_step(step: &PlateStep) -> (Option<f32>, Words) {
     match step {
         PlateStep::Growing { n, n_needed } => {

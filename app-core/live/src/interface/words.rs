@@ -1,15 +1,15 @@
-//! Every word of the interface, in each language: one table.
+//! One table with every text of the interface, in each language.
 
 use std::fmt::Display;
 
 use crate::app::Language;
 
-/// A word or a sentence in each language, in their order; `{}` stands for what is filled in.
+/// A text in each language, in their order; `{}` stands for an inserted part.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Words([&'static str; Language::ALL.len()]);
 
 impl Words {
-    /// In a language.
+    /// The text in a language.
     pub(super) const fn in_language(self, language: Language) -> &'static str {
         let Self([english, german]) = self;
         match language {
@@ -18,7 +18,7 @@ impl Words {
         }
     }
 
-    /// The same with what is filled in, part by part.
+    /// The text with its parts inserted in order.
     pub(super) fn filled(self, language: Language, parts: &[&dyn Display]) -> String {
         let mut text = self.in_language(language).to_owned();
         for part in parts {
@@ -28,7 +28,7 @@ impl Words {
     }
 }
 
-/// The whole table, for whoever looks after it.
+/// The whole table, for maintainers and tests.
 #[must_use]
 pub fn all_words() -> Vec<[&'static str; Language::ALL.len()]> {
     ALL.iter().map(|words| words.0).collect()

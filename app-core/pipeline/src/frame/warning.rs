@@ -1,4 +1,4 @@
-//! Degraded modes, and what pictures do not show as they should, in words.
+//! Degraded modes and known defects of the pictures, as sentences.
 
 use std::fmt;
 
@@ -6,123 +6,132 @@ use serde::{Serialize, Serializer};
 
 use app_scene::words::Listed;
 
-/// A degraded mode: the picture is the best that can be had, for a reason. JSON has the sentence that it displays.
+/// A degraded mode: the picture is the best that is possible, for a stated reason. JSON has the
+/// displayed sentence.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Warning {
-    /// No light is listed, and none was found: the toy moves, and its shadow is made without one.
+    /// No light is listed and none was found: the toy moves, and its shadow is made without a
+    /// light.
     NoLight {
-        /// Whether the preset takes what the real picture shows of a shadow of light from all around; else it draws none.
+        /// Whether the preset uses the shadow of ambient light in the real picture; otherwise it
+        /// draws no shadow.
         has_ambient: bool,
     },
-    /// No light is known, so the new shadow is that of light from all around alone.
+    /// No light is known, so the new shadow is that of ambient light alone.
     AmbientAlone {
-        /// Its strength over that where all light is such, from 0 to 1, by the real picture; 0 where that shows none.
+        /// Its strength relative to ambient light alone, from 0 to 1, as measured in the real
+        /// picture; 0 if it is not measurable.
         strength: f32,
     },
-    /// There is no plate, and the preset cannot do without: the camera frame passes through.
+    /// There is no plate, and the preset needs one: the camera frame passes through.
     NoPlate,
     /// There is no plate: the scene without the toy is estimated from the frame.
     PlateEstimated,
-    /// The plates show only a part of the work region; the rest is estimated from the frame, or
-    /// stays as it is with a preset that needs a plate.
+    /// The plates show only a part of the work region. The rest is estimated from the frame, or
+    /// stays unchanged if the preset needs a plate.
     PlatePartial {
-        /// Share that they show, from 0 to 1.
+        /// The visible share, from 0 to 1.
         fraction: f64,
     },
-    /// More receivers than this version moves shadows on.
+    /// The scene has more receivers than this version supports.
     ReceiversLeftOut {
-        /// Those whose shadow stays as photographed.
+        /// Receivers whose shadow stays as photographed.
         names: Vec<String>,
     },
-    /// More lights than are moved.
+    /// The scene has more lights than this version supports.
     LightsLeftOut {
-        /// How many shadows stay as photographed.
+        /// Number of shadows that stay as photographed.
         n_lights: usize,
     },
-    /// Lights do not stand above any receiver, so they cast no shadow there.
+    /// Lights that are not above any receiver cast no shadow there.
     LightsBelowReceivers {
-        /// Their indices in the list of lights: the frame's own, or the scene's.
+        /// Indices of the lights in the list of the frame or of the scene.
         lights: Vec<usize>,
     },
-    /// Lights stand inside the real toy, which lets none of their light out.
+    /// Lights are inside the real toy, which blocks them completely.
     LightsInsideToy {
-        /// Their indices in the list of lights: the frame's own, or the scene's.
+        /// Indices of the lights in the list of the frame or of the scene.
         lights: Vec<usize>,
     },
-    /// Too little real shadow is seen for the strength of the new one.
+    /// Too little of the real shadow is visible to measure the strength of the new one.
     FaintShadow {
-        /// How much of that strength is assumed, from 0 to 1: 1 less the sum of the lights' conditioning.
+        /// Assumed share of that strength, from 0 to 1: 1 less the sum of the lights' conditioning.
         assumed: f64,
     },
-    /// The real shadow is seen on hardly a pixel, and by no earlier view.
+    /// The real shadow is visible on very few pixels, and no earlier view showed it.
     SmallShadow {
-        /// Pixels that show it, each as far as it is hidden from a light.
+        /// Number of pixels that show it, each weighted by its occlusion from a light.
         n_pixels: f64,
     },
-    /// The light that the toy throws back is estimated beyond what a toy can do, in two channels or more: the picture's levels are not
-    /// those of light, or something nearby changes it that is not in the scene.
+    /// The estimated bounce light of the toy exceeds the physical limits in two channels or more:
+    /// the picture's levels are not linear light, or something nearby that is not in the scene
+    /// changes it.
     BounceAtLimit {
-        /// Whether the toy would have to throw back nothing; else all of it.
+        /// Whether the estimate is below zero; otherwise it is above full reflection.
         is_black: bool,
     },
-    /// The pictures do not show what they should.
+    /// The pictures do not agree with the scene.
     Mismatch(Mismatch),
-    /// Intensities of some lights are under-constrained, and a prior decides: their shadow falls together with that of others, or
-    /// where the camera does not see it.
+    /// The intensities of some lights are under-constrained, and a prior decides: their shadow
+    /// coincides with that of others, or is hidden from the camera.
     LightsUnderConstrained {
-        /// Their indices in the list of lights: the frame's own, or the scene's.
+        /// Indices of the lights in the list of the frame or of the scene.
         lights: Vec<usize>,
     },
-    /// No umbra of the real shadow is seen: preset `paper` has nothing to sample, and draws no shadow.
+    /// No umbra of the real shadow is visible: preset `paper` has nothing to sample, and draws no
+    /// shadow.
     NothingToSample,
-    /// New shadows fall or overlap as no real ones are seen to: preset `paper` samples where the lights differ least.
+    /// New shadows fall or overlap in a way that no visible real ones do: preset `paper` samples
+    /// the most similar lights.
     ShadowsUnseen {
-        /// What would have to be seen.
+        /// Combinations that would have to be visible.
         unseen: Vec<UnseenShadow>,
     },
-    /// With the preset's own settings the scene would cost too much: some are turned down.
+    /// The scene exceeds the cost budget with the preset's own settings: some are turned down.
     TurnedDown {
-        /// Which, in words.
+        /// Descriptions of these settings.
         what: Vec<&'static str>,
-        /// Triangles that a new view would take without that.
+        /// Triangles of a new view without the reductions.
         triangles: u64,
-        /// Pixels that they would cover, one over the other.
+        /// Pixels that these triangles would cover, counted once for each triangle.
         covered_px: f64,
     },
-    /// The scene would cost too much, whatever is turned down: the camera frame passes through.
+    /// The scene exceeds the cost budget with all reductions: the camera frame passes through.
     TooCostly {
-        /// Triangles that a new view would take.
+        /// Triangles of a new view.
         triangles: u64,
-        /// Pixels that they would cover, one over the other.
+        /// Pixels that these triangles would cover, counted once for each triangle.
         covered_px: f64,
     },
-    /// The toy is so glossy that it shows more than the listed lights and an even sky: what stands around it is mirrored, which no model here has.
+    /// The toy is so glossy that it mirrors its surroundings, and not only the listed lights and an
+    /// even sky. No model here describes that.
     TooGlossy {
-        /// Of the surface, as it was measured.
+        /// Measured roughness of the surface.
         roughness: f32,
-        /// Of the glossiest material, over that of plastic.
+        /// Strength of the glossiest material, relative to plastic.
         strength: f32,
     },
-    /// The receiver that the toy stands on is too smooth for what is known of what it reflects.
+    /// The receiver below the toy is too smooth, since its surroundings that it reflects are
+    /// unknown.
     MirrorLike {
         /// Width of the lobe, as Beckmann's alpha.
         roughness: f64,
     },
-    /// The camera sees what the model cannot explain.
+    /// The camera picture contains something that the model cannot explain.
     Outlier(Outlier),
     /// Something beside the toy is in the pictures.
     Thing(Thing),
     /// The toy and its shadow are out of the picture.
     OutOfPicture,
-    /// The real toy is out of the picture, but what is drawn is not.
+    /// The real toy is out of the picture, but the drawn one is not.
     ToyOutOfPicture,
     /// The camera's centre is not above the receiver.
     CameraBelowReceiver,
 }
 
 impl Warning {
-    /// What it says, where there is no number in it.
+    /// Sentence of a warning that contains no number.
     fn words(&self) -> Option<&'static str> {
         Some(match self {
             Self::NoLight { has_ambient: true } => {
@@ -159,7 +168,7 @@ impl fmt::Display for Warning {
             Self::PlatePartial { fraction } => write!(
                 f,
                 "the plates show {:.0} % of what is worked on: the rest is estimated, or stays as it is with a preset that needs a plate",
-                // Not 100 % where anything is missing.
+                // Rounded down, since 100 % must mean that nothing is missing.
                 (100.0 * fraction).floor()
             ),
             Self::ReceiversLeftOut { names } => write!(
@@ -226,7 +235,7 @@ impl fmt::Display for Warning {
                     " with every setting turned down: the camera frame passes through; take a simpler toy";
                 too_much(f, (*triangles, *covered_px), format_args!("{what}"))
             }
-            // Said above.
+            // [`Self::words`] has these.
             Self::NoLight { .. }
             | Self::NoPlate
             | Self::PlateEstimated
@@ -299,12 +308,12 @@ fn lights_in_words(lights: &[usize]) -> String {
     listed(&names, ", ").to_string()
 }
 
-/// A place on a receiver that just some lights do not reach.
+/// A place on a receiver that exactly these lights do not reach.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnseenShadow {
     /// Index of the receiver in the scene's list.
     pub receiver: usize,
-    /// Indices in the list of lights: the frame's own, or the scene's.
+    /// Indices of the lights in the list of the frame or of the scene.
     pub lights: Vec<usize>,
 }
 
@@ -320,12 +329,12 @@ impl fmt::Display for UnseenShadow {
     }
 }
 
-/// What stays as it was photographed.
+/// Something unexplained that stays as photographed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outlier {
-    /// A thing of its own colour, such as a hand.
+    /// An object with a colour of its own, such as a hand.
     Object,
-    /// What looks like the shadow of a light that is not listed.
+    /// A region that looks like the shadow of a light that is not listed.
     Shadow,
 }
 
@@ -340,14 +349,14 @@ impl fmt::Display for Outlier {
     }
 }
 
-/// What is in the pictures beside the toy.
+/// Something in the pictures beside the toy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Thing {
     /// It stands where the toy's shadow falls.
     OnReceiver,
     /// It hides a part of the real toy.
     BeforeToy,
-    /// The plate shows it, and the picture does not.
+    /// The plate shows it, but the picture does not.
     InPlateAlone,
 }
 
@@ -367,33 +376,33 @@ impl fmt::Display for Thing {
     }
 }
 
-/// What the pictures of the latest view do not show as the scene says.
+/// A contradiction between the pictures of the latest view and the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Mismatch {
-    /// Where the listed lights should cast the real shadow, the picture is as bright as the plate.
+    /// The picture is as bright as the plate in the place of the real shadow.
     NoShadow {
-        /// What the lights give of the plate's radiance, from 0 to 1.
+        /// Share of the lights in the plate's radiance, from 0 to 1.
         direct_fraction: f32,
     },
     /// The real shadow is too dark or too bright in the picture to be measured.
     ShadowUnreadable {
-        /// Share of it, from 0 to 1.
+        /// Share of the shadow, from 0 to 1.
         fraction: f64,
     },
-    /// The plate is too dark or too bright to be compared with.
+    /// The plate is too dark or too bright for a comparison.
     PlateUnreadable {
         /// Share of the receivers' pixels, from 0 to 1.
         fraction: f64,
     },
-    /// Where the real toy should be, the picture shows what the plate does.
+    /// The picture shows the same as the plate in the place of the real toy.
     ToyNotSeen {
         /// Share of the toy's pixels, from 0 to 1.
         fraction: f64,
     },
-    /// Red and blue are in another order in the picture than in the plate.
+    /// Red and blue are swapped between the picture and the plate.
     RedAndBlueSwapped {
-        /// How many times better the colours agree when they are swapped.
+        /// Factor by which the colours agree better after swapping.
         times: f64,
     },
 }

@@ -11,20 +11,21 @@ use app_scene::geometry::bounds::Bounds;
 use app_scene::reflection::Reflection;
 use app_scene::toy::{ClipId, Pose, PosedMesh, Toy, ToyError};
 
-/// Moments of a clip that its outline is taken from.
+/// Number of moments of a clip that contribute to its outline.
 const N_MOMENTS: u32 = 64;
 
 /// Bounds and outline over a clip.
 pub(crate) struct ClipReach {
-    /// The clip; none for the model's pose as authored.
+    /// The clip; `None` for the model's pose as authored.
     pub(crate) clip: Option<ClipId>,
-    /// The toy alone.
+    /// Bounds of the toy alone.
     pub(crate) bounds: Bounds,
     outline: Outline,
 }
 
 impl ClipReach {
-    /// Poses the toy into `posed`: once as `physical`, where it really stands, and at moments of `clip`, where it is shown.
+    /// Poses the toy into `posed`: once as `physical`, at its real place, and at moments of `clip`,
+    /// at its shown place.
     pub(crate) fn new(
         toy: &Toy,
         (physical, anchor_from_object): (&Pose, &DMat4),
@@ -44,7 +45,8 @@ impl ClipReach {
         })
     }
 
-    /// All that a scene says will be shown: poses at places in anchor space, and the physical pose.
+    /// Reach of everything that a scene announces: poses at places in anchor space, and the
+    /// physical pose.
     pub(crate) fn of_film<'a>(
         toy: &Toy,
         (physical, anchor_from_object): (&Pose, &DMat4),
@@ -64,7 +66,8 @@ impl ClipReach {
         })
     }
 
-    /// Includes a pose of the same toy, from a tracker or between the moments; returns whether the bounds grew.
+    /// Includes a pose of the same toy, from a tracker or between the moments. Returns whether the
+    /// bounds grew.
     pub(crate) fn grow(&mut self, posed: &PosedMesh) -> bool {
         let mut has_grown = false;
         for point in posed.points() {
@@ -79,7 +82,7 @@ impl ClipReach {
         has_grown
     }
 
-    /// Extent of toy, shadows and the toy's reflection in a view.
+    /// Extent of the toy, its shadows and its reflection in a view.
     pub(crate) fn on_view<'a>(
         &self,
         view: &'a View,

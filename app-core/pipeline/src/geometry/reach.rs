@@ -25,19 +25,20 @@ pub struct Reach<'a> {
     view: &'a View,
     world_from_anchor: DMat4,
     planes: Vec<PlaneReach>,
-    /// Eyes behind the first receiver, homogeneous in anchor space, which see the toy reflected; none where that is matt.
+    /// Eyes behind the first receiver that see the toy reflected, homogeneous in anchor space;
+    /// empty if the receiver is matt.
     mirrored_eyes: Vec<DVec4>,
     /// Radius around the toy's footprint within which it occludes ambient light.
     ambient_reach_m: f64,
-    /// In the picture.
+    /// Extent in the picture.
     extent: Extent,
-    /// Of the toy alone.
+    /// Extent of the toy alone.
     toy: Extent,
     /// Widest penumbra of each light in the picture.
     penumbrae_px: Vec<f64>,
 }
 
-/// The extent on one receiver.
+/// The extent on one receiver, in its plane.
 #[derive(Clone, Debug)]
 struct PlaneReach {
     world_from_plane: DMat4,
@@ -93,7 +94,8 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// With the toy's image in the first receiver, for a toy whose middle is there: by the inner part of the lobe, beyond which it fades.
+    /// Includes the toy's image in the first receiver, for a toy with the given centre. Only the
+    /// inner part of the lobe counts, beyond which the image fades.
     #[must_use]
     pub fn with_reflection(mut self, reflection: Option<&Reflection>, toy_in_anchor: DVec3) -> Self {
         let eye = self.view.camera_in(&self.world_from_anchor);
@@ -131,19 +133,20 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// The rectangle around all points, within the image; `None` when they are out of the picture.
+    /// The rectangle around all points, within the image; `None` if they are out of the picture.
     #[must_use]
     pub fn region(&self) -> Option<PixelRect> {
         self.extent.rect(self.view.image_px)
     }
 
-    /// The rectangle around the points of the toy, within the image; `None` when they are out of the picture.
+    /// The rectangle around the points of the toy, within the image; `None` if they are out of the
+    /// picture.
     #[must_use]
     pub fn toy(&self) -> Option<PixelRect> {
         self.toy.rect(self.view.image_px)
     }
 
-    /// Width in pixels of each light's widest penumbra, infinite where a shadow has no end.
+    /// Width in pixels of each light's widest penumbra; infinite if a shadow is unbounded.
     #[must_use]
     pub fn penumbrae_px(&self) -> &[f64] {
         &self.penumbrae_px
@@ -200,15 +203,17 @@ impl<'a> Reach<'a> {
     }
 }
 
-/// Where the line from a homogeneous light through `p` meets y = 0, as (x, z, w); w is not positive where it does not.
+/// Intersection of the plane y = 0 with the line from a homogeneous light through `p`, as (x, z,
+/// w). w is not positive if there is none.
 pub(crate) fn shadow_of(p: DVec3, light: DVec4) -> DVec3 {
     let at = light.y * p - p.y * light.truncate();
     DVec3::new(at.x, at.z, light.y - light.w * p.y)
 }
 
 impl PlaneReach {
-    /// Width in the picture of the shadow's edge that a point casts: the farthest that shadows of opposite corners around the
-    /// light are apart, over what these are. Infinite where one does not end, or is behind the camera.
+    /// Width in the picture of the shadow edge that a point casts: the largest distance between
+    /// shadows from opposite corners around the light, relative to the distance of the corners.
+    /// Infinite if one is unbounded, or behind the camera.
     fn penumbra_px(&self, view: &View, in_plane: DVec3, [a, b, c, d]: [DVec4; 4]) -> f64 {
         let seen_at = |light: DVec4| {
             let shadow = shadow_of(in_plane, light);
@@ -227,8 +232,8 @@ impl PlaneReach {
 }
 
 impl View {
-    /// The rectangle that a toy within `toy`, in anchor space, and its shadows can reach, or `None` when it is out of
-    /// the picture.
+    /// The rectangle that a toy within `toy`, in anchor space, and its shadows can reach, or `None`
+    /// if it is out of the picture.
     #[must_use]
     pub fn region(&self, toy: &Bounds, layout: &SceneLayout<'_>) -> Option<PixelRect> {
         let mut reach = Reach::new(self, toy, layout);

@@ -1,6 +1,6 @@
 //! The parts of WGSL that shaders import: every file of `shaders/common`.
 
-/// Names each part's path below `shaders`, without its ending, and takes in its text.
+/// Names each part's path below `shaders`, without its ending, and includes its text.
 macro_rules! texts {
     ($($name:literal),* $(,)?) => {
         &[$((
@@ -59,7 +59,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "toy_radiance",
 ];
 
-/// The WGSL of a part; none if there is no such part.
+/// The WGSL of a part; `None` if there is no such part.
 pub(super) fn text(path: &str) -> Option<&'static str> {
     let part = TEXTS.iter().find(|(of, _)| *of == path);
     part.map(|(_, text)| *text)

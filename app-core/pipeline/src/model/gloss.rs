@@ -1,4 +1,4 @@
-//! The toy's specular reflection, as the shaders have it.
+//! The toy's specular reflection, in the layout of the shaders.
 
 use crate::gpu::shader::{Mirrors, mirrors};
 use crate::gpu::shared::shared_struct;
@@ -7,14 +7,15 @@ use app_scene::scene::MAX_LIGHTS;
 
 /// WGSL part of the reflection.
 pub(crate) const GLOSS: Mirrors = mirrors!("common/gloss", structs: [Specular], constants: [N_GLOSSES]);
-/// Materials that have a strength of their own.
+/// Number of materials that have a strength of their own.
 pub(crate) const N_GLOSSES: usize = N_STRENGTHS;
-/// Variance of a half-way vector's slope along one direction, over the squared angular radius of the light that it belongs to, times the two
-/// that a squared roughness counts: a disc's variance is a quarter, and a half-way vector turns by half as much.
+/// Variance of a half-way vector's slope along one direction, relative to the squared angular
+/// radius of its light, times the two of a squared roughness. A disc's variance is a quarter, and a
+/// half-way vector turns by half as much.
 const OF_LIGHT: f32 = 0.125;
-/// Squared roughness that no lobe is below: sharper ones would be noise between pixels.
+/// Smallest squared roughness of a lobe: sharper ones would be noise between pixels.
 const LEAST_LOBE: f32 = 1e-4;
-/// And above: the exponent would be none.
+/// Largest squared roughness of a lobe: the exponent would not be positive above it.
 const MOST_LOBE: f32 = 0.98;
 
 shared_struct! {
@@ -29,7 +30,7 @@ shared_struct! {
 }
 
 impl Specular {
-    /// Of a toy that sees lights of some angular radii.
+    /// The reflection of a toy that is lit by lights of these angular radii.
     #[must_use]
     pub fn new(gloss: &Gloss, angular_radii_rad: impl Iterator<Item = f64>) -> Self {
         let squared = gloss.roughness * gloss.roughness;
@@ -49,7 +50,7 @@ impl Specular {
         }
     }
 
-    /// Whether any of the toy is glossy.
+    /// Whether any part of the toy is glossy.
     #[must_use]
     pub fn is_glossy(&self) -> bool {
         self.strengths.iter().flatten().any(|strength| *strength > 0.0)

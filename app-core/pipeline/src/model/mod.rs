@@ -1,4 +1,5 @@
-//! The additive model of the receivers: scene state, targets and passes of both paths, sequenced by what changed.
+//! The additive model of the receivers: scene state, targets and passes of both paths, sequenced by
+//! the frame's changes.
 
 pub(crate) mod capture;
 pub mod diagnostics;
@@ -42,7 +43,7 @@ pub(crate) struct Model {
     captured: CaptureTargets,
     drawn: FrameTargets,
     passes: Passes,
-    /// How strong the shown shadow is, 1 being the truth.
+    /// Strength of the shown shadow; 1 is the real one.
     shadow_strength: f32,
 }
 
@@ -54,7 +55,8 @@ struct Passes {
     frame: frame::Passes,
 }
 
-/// Capture passes that run for a new picture of a known view, such as the fit of its gain, count as the frame path's.
+/// Group of the capture passes. If they run for a new picture of a known view, such as the fit of
+/// its gain, they count as passes of the frame path.
 fn capture_path(change: Change) -> PassGroup {
     if change >= Change::View {
         PassGroup::Capture
@@ -88,8 +90,8 @@ impl Model {
         }
     }
 
-    /// Follows the camera to another view, or settings that are turned down or up; targets are kept if they suffice, else
-    /// dropped before others are made.
+    /// Adapts to another view, or to settings that are turned down or up. Targets are kept if they
+    /// suffice; otherwise they are dropped before others are made.
     pub(crate) fn follow(
         mut self,
         gpu: &Gpu,
@@ -143,13 +145,13 @@ impl Model {
         self.state.tints.surround(gpu, toy);
     }
 
-    /// Takes the picture as so soft from now on.
+    /// Sets the sharpness of the picture from now on.
     pub(crate) fn soften(&mut self, gpu: &Gpu, sharpness: Sharpness) {
         self.region.soften(gpu, sharpness);
     }
 
-    /// Shows shadows of that strength from now on, drawn from those points of each light, receiver by receiver; with none, from the
-    /// lights' own.
+    /// Sets the strength of shadows from now on, and the points of each light from which they are
+    /// drawn, receiver by receiver; `None` selects the lights' own.
     pub(crate) fn style_shadow(&mut self, gpu: &Gpu, strength: f32, points: Option<Vec<Vec<Vec4>>>) {
         self.shadow_strength = strength;
         self.drawn.light.soften(gpu, &self.region.plan, points);
@@ -160,7 +162,7 @@ impl Model {
         self.drawn.by_pass.composite.picture()
     }
 
-    /// Looks for the toy and its shadows in the region, in the poses that are new.
+    /// Locates the toy and its shadows in the region, in the poses that are new.
     pub(crate) fn update_coverage_tiles(&mut self, toy: &ToyMesh, delta: FrameDelta) {
         if delta.keeps_pose() {
             return;
@@ -180,7 +182,8 @@ impl Model {
         self.drawn.physical_marks = Some(physical);
     }
 
-    /// Encodes what the frame path cannot keep, and before it what the capture path learns of the change.
+    /// Encodes the frame passes whose results cannot be reused, and before them the capture passes
+    /// of the change.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
@@ -228,7 +231,7 @@ impl Model {
         }
     }
 
-    /// Encodes the region's picture of the latest frame once more, in light.
+    /// Encodes the region's picture of the latest frame once more, in linear light.
     pub(crate) fn encode_light(
         &self,
         recorder: &mut Recorder<'_>,

@@ -1,4 +1,5 @@
-//! The plan of a scene: numbers of points, sizes of maps, and what is left out. Pure data, made without a device.
+//! The plan of a scene: numbers of points, sizes of maps, and skipped work. Pure data, made without
+//! a device.
 
 use glam::UVec2;
 use wgpu::TextureFormat;
@@ -14,41 +15,43 @@ use app_scene::reflection::Reflection;
 use app_scene::scene::MAX_LIGHTS;
 use app_scene::sharpness::Sharpness;
 
-/// Steps of the reweighted least squares; each more moved no direct fraction by 1e-3 on the sessions they were chosen
-/// on.
+/// Steps of the reweighted least squares. Another step moved no direct fraction by 1e-3 in the
+/// sessions from which the number was chosen.
 const N_FIT_STEPS: u32 = 5;
 /// Steps from a known solution, for a new view of a known scene: a second one changed shadow, toy and edge by at most .001
 /// codes on a session of eight views.
 const N_REFINE_STEPS: u32 = 1;
-/// Steps of the fit of gain and intensities: the first is without weights, since a jump of the exposure makes every pixel an
-/// outlier.
+/// Steps of the fit of gain and intensities: the first has no weights, since a jump of the exposure
+/// makes every pixel an outlier.
 const N_INTENSITY_STEPS: u32 = 2;
-/// Pixels that suffice for the fit's few unknowns; more only cost time. A quarter of them is as good on six sessions, but not
-/// where the real shadow is some thirty pixels large.
+/// Number of pixels that suffices for the fit's few unknowns; more only cost time. A quarter of
+/// them is as good on six sessions, but not if the real shadow is only some thirty pixels large.
 const MAX_FIT_PIXELS: u32 = 1 << 16;
-/// Those that suffice for gain and intensities: on six sessions, whose shadows are some hundred pixels large, shadow, toy and edge
-/// change by at most .0004 codes.
+/// Number of pixels that suffices for gain and intensities: on six sessions, whose shadows are some
+/// hundred pixels large, shadow, toy and edge change by at most .0004 codes.
 const MAX_INTENSITY_PIXELS: u32 = 1 << 14;
-/// The farthest that what casts the toy's shadow on itself is from its shape, in pixels: what stands out would shade the surface.
+/// Maximum distance in pixels between the self-shadow caster and the toy's shape: a caster that
+/// protrudes would shade the surface.
 const SELF_CASTER_PX: f64 = 1.0;
-/// Triangles of what casts the ambient light's shadow, where that is near enough: the shadow has no edges.
+/// Triangles of the caster for ambient light, if that is accurate enough: its shadow has no edges.
 const N_AMBIENT_TRIANGLES: u32 = 1000;
 /// Invocations of one workgroup of the fit.
 const FIT_WORKGROUP: u32 = 256;
-/// Pixels that each of them adds up before its workgroup does: what that takes is the same for one pixel as for many. With 1, 16 and
-/// 64 the fits of a view take 33, 12 and 12 ms on a processor of two cores; no phone has been measured.
+/// Pixels that each invocation adds up before its workgroup does: the cost of the workgroup's sum
+/// does not depend on them. With 1, 16 and 64 the fits of a view take 33, 12 and 12 ms on a
+/// processor of two cores; no phone has been measured.
 const FIT_PIXELS_EACH: u32 = 16;
-/// Workgroups of one sum at most.
+/// Maximum number of workgroups of one sum.
 pub(crate) const MAX_FIT_ROWS: u32 = MAX_FIT_PIXELS / (FIT_WORKGROUP * FIT_PIXELS_EACH);
 
 /// The shapes that cast shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Casters {
-    /// Of the lights, on receivers.
+    /// Caster for the lights, on receivers.
     pub light: CasterLod,
-    /// The same on the toy itself.
+    /// Caster for the lights, on the toy itself.
     pub self_shadow: CasterLod,
-    /// Of the ambient light.
+    /// Caster for the ambient light.
     pub ambient: CasterLod,
 }
 
@@ -69,58 +72,58 @@ impl Casters {
     }
 }
 
-/// Sizes and numbers of all that is allocated and run for a scene.
+/// Sizes and numbers of everything that is allocated and run for a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// The work region.
     pub region: PixelRect,
     /// Pixels of the region that can show the physical toy, counted from its corner.
     pub physical_toy: Option<PixelRect>,
-    /// The toy box: pixels of the region that hold the toy in every pose and what is looked up around it, counted from the
-    /// region's corner.
+    /// The toy box: pixels of the region that contain the toy in every pose and the neighbours that
+    /// are read around it, counted from the region's corner.
     pub toy_box: PixelRect,
     /// The physical box: the same for the physical pose alone.
     pub physical_box: PixelRect,
-    /// Lights whose shadows are moved, at most four.
+    /// Number of lights whose shadows are retargeted, at most four.
     pub n_lights: usize,
-    /// Width in pixels of the widest penumbra of each of them.
+    /// Width in pixels of each light's widest penumbra.
     pub penumbrae_px: Vec<f64>,
-    /// Points over each of them: of a hard light as well, whose edge they antialias.
+    /// Number of points over each light. A hard light has several, too: they antialias its edge.
     pub n_light_points: Vec<usize>,
-    /// How the first receiver reflects: of one more channel of visibilities, behind those of the lights. None where it is matt, and
-    /// where lights have all channels.
+    /// Reflection of the first receiver, which takes one more channel of visibilities, behind those
+    /// of the lights. `None` if the receiver is matt, or if the lights use all channels.
     pub reflection: Option<Reflection>,
-    /// Directions of ambient light.
+    /// Number of directions of ambient light.
     pub n_ambient_directions: usize,
     /// Size of the ambient maps.
     pub ambient_px: UVec2,
-    /// Receivers that shadows are moved on.
+    /// Number of receivers on which shadows are retargeted.
     pub n_receivers: u32,
-    /// Whether the plate is estimated where none was photographed.
+    /// Whether the plate is estimated in its missing parts.
     pub is_plate_estimated: bool,
-    /// Whether the plate is kept finer than codes.
+    /// Whether the plate is stored with more precision than codes.
     pub is_plate_fine: bool,
-    /// Draws of the shown toy, each offset by a fraction of a pixel.
+    /// Draws of the shown toy, each with an offset of a fraction of a pixel.
     pub n_toy_draws: u32,
-    /// Samples of a pixel in each of them, 4 or 1.
+    /// Samples per pixel in each of these draws, 4 or 1.
     pub n_toy_samples: u32,
-    /// Positions within a pixel that the shown toy's coverage is counted over.
+    /// Number of positions within a pixel over which the shown toy's coverage is counted.
     pub n_coverage_positions: u32,
     /// Whether the real shadow is denoised.
     pub is_noise_removed: bool,
     /// Whether the real shadow is withheld from all but the first fits.
     pub is_shadow_withheld: bool,
-    /// Whether things are marked beside the toy.
+    /// Whether things beside the toy are marked.
     pub has_things: bool,
     /// The toy's shadow on itself.
     pub self_shadow: ShadowAtlas,
-    /// What casts shadows.
+    /// Meshes that cast shadows.
     pub casters: Casters,
-    /// How soft the picture is, as far as that is seen.
+    /// Estimated sharpness of the picture.
     pub sharpness: Sharpness,
-    /// Whether there is what makes the plate and the toy's colours as soft as the picture.
+    /// Whether plate and toy colours are softened to match the picture.
     pub is_softened: bool,
-    /// What the toy reflects.
+    /// Specular reflection of the toy.
     pub specular: Specular,
     /// Steps of a first fit.
     pub n_fit_steps: u32,
@@ -130,14 +133,14 @@ pub struct Plan {
     pub n_intensity_steps: u32,
     /// Sampling stride of the fit, in region pixels, along each side.
     pub fit_stride_px: u32,
-    /// That of the fit of gain and intensities.
+    /// Sampling stride of the fit of gain and intensities.
     pub intensity_fit_stride_px: u32,
     /// Work that the scene does not need.
     pub skipped: Vec<SkippedWork>,
 }
 
 impl Plan {
-    /// Plans a scene. Lights beyond the fourth are left out.
+    /// Plans a scene. Lights beyond the fourth are ignored.
     #[must_use]
     pub fn new(facts: &SceneFacts, settings: &ModelSettings) -> Self {
         let size_px = facts.region.size_px;
@@ -185,13 +188,13 @@ impl Plan {
 }
 
 impl Plan {
-    /// Channels of the visibilities.
+    /// Number of channels of the visibilities.
     #[must_use]
     pub fn n_channels(&self) -> usize {
         self.n_lights + usize::from(self.reflection.is_some())
     }
 
-    /// Whether its maps are of the sizes and formats of another's.
+    /// Whether the maps have the sizes and formats of those of another plan.
     #[must_use]
     pub fn has_sizes_of(&self, other: &Self) -> bool {
         let sizes = |plan: &Self| {
@@ -217,7 +220,7 @@ impl Plan {
         }
     }
 
-    /// Workgroups of one sum of a fit that takes pixels with a stride.
+    /// Workgroups of one sum of a fit that samples pixels with a stride.
     #[must_use]
     pub fn n_fit_rows(&self, stride_px: u32) -> u32 {
         let n_taken = (self.region.size_px / stride_px.max(1)).element_product();
@@ -226,7 +229,8 @@ impl Plan {
             .clamp(1, MAX_FIT_ROWS)
     }
 
-    /// What drawing onto one of the boxes takes: its corner, and the size of the region that it is a part of.
+    /// Parameters of a draw onto one of the boxes: its corner, and the size of the region that
+    /// contains it.
     #[must_use]
     pub fn part_drawn(&self, of: &PixelRect) -> (UVec2, UVec2) {
         (of.origin_px, self.region.size_px)
@@ -236,14 +240,14 @@ impl Plan {
     /// box's, and their size.
     #[must_use]
     pub fn near_physical_toy(&self, reach_px: u32) -> Option<(UVec2, UVec2)> {
-        // What rounding adds in 32 bits is less than a pixel.
+        // The rounding error in 32 bits is less than a pixel.
         let near = self.physical_toy?.grown(reach_px + 1, self.region.size_px);
         let near = near.common(&self.physical_box)?;
         Some((near.origin_px - self.physical_box.origin_px, near.size_px))
     }
 }
 
-/// The part of a rectangle of the image that lies in the region, counted from that one's corner.
+/// The part of a rectangle of the image that lies in the region, counted from the region's corner.
 fn in_region(rect: Option<PixelRect>, region: &PixelRect) -> Option<PixelRect> {
     let common = rect?.common(region)?;
     Some(PixelRect {
@@ -252,7 +256,8 @@ fn in_region(rect: Option<PixelRect>, region: &PixelRect) -> Option<PixelRect> {
     })
 }
 
-/// A box of the image as one of the region. A shadow that is withheld, and things, mark pixels all over that.
+/// Converts a box of the image into one of the region. A withheld shadow and things mark pixels
+/// anywhere in the region.
 fn box_in_region(of_image: Option<PixelRect>, facts: &SceneFacts, settings: &ModelSettings) -> PixelRect {
     let whole = PixelRect {
         origin_px: UVec2::ZERO,
@@ -267,10 +272,12 @@ fn box_in_region(of_image: Option<PixelRect>, facts: &SceneFacts, settings: &Mod
     })
 }
 
-/// Width of a penumbra up to which its points smooth an edge rather than a slope, so that fewer show as steps of colour.
+/// Penumbra width up to which a light's points antialias an edge; fewer points would show as steps
+/// of colour.
 const HARD_PX: f64 = 4.0;
 
-/// Points over a light: fewer of a soft one where that still is one for each pixel of its penumbra.
+/// Number of points over a light. A soft light gets fewer if they still suffice for one per pixel
+/// of its penumbra.
 fn n_light_points(penumbra_px: f64, settings: &ModelSettings) -> usize {
     let is_narrow = penumbra_px > HARD_PX && penumbra_px <= settings.n_narrow_light_points as f64;
     if is_narrow {
@@ -286,7 +293,7 @@ fn self_shadow(n_lights: usize, settings: &ModelSettings) -> ShadowAtlas {
     ShadowAtlas::new(vec![n_points; n_lights], settings.self_shadow_tile_px)
 }
 
-/// The smallest stride that leaves no more than so many pixels, and at least one along each side.
+/// The smallest stride that leaves at most `most` pixels, and at least one along each side.
 fn stride_px(size_px: UVec2, most: u32) -> u32 {
     let largest = size_px.min_element().max(1);
     (1..=largest)

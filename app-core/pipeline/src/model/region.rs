@@ -12,7 +12,7 @@ pub(crate) struct Region {
     /// Contents of `globals`.
     pub(crate) uniform: Globals,
     pub(crate) globals: Buffer,
-    /// What the toy reflects.
+    /// Specular reflection of the toy.
     pub(crate) specular: Buffer,
 }
 
@@ -27,7 +27,7 @@ impl Region {
         }
     }
 
-    /// Moves on to another view.
+    /// Switches to another view.
     pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals) {
         self.uniform = globals.with_spread(plan.sharpness.outline_spread);
         self.plan = plan;
@@ -35,14 +35,14 @@ impl Region {
         gpu.write(&self.specular, &[self.plan.specular]);
     }
 
-    /// Takes the picture as so soft.
+    /// Sets the sharpness of the picture.
     pub(crate) fn soften(&mut self, gpu: &Gpu, sharpness: Sharpness) {
         self.plan.sharpness = sharpness;
         self.uniform = self.uniform.with_spread(sharpness.outline_spread);
         gpu.write(&self.globals, &[self.uniform]);
     }
 
-    /// The globals, here and there.
+    /// The globals, on the processor and on the device.
     pub(crate) fn globals_on_device(&self) -> GlobalsOnDevice<'_> {
         GlobalsOnDevice {
             uniform: &self.uniform,

@@ -70,7 +70,7 @@ pub(crate) struct GlobalsOnDevice<'a> {
 }
 
 impl Globals {
-    /// How the camera sees what is drawn in a target of the toy box.
+    /// The camera's projection of draws in a target of the toy box.
     pub(crate) fn by_camera(&self) -> ByCamera {
         let receivers = self.receivers.iter().take(self.n_receivers as usize);
         ByCamera {
@@ -84,18 +84,18 @@ impl Globals {
         }
     }
 
-    /// Farthest that the positions that a pixel is drawn for lie from its centre.
+    /// Maximum distance of a pixel's sample positions from its centre.
     fn around_px(&self) -> f32 {
         AROUND_PX.max(self.soft_reach_px())
     }
 
-    /// Farthest that a picture which is softer than pixels are spreads what it shows; 0 of a sharp one.
+    /// Distance over which a soft picture spreads a point; 0 for a sharp picture.
     pub(crate) fn soft_reach_px(&self) -> f32 {
         self.spread[3]
     }
 
-    /// How many of a light's points, from the first on, see all of a toy's shadow on a receiver land before the camera; the points
-    /// are in its space.
+    /// Number of a light's points, from the first on, for which the whole shadow of a toy on a
+    /// receiver lies before the camera. The points are in the receiver's space.
     pub(crate) fn n_whole_shadows(&self, receiver: usize, points: &[Vec4], toy: &Sphere) -> usize {
         let Some(receiver) = self.receivers.get(receiver) else {
             return 0;
@@ -111,7 +111,8 @@ impl Globals {
         points.iter().take_while(is_whole).count()
     }
 
-    /// How shadows from the points of a light, in a receiver's space, fall on it; none of a light that has none, or not all alike.
+    /// Projection of shadows from the points of a light, in a receiver's space, onto it. `None` if
+    /// the light has no points, or points of different kinds.
     pub(crate) fn onto_receiver(&self, receiver: usize, points_in_plane: &[Vec4]) -> Option<OntoReceiver> {
         let receiver = self.receivers.get(receiver)?;
         let columns = receiver.clip_from_plane.map(|[x, y, w, _]| [x, y, w]);
@@ -126,12 +127,12 @@ impl Globals {
     }
 }
 
-/// Depth nearer than which a shadow is cut off, over the camera's distance from the toy.
+/// Depth below which a shadow is clipped, relative to the camera's distance from the toy.
 const NEAR_OVER_DISTANCE: f64 = 0.02;
 /// Width of the fade into untouched pixels at an inner border of the region.
 pub(crate) const BORDER_PX: u32 = 24;
 
-/// The globals of the region `rect` of a camera's picture, with the whole of it as both boxes.
+/// The globals of the region `rect` of a camera's picture, with the whole region as both boxes.
 #[must_use]
 pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globals {
     let world_from_anchor = layout.world_from_anchor();
@@ -177,7 +178,7 @@ pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globa
 }
 
 impl Globals {
-    /// The same with parts of the region as the toy box and the physical box, counted from its corner.
+    /// Sets parts of the region as the toy box and the physical box, counted from its corner.
     #[must_use]
     pub fn with_boxes(self, toy_box: &PixelRect, physical_box: &PixelRect) -> Self {
         Self {
@@ -189,7 +190,8 @@ impl Globals {
         }
     }
 
-    /// The same over a first receiver that reflects, of which a channel of the visibilities tells; a matt one where none does.
+    /// Sets the reflection of the first receiver, and the channel of its visibility; `None` is a
+    /// matt receiver.
     #[must_use]
     pub fn with_reflection(self, reflection: Option<(&Reflection, usize)>) -> Self {
         let Some((reflection, channel)) = reflection else {
@@ -209,7 +211,8 @@ impl Globals {
         }
     }
 
-    /// The same of a picture that spreads a point so; as sharp as pixels are where it does not.
+    /// Sets the spread of a point in the picture; without one the picture is as sharp as its
+    /// pixels.
     #[must_use]
     pub fn with_spread(self, spread: Spread) -> Self {
         // A mean over three has twice the variance of one side's weight.
@@ -222,12 +225,14 @@ impl Globals {
     }
 }
 
-/// Variance of a place within a pixel, along each axis.
+/// Variance of a position within a pixel, along each axis.
 const PIXEL_PX2: f64 = 1.0 / 12.0;
-/// Deviations that the outermost of 64 positions lies from the middle, and a little for rounding.
+/// Distance of the outermost of 64 positions from the centre, in standard deviations, with a margin
+/// for rounding.
 const OUTERMOST: f64 = 2.44;
 
-/// The root of a spread's covariance, with the pixel's own and without a variance that means over texels give, and how far it reaches.
+/// The root of a spread's covariance, including the pixel's own and excluding the variance of means
+/// over texels, followed by its reach.
 fn spread_factor(spread: Spread, of_means_px2: f64) -> [f32; 4] {
     if spread == Spread::NONE {
         return [0.0; 4];
@@ -263,7 +268,7 @@ fn receiver_plane(
     }
 }
 
-/// Bit k is 1 where receiver k is seen from behind.
+/// Bits of the receivers; bit k is 1 if receiver k is seen from behind.
 fn seen_from_behind(view: &View, receivers: &[AnchoredReceiver]) -> u32 {
     let receivers = receivers.iter().take(MAX_RECEIVERS).enumerate();
     let behind = receivers.filter(|(_, receiver)| !view.sees_front_of(&receiver.world_from_plane));

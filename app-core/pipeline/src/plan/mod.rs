@@ -1,7 +1,8 @@
-//! Common parts of both methods' plans: facts of a scene, how much changed, and which work is skipped. Pure data, made
-//! without a device.
+//! Common parts of both methods' plans: facts of a scene, how much changed, and skipped work. Pure
+//! data, made without a device.
 //!
-//! Two paths: the capture path learns from the real toy and its real shadow, once; the frame path makes each picture.
+//! There are two paths: the capture path learns from the real toy and its real shadow, once; the
+//! frame path makes each picture.
 
 use serde::Serialize;
 
@@ -10,48 +11,49 @@ use app_scene::gloss::Gloss;
 use app_scene::reflection::Reflection;
 use app_scene::sharpness::Sharpness;
 
-/// Facts of a scene that decide its plan.
+/// Facts of a scene that determine its plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFacts {
     /// Rectangle that toy and shadows can reach.
     pub region: PixelRect,
-    /// Pixels of the image that can show the physical toy; none where it is out of the picture.
+    /// Pixels of the image that can show the physical toy; `None` if it is out of the picture.
     pub physical_toy: Option<PixelRect>,
-    /// Pixels of the image that targets of the toy are to hold, in whatever pose it is shown; none where it is out of the
-    /// picture.
+    /// Pixels of the image that the toy's targets must cover, in every shown pose; `None` if it is
+    /// out of the picture.
     pub toy_box: Option<PixelRect>,
-    /// The same of maps of the physical toy.
+    /// The same for maps of the physical toy.
     pub physical_box: Option<PixelRect>,
-    /// What a pixel is across at the nearest part of the toy, in units of its file; 0 where the camera is within.
+    /// Size of a pixel at the nearest part of the toy, in units of its file; 0 if the camera is
+    /// inside.
     pub pixel_in_object: f64,
-    /// Width in pixels of the widest penumbra of each light whose shadows are moved.
+    /// Width in pixels of the widest penumbra of each retargeted light.
     pub penumbrae_px: Vec<f64>,
-    /// Receivers that shadows are moved on, one to four.
+    /// Number of receivers on which shadows are retargeted, one to four.
     pub n_receivers: u32,
-    /// One plate shows all of the region, or several together.
+    /// Whether one plate, or several together, show the whole region.
     pub is_plate_complete: bool,
-    /// Whether a plate was brought to the exposure of another.
+    /// Whether a plate was converted to the exposure of another.
     pub are_plates_scaled: bool,
-    /// Whether things stand in the picture beside the toy, or a part of the plate is wrong.
+    /// Whether there are things beside the toy in the picture, or wrong parts of the plate.
     pub has_things: bool,
-    /// How soft the picture is, as far as that is seen.
+    /// Estimated sharpness of the picture.
     pub sharpness: Sharpness,
-    /// Whether this picture, or one before it, is softer than what is laid into it.
+    /// Whether this picture or an earlier one is softer than the content that is drawn into it.
     pub is_softened: bool,
     /// How glossy the toy is.
     pub gloss: Gloss,
-    /// Angular radius of each light whose shadows are moved, seen from the toy.
+    /// Angular radius of each retargeted light, seen from the toy.
     pub angular_radii_rad: Vec<f64>,
-    /// How the receiver that the toy stands on reflects; none where it is matt.
+    /// Reflection of the receiver below the toy; `None` if it is matt.
     pub reflection: Option<Reflection>,
 }
 
-/// Factor up to which a penumbra's width may change before it counts as another.
+/// Factor up to which a penumbra's width may change before it counts as a new one.
 const STEADY: f64 = 1.25;
 
 impl SceneFacts {
-    /// With the known widths of penumbrae in place of those that are nearly the same, so that lights keep their points while a
-    /// camera sways.
+    /// Keeps the known widths of penumbrae that are nearly the same, so that lights keep their
+    /// points while a camera sways.
     #[must_use]
     pub fn steadied(mut self, known_px: &[f64]) -> Self {
         for (width_px, known_px) in self.penumbrae_px.iter_mut().zip(known_px) {
@@ -72,11 +74,11 @@ pub struct SkippedWork {
     pub reason: &'static str,
 }
 
-/// What changed since the frame before; each includes those before it.
+/// The kind of change since the previous frame; each includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Change {
-    /// Only the pose that is shown.
+    /// Only the shown pose.
     Pose,
     /// The camera's picture.
     Picture,
@@ -98,7 +100,7 @@ impl Change {
         }
     }
 
-    /// Every change, the least first.
+    /// Every change, from the smallest to the largest.
     pub const ALL: [Self; 4] = [Self::Pose, Self::Picture, Self::View, Self::Scene];
 }
 
@@ -106,24 +108,24 @@ impl Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FrameDelta {
     pub(crate) change: Change,
-    /// Whether another pose is shown than in the frame before.
+    /// Whether the shown pose differs from that of the previous frame.
     pub(crate) is_pose_new: bool,
-    /// Whether the picture is as soft as the one before.
+    /// Whether the picture is as sharp as the previous one.
     pub(crate) keeps_sharpness: bool,
 }
 
 impl FrameDelta {
-    /// Whether what is drawn of the shown pose alone, such as its shadows, can stay.
+    /// Whether results that depend on the shown pose alone, such as its shadows, can be reused.
     pub(crate) fn keeps_pose(self) -> bool {
         !self.is_pose_new && self.keeps_physical()
     }
 
-    /// Whether what is drawn of the physical pose can stay.
+    /// Whether results that depend on the physical pose can be reused.
     pub(crate) fn keeps_physical(self) -> bool {
         self.keeps_sharpness && self.change < Change::View
     }
 
-    /// Whether the picture can stay, too.
+    /// Whether the picture can be reused, too.
     pub(crate) fn keeps_picture(self) -> bool {
         self.keeps_pose() && self.change < Change::Picture
     }

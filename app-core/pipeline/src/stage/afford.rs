@@ -1,4 +1,5 @@
-//! What a scene's frame would cost, before anything is made for it: settings are turned down until it can be afforded.
+//! The cost of a scene's frame, estimated before anything is allocated. Settings are turned down
+//! until it fits the budget.
 
 use glam::{DVec2, DVec3, DVec4, Vec4};
 
@@ -17,16 +18,18 @@ use crate::passes::present::REGION_FORMAT;
 use crate::plan::{Change, FrameDelta};
 use crate::preset::ModelSettings;
 
-/// Most triangles of a new view that are drawn: with one light 90,000 of a toy stay below it with the settings of
-/// `balanced`, and 250,000, the most that is read, with all of them turned down.
+/// Maximum number of drawn triangles of a new view: with one light, 90,000 triangles of a toy stay
+/// below it with the settings of `balanced`, and 250,000, the most that is read, with all of them
+/// turned down.
 const MOST_TRIANGLES: u64 = 30_000_000;
-/// Most pixels that the triangles of a new frame's shadows and toy cover, one over the other: a phone that fills some thousand
-/// millions a second takes seconds for it.
+/// Maximum number of pixels that the triangles of a new frame's shadows and toy cover, counted once
+/// for each triangle: a phone that fills some thousand million a second takes seconds for it.
 const MOST_COVERED_PX: f64 = 4e9;
-/// Times that the toy is drawn as the camera sees it: coverage, its samples and those of the moved mask.
+/// Number of times that the toy is drawn as the camera sees it: coverage, its samples and those of
+/// the moved mask.
 const N_CAMERA_DRAWS: f64 = 40.0;
 
-/// What a new view costs.
+/// Cost of a new view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cost {
     triangles: u64,
@@ -39,7 +42,8 @@ impl Cost {
     }
 }
 
-/// Pixels that the toy covers, triangle by triangle: from the camera, by its shadows from each light, and from above.
+/// Pixels that the toy covers, summed over its triangles: from the camera, by its shadows from each
+/// light, and from above.
 struct Covered {
     by_camera_px: f64,
     by_lights_px: Vec<f64>,
@@ -47,8 +51,8 @@ struct Covered {
 }
 
 impl Stage {
-    /// The plan of a region with the finest settings that can be afforded, those that were turned down kept for later views;
-    /// none where even the last are too much. What there is to say of it is kept, too.
+    /// The plan of a region with the finest settings within the budget; `None` if even the lowest
+    /// exceed it. Keeps the reductions for later views, and the warning about them.
     pub(super) fn affordable(&mut self, settings: ModelSettings, footprint: &Footprint) -> Option<Plan> {
         self.turned_down.clear();
         self.cost_warning = None;
@@ -90,7 +94,7 @@ impl Stage {
         }
     }
 
-    /// Counts what a scene's first frame would have the device do.
+    /// Counts the work of a scene's first frame.
     fn cost(&self, plan: &Plan, footprint: &Footprint, covered: &Covered, divisor: u32) -> Cost {
         let gpu = Gpu::default();
         let globals = globals(&footprint.view, &plan.region, &self.layout())
@@ -134,7 +138,7 @@ impl Stage {
         }
     }
 
-    /// Of the shown pose, on the first receiver; half of the triangles face away.
+    /// Covered pixels of the shown pose, on the first receiver; half of the triangles face away.
     fn covered(&self, footprint: &Footprint) -> Covered {
         let (layout, view) = (self.layout(), &footprint.view);
         let world_from_anchor = layout.world_from_anchor();
@@ -165,13 +169,13 @@ impl Stage {
     }
 }
 
-/// Where a point's shadow falls on the plane y = 0; none of a point as high as the light.
+/// The shadow of a point on the plane y = 0; `None` if the point is at least as high as the light.
 fn flattened(point: DVec3, light: DVec4) -> Option<DVec3> {
     let height = light.y - point.y * light.w;
     (height > 0.0).then(|| point - (light.truncate() - point * light.w) * (point.y / height))
 }
 
-/// Area of a triangle; none where one of its corners is not seen.
+/// Area of a triangle; `None` if one of its corners is not visible.
 fn area_px([a, b, c]: [Option<DVec2>; 3]) -> Option<f64> {
     let (a, b, c) = (a?, b?, c?);
     Some(0.5 * (b - a).perp_dot(c - a).abs())

@@ -1,4 +1,5 @@
-//! The footprint of a frame: its view, work region and plates; or why the frame passes through.
+//! The footprint of a frame: its view, work region and plates; or the reason why the frame passes
+//! through.
 
 use std::mem;
 use std::sync::Arc;
@@ -23,24 +24,26 @@ use app_scene::scene::{Camera, Shown};
 use app_scene::shadow_style::ShadowStyle;
 use app_scene::toy::{ClipId, ToyError};
 
-/// What a new region has on each side beyond what it needs, so that a pose that reaches a little farther is no new view.
+/// Margin of a new region on each side, so that a pose that reaches a little farther does not need
+/// a new view.
 pub(super) const SPARE_PX: u32 = 8;
 
-/// Farthest that a pixel is looked up around the toy, with one for rounding and one for multisamples.
+/// Maximum distance around the toy from which a pixel is read, including one pixel for rounding and
+/// one for multisamples.
 pub(super) const AROUND_TOY_PX: u32 = 10;
 
 /// View, work region and plates of a frame: the same for all frames of one clip and camera, unless a pose reaches farther.
 pub(super) struct Footprint {
     camera: Camera,
     pub(super) view: View,
-    /// Corners of what toy and shadows reach.
+    /// Corners of the extent of toy and shadows.
     pub(super) corners_in_world: Vec<DVec3>,
-    /// What is reached, and the fade at its border.
+    /// The extent, including the fade at its border.
     pub(super) least_region: PixelRect,
     /// The region of a method that starts with this frame.
     pub(super) region: PixelRect,
-    /// Pixels of the image that show the toy in all poses so far, and what is looked up around them; none where it is out of
-    /// the picture.
+    /// Pixels of the image that show the toy in all poses so far, and the neighbours that are read
+    /// around them; `None` if it is out of the picture.
     pub(super) least_toy_box: Option<PixelRect>,
     pub(super) bounds: Bounds,
     /// Width in pixels of each light's widest penumbra.
@@ -52,7 +55,7 @@ pub(super) struct Footprint {
     pub(super) plate_fraction: f64,
 }
 
-/// Why a camera frame is shown as it is.
+/// The reason why a camera frame is shown unchanged.
 pub(super) enum PassThrough {
     PhysicalPose,
     NoEffect,
@@ -108,7 +111,7 @@ impl Stage {
         Ok(footprint.ok_or(PassThrough::Warned(Warning::OutOfPicture)))
     }
 
-    /// The footprint of what is reached, in a view; none when it is out of the picture.
+    /// The footprint of the reach in a view; `None` if it is out of the picture.
     fn footprint_in(&self, view: View, camera: &Camera) -> Option<Footprint> {
         let lights = self.reaching_lights();
         let layout = SceneLayout {
@@ -140,7 +143,8 @@ impl Stage {
         })
     }
 
-    /// Whether the toy is to be shown as it really is, where it really stands and with its true shadow.
+    /// Whether the frame asks for the toy in its real pose, at its real place and with its true
+    /// shadow.
     fn shows_what_is_there(&self, input: &FrameInput) -> bool {
         let is_elsewhere = input
             .world_from_shown
@@ -149,10 +153,10 @@ impl Stage {
         !is_elsewhere && is_shadow_true && input.shown_pose == self.scene.physical_pose
     }
 
-    /// Poses the toy as and where it is to be shown, and makes `reach` hold it.
+    /// Poses the toy for the frame and extends `reach` to contain it.
     ///
-    /// A clip is looked through at once where it is shown first, so that the region rarely grows while it plays; poses by nodes and
-    /// further places are only known when they come.
+    /// The whole clip is examined when it is shown first, so that the region rarely grows while it
+    /// plays. Poses by nodes and further places are only known when they arrive.
     fn reach_shown_pose(&mut self, input: &FrameInput) -> Result<(), ToyError> {
         let clip = input.shown_pose.clip();
         let anchor_from_shown = self.anchor_from_shown(input.world_from_shown.as_ref());
@@ -176,7 +180,7 @@ impl Stage {
 }
 
 impl Stage {
-    /// What the film reaches, where there is one; else what a clip reaches at a place.
+    /// The reach of the film, if there is one; otherwise the reach of a clip at a place.
     fn first_reach(
         &mut self,
         clip: Option<ClipId>,

@@ -1,4 +1,4 @@
-//! How glossy the toy is taken to be.
+//! The toy's gloss in use.
 
 use super::Stage;
 use crate::frame::warning::Warning;
@@ -8,7 +8,8 @@ use app_scene::frame::FrameInput;
 use app_scene::gloss::Gloss;
 
 impl Stage {
-    /// Takes the toy as so glossy; what was learned of another one is forgotten. The baseline knows of no gloss.
+    /// Sets the toy's gloss. If it changes, the learned state is dropped. The baseline ignores
+    /// gloss.
     pub(super) fn take_gloss(&mut self, gpu: &Gpu, input: &FrameInput) {
         let gloss = match self.settings {
             Settings::Model(_) if !input.gloss.is_none() => input.gloss,

@@ -1,4 +1,4 @@
-//! A scene on the device: the toy, the plates and the frame, and what was learned from them.
+//! A scene on the device: the toy, the plates, the frame and the state learned from them.
 
 mod afford;
 pub(crate) mod camera_texture;
@@ -63,27 +63,27 @@ pub(crate) struct Stage {
     receiver_indices: Vec<usize>,
     receivers_warning: Option<Warning>,
     lights: Lights,
-    /// Those of them that stand inside the physical toy, as indices in the list that they were given in, once it is known.
+    /// Lights inside the physical toy, as indices in the given list; `None` until it is computed.
     lights_inside: Option<Vec<usize>>,
-    /// Where the object stands that was learned from.
+    /// Pose of the object at the time of learning.
     world_from_object: DMat4,
     /// Whether the physical pose on the device is that one.
     is_object_placed: bool,
-    /// Of the physical pose, in object space.
+    /// Bounds of the physical pose, in object space.
     bounds_in_object: Bounds,
-    /// Of the physical pose, in anchor space.
+    /// Bounds of the physical pose, in anchor space.
     physical_bounds: Bounds,
     physical_outline: Outline,
     is_shadow_withheld: bool,
-    /// A pose that is shown again counts as a new one.
+    /// Whether a repeated pose counts as a new one.
     is_every_pose_new: bool,
-    /// Quality steps that the caller asks for.
+    /// Quality steps that the caller requests.
     asked_down: Vec<QualityStep>,
     /// Quality steps that are applied because the scene exceeds the cost budget.
     turned_down: Vec<QualityStep>,
     /// The warning for it.
     cost_warning: Option<Warning>,
-    /// What the clip shown last reaches, with the poses shown so far.
+    /// Reach of the clip that was shown last, including the poses shown so far.
     reach: Option<ClipReach>,
     /// Footprint of the latest frame.
     cached_footprint: Option<Arc<Footprint>>,
@@ -91,60 +91,60 @@ pub(crate) struct Stage {
     posed: PosedMesh,
     camera: CameraTexture,
     plates: PlateStore,
-    /// Things that stand in the latest picture beside the toy.
+    /// Things beside the toy in the latest picture.
     things: Option<Things>,
     present: present::Pass,
     state: Option<MethodState>,
-    /// What the clips shown so far reach of each receiver.
+    /// Part of each receiver that the clips shown so far reach.
     reached_rects: Vec<PlaneRect>,
-    /// How soft the latest picture is taken to be.
+    /// Sharpness of the latest picture.
     sharpness: Sharpness,
-    /// How glossy the toy is taken to be.
+    /// Gloss of the toy.
     gloss: Gloss,
-    /// How the first receiver reflects, as the latest frame says.
+    /// Reflection of the first receiver, as given by the latest frame.
     reflection: Option<Reflection>,
-    /// How the latest frame's shadow is to look.
+    /// Style of the latest frame's shadow.
     shadow_style: ShadowStyle,
-    /// How the shadow that was drawn last looks.
+    /// Style of the shadow that was drawn last.
     drawn_style: ShadowStyle,
-    /// How much of the region's picture the latest frame shows; none where the camera image passes through.
+    /// Share of the region's picture that the frame shows; `None` if the camera image passes through.
     effect: Option<f64>,
     /// The latest frame's noise.
     grain: Option<PictureGrain>,
-    /// Whether frames are made that could pass through, since their layers are asked for.
+    /// Whether frames that could pass through are computed, since their layers were requested.
     is_layered: bool,
-    /// The picture as a texture, once one was asked for.
+    /// The picture as a texture, once it was requested.
     output: OnceLock<Texture>,
-    /// The same in light.
+    /// The picture in linear light, once it was requested.
     output_light: OnceLock<Texture>,
-    /// What the device makes of codes, once it was asked.
+    /// The device's decoding of codes, once it was requested.
     decoding: OnceLock<Decoding>,
 }
 
-/// The method with its state, and the latest frame that this was learned from.
+/// The method with its state, and the latest frame from which it learned.
 struct MethodState {
     method: Method,
     view: View,
-    /// Relative, of `image`.
+    /// Relative exposure of `image`.
     exposure: f64,
-    /// How many pictures were learned from.
+    /// Number of pictures from which the method learned.
     n_pictures: u32,
     image: Option<CameraImage>,
-    /// Of the lights that were learned under, in the list that they were given in.
+    /// Lights at the time of learning, as indices in the list that was given.
     light_indices: Vec<usize>,
-    /// It was learned from one view alone.
+    /// Whether the method learned from one view alone.
     is_first_view: bool,
-    /// Visibilities were injected after it was learned.
+    /// Whether visibilities were injected after learning.
     is_visibility_outdated: bool,
-    /// Things that it was learned beside.
+    /// Things beside the toy at the time of learning.
     things: Option<GivenThings>,
-    /// Settings were turned down or up after it was learned.
+    /// Whether settings were turned down or up after learning.
     are_settings_outdated: bool,
-    /// The object or the lights moved after it was learned.
+    /// Whether the object or the lights moved after learning.
     is_placement_outdated: bool,
 }
 
-/// How settings draw the toy's shadows: the baseline draws whole shapes, as published.
+/// Meshes that cast the toy's shadows. The baseline draws the whole mesh, as published.
 fn casting(toy: &Toy, settings: Settings) -> Casting<'_> {
     let settings = match settings {
         Settings::Model(settings) => Some(settings),
@@ -226,7 +226,7 @@ impl Stage {
         })
     }
 
-    /// Keeps the real shadow from what is learned from the next frame on; what was learned is forgotten.
+    /// Hides the real shadow from learning from the next frame on, and drops the learned state.
     pub(crate) fn withhold_shadow(&mut self) {
         if matches!(self.settings, Settings::Model(_)) {
             self.is_shadow_withheld = true;
@@ -234,7 +234,7 @@ impl Stage {
         }
     }
 
-    /// Draws a pose that is shown again as if it were new.
+    /// Draws repeated poses as if they were new.
     pub(crate) fn draw_every_pose(&mut self) {
         self.is_every_pose_new = true;
     }
@@ -244,7 +244,7 @@ impl Stage {
         &self.scene
     }
 
-    /// Waits for the device and returns a map, where the method makes it.
+    /// Waits for the device and returns a map, if the method makes it.
     pub(crate) fn read_map(&self, gpu: &Gpu, map: Map) -> Result<Option<FloatMap>, GpuError> {
         let Some(method) = self.method() else {
             return Ok(None);
@@ -252,27 +252,27 @@ impl Stage {
         method.read_map(gpu, self.learned_image(), map)
     }
 
-    /// What was learned so far.
+    /// The method with its learned state, if there is any.
     pub(crate) fn method(&self) -> Option<&Method> {
         self.state.as_ref().map(|state| &state.method)
     }
 
-    /// Indices, in the list that they were given in, of the lights that were learned under.
+    /// Lights at the time of learning, as indices in the list that was given.
     pub(crate) fn light_indices(&self) -> &[usize] {
         self.state.as_ref().map_or(&[], |state| &state.light_indices)
     }
 
-    /// Indices, in the list that they were given in, of the lights inside the physical toy.
+    /// Lights inside the physical toy, as indices in the list that was given.
     pub(crate) fn lights_inside(&self) -> &[usize] {
         self.lights_inside.as_deref().unwrap_or_default()
     }
 
-    /// Whether no more than one view was learned from.
+    /// Whether the method learned from one view at most.
     pub(crate) fn is_first_view(&self) -> bool {
         self.state.as_ref().is_some_and(|state| state.is_first_view)
     }
 
-    /// Whether the view that was learned from last shows the real toy.
+    /// Whether the view that was learned last shows the real toy.
     pub(crate) fn is_toy_in_picture(&self) -> bool {
         let view = self.state.as_ref().map(|state| &state.view);
         view.is_some_and(|view| self.shows_toy(view))
@@ -288,7 +288,7 @@ impl Stage {
         view.image_rect(&self.layout().world_from_anchor(), self.physical_outline.points())
     }
 
-    /// The picture that was learned from last.
+    /// The picture that was learned last.
     pub(crate) fn learned_image(&self) -> Option<&Image> {
         Some(self.state.as_ref()?.image.as_ref()?.rgba())
     }
@@ -298,7 +298,7 @@ impl Stage {
         &self.receiver_indices
     }
 
-    /// Drops what was learned and what was uploaded of frames, which a refused frame may have left half done.
+    /// Drops the learned state and the uploads, since a refused frame may have left them incomplete.
     pub(crate) fn forget(&mut self, gpu: &Gpu) {
         self.drop_method(gpu);
         self.camera.forget();
@@ -307,13 +307,13 @@ impl Stage {
         self.is_object_placed = false;
     }
 
-    /// Drops the method with its targets, of which bind groups are kept, too.
+    /// Drops the method with its targets, which the cached bind groups also refer to.
     fn drop_method(&mut self, gpu: &Gpu) {
         self.state = None;
         gpu.release_groups();
     }
 
-    /// Replaces visibilities in what follows, where anything was learned.
+    /// Replaces visibilities in later frames, if anything has been learned.
     pub(crate) fn inject(&mut self, gpu: &Gpu, maps: &InjectedVisibility) {
         if let Some(state) = &mut self.state {
             state.method.inject(gpu, maps);
@@ -405,7 +405,7 @@ impl Stage {
             };
             gpu.write(&self.plates.views, &[views]);
         }
-        // What marks are drawn for follows the view.
+        // The region of the marks depends on the view.
         if let Some(things) = self.things.as_ref().filter(|_| change >= Change::View) {
             let world_from_plane = self.layout().world_from_anchor();
             things.follow(gpu, &footprint.view, &method.region(), &world_from_plane);
@@ -413,7 +413,7 @@ impl Stage {
         recorder.n_pixels = n_pixels(method.region().size_px);
         let frame = match method {
             Method::Model(_) => self.camera.frame(gpu),
-            // Its `retarget` filters light of the whole picture.
+            // Its pass `retarget` filters linear light of the whole picture.
             Method::Baseline(_) => Frame::Picture(self.camera.keep_decoded(recorder)),
         };
         let picture = self.state.as_ref().map_or(0, |state| state.n_pictures);
@@ -454,9 +454,9 @@ impl Stage {
         }
     }
 
-    /// Brings the shown pose to the device, unless it is there and its shadow is in the frame's style; returns whether it is to be drawn.
+    /// Uploads the shown pose, if it or its shadow's style changed. Returns whether it must be drawn.
     fn take_shown_pose(&mut self, gpu: &Gpu) -> bool {
-        // A refused frame, after which nothing is known, may not have brought its pose to the device.
+        // After a refused frame nothing is known, and its pose may not have been uploaded.
         let is_known =
             self.state.is_some() && self.toy.shown.is(&self.posed) && self.drawn_style == self.shadow_style;
         let is_new = self.is_every_pose_new || !is_known;
@@ -466,7 +466,7 @@ impl Stage {
         is_new
     }
 
-    /// Takes the things of a picture, unless they are there already; the baseline knows of none.
+    /// Sets the things of a picture, unless they are the same; the baseline ignores things.
     fn take_things(&mut self, gpu: &Gpu, input: &FrameInput) {
         let given = input.things.as_ref();
         let given = given.filter(|things| matches!(self.settings, Settings::Model(_)) && things.has_any());
@@ -492,7 +492,7 @@ impl Stage {
         View::new(self.size_px(), camera)
     }
 
-    /// Of each picture.
+    /// Size of each picture.
     fn size_px(&self) -> UVec2 {
         UVec2::new(self.scene.width_px, self.scene.height_px)
     }

@@ -1,4 +1,4 @@
-//! Where the toy stands and which lights shine on it: at first as the scene says, then as the frames do.
+//! Pose of the toy and lights in use: at first those of the scene, then those of the frames.
 
 use glam::{DMat4, DVec3, Vec3};
 
@@ -12,12 +12,13 @@ use app_scene::geometry::bounds::Bounds;
 use app_scene::scene::Light;
 use app_scene::toy::ToyError;
 
-/// What was learned of an object in one pose holds in another one closer than this in the picture: below the noise of any
-/// tracker, and below what shows.
+/// Largest movement in the picture within which the learned state of an object's pose stays valid:
+/// below the noise of any tracker, and below visible differences.
 const SAME_POSE_PX: f64 = 0.1;
 
 impl Stage {
-    /// Takes over the frame's pose of the object, its lights and how its receiver reflects, where they differ from those that were learned under.
+    /// Adopts the frame's pose of the object, its lights and the reflection of its receiver, if
+    /// they differ from those at the time of learning.
     pub(super) fn follow_placement(&mut self, gpu: &Gpu, input: &FrameInput) -> Result<(), ToyError> {
         let mut is_moved = false;
         if !self.is_object_placed || self.is_object_moved(input) {
@@ -45,7 +46,7 @@ impl Stage {
         Ok(())
     }
 
-    /// Indices, in the list that they were given in, of the lights inside the physical toy.
+    /// Lights inside the physical toy, as indices in the list that was given.
     fn find_lights_inside(&mut self) -> Result<Vec<usize>, ToyError> {
         let (anchor_from_world, bounds) = (self.layout().world_from_anchor().inverse(), self.physical_bounds);
         let mut inside = Vec::new();
@@ -89,27 +90,30 @@ impl Stage {
         Ok(())
     }
 
-    /// To the anchor, which stays where it was put for the scene, from the object as it stands now.
+    /// Transform from the object's current pose to the anchor, which stays in its place for the
+    /// scene.
     pub(super) fn anchor_from_object(&self) -> DMat4 {
         self.layout().world_from_anchor().inverse() * self.world_from_object
     }
 
-    /// To the anchor from the object where it is shown: with no place of its own, where it stands.
+    /// Transform from the object's shown place to the anchor; without a place of its own, that is
+    /// its physical place.
     pub(super) fn anchor_from_shown(&self, world_from_shown: Option<&DMat4>) -> DMat4 {
         self.layout().world_from_anchor().inverse() * *world_from_shown.unwrap_or(&self.world_from_object)
     }
 
-    /// The middle of the physical toy.
+    /// The centre of the physical toy.
     pub(super) fn toy_in_anchor(&self) -> DVec3 {
         self.physical_bounds.centre()
     }
 }
 
-/// Whether the mesh is around a point, more than not: its winding number is above one half.
+/// Whether a point is inside the mesh: the winding number there is above one half.
 ///
-/// The winding number is the solid angle of all triangles as seen from there, with their sign, over that of a sphere. It is 1
-/// within a closed piece and 0 outside, and between the two where a mesh has holes.
-/// Source: Jacobson, Kavan and Sorkine-Hornung 2013; solid angle of a triangle: van Oosterom and Strackee 1983.
+/// The winding number is the solid angle of all triangles as seen from there, with their sign,
+/// relative to that of a sphere. It is 1 within a closed piece and 0 outside, and between the two
+/// if the mesh has holes. Source: Jacobson, Kavan and Sorkine-Hornung 2013; solid angle of a
+/// triangle: van Oosterom and Strackee 1983.
 fn is_inside(positions: &[Vec3], indices: &[u32], at: DVec3) -> bool {
     let corner = |index: u32| positions.get(index as usize).map(|p| p.as_dvec3() - at);
     let half_angles_rad = indices.chunks_exact(3).filter_map(|triangle| {
@@ -117,9 +121,9 @@ fn is_inside(positions: &[Vec3], indices: &[u32], at: DVec3) -> bool {
         let (a_m, b_m, c_m) = (a.length(), b.length(), c.length());
         let volume = a.dot(b.cross(c));
         let rest = a_m * b_m * c_m + a.dot(b) * c_m + b.dot(c) * a_m + c.dot(a) * b_m;
-        // Both are 0 at a corner, of which the angle is none.
+        // Both are 0 at a corner, which has no solid angle.
         Some(volume.atan2(rest))
     });
-    // Half of the whole sphere's 4 pi, in halves of angles.
+    // The threshold is half of the whole sphere's 4 pi, expressed in half angles.
     half_angles_rad.sum::<f64>().abs() > std::f64::consts::PI
 }

@@ -1,4 +1,4 @@
-//! Decides how much of the method's state a frame can reuse, and makes the state fit the frame.
+//! Decides how much of the method's state a frame can reuse, and updates the state for the frame.
 
 use std::mem;
 use std::sync::Arc;
@@ -33,28 +33,28 @@ use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, Plate};
 use app_scene::things::Mark;
 
-/// Sizes of the region under a moving camera, so that it keeps one for a while.
+/// Step of the region's size under a moving camera, so that the size stays the same for a while.
 const REGION_STEP_PX: u32 = 64;
 
 /// How much of the method's state a frame can reuse.
 enum Reuse {
-    /// Not even its targets.
+    /// Nothing, not even the targets.
     Nothing,
     /// Targets and pipelines: object or lights moved.
     Targets,
     /// Targets and the work region: visibilities were injected.
     Region,
-    /// What was learned of the scene, in another view.
+    /// The learned state of the scene, in another view.
     SceneState,
-    /// What was learned of the view too; the picture is new.
+    /// The learned state of the view as well; the picture is new.
     View,
-    /// All but the pose that is shown.
+    /// Everything except the shown pose.
     Picture,
 }
 
 impl Stage {
-    /// Makes the method's state fit the frame; returns how much of it is to be learned anew, and whether the picture is as soft as
-    /// the one before.
+    /// Updates the method's state for the frame. Returns how much of it must be learned again, and
+    /// whether the picture is as sharp as the previous one.
     pub(super) fn update_method(
         &mut self,
         gpu: &Gpu,
@@ -101,14 +101,14 @@ impl Stage {
         }
     }
 
-    /// What is left to reuse in a picture that is softer or sharper than the one before.
+    /// The reuse that remains for a picture that is softer or sharper than the previous one.
     fn softened(&mut self, gpu: &Gpu, reuse: Reuse) -> Reuse {
         let Some(Method::Model(model)) = self.state.as_mut().map(|state| &mut state.method) else {
             return reuse;
         };
         match reuse {
             Reuse::View | Reuse::Picture | Reuse::Region if !model.region.plan.is_softened => {
-                // There are no targets yet for what depends on it.
+                // The targets for soft pictures do not exist yet.
                 return Reuse::SceneState;
             }
             Reuse::Nothing | Reuse::Targets | Reuse::SceneState => return reuse,
@@ -132,7 +132,7 @@ impl Stage {
         let is_within = is_same_view([&state.view, &footprint.view], &footprint.corners_in_world)
             && state.method.region().contains(&footprint.least_region)
             && state.method.holds_toy(footprint.least_toy_box);
-        // What was injected belongs to one view.
+        // Injected visibilities belong to one view.
         let is_visibility_outdated = mem::take(&mut state.is_visibility_outdated);
         let are_settings_outdated = mem::take(&mut state.are_settings_outdated);
         let is_placement_outdated = mem::take(&mut state.is_placement_outdated);
@@ -143,7 +143,7 @@ impl Stage {
             (Some(known), Some(given)) => known.is(given),
             _ => false,
         };
-        // What stood in a picture that was learned from was learned, too.
+        // Things in a learned picture are part of the learned state.
         let is_fit_outdated = !are_things_known && given.is_some() && (known.is_none() || is_known);
         state.things = given.cloned();
         if !has_grids {
@@ -161,7 +161,7 @@ impl Stage {
         }
     }
 
-    /// Starts from nothing.
+    /// Starts without any state.
     fn start(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
         self.drop_method(gpu);
         let method = match self.settings {
@@ -189,7 +189,7 @@ impl Stage {
         });
     }
 
-    /// Follows the camera to another view, of toy and lights in the same place or not.
+    /// Adapts to another view, with toy and lights in the same place or not.
     fn follow(&mut self, gpu: &Gpu, footprint: &Footprint, is_same_place: bool) {
         let Some(mut state) = self.state.take() else {
             return;
@@ -223,7 +223,7 @@ impl Stage {
         self.state = Some(state);
     }
 
-    /// Follows the object and the lights to another place, from where all is learned anew.
+    /// Adapts to another place of the object and the lights; everything is learned again.
     fn relocate(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
         if let Some(state) = &self.state
             && let (Settings::Model(settings), Method::Model(model)) = (self.settings, &state.method)
@@ -248,7 +248,7 @@ impl Stage {
         }
     }
 
-    /// Those of a preset, as far as they can be afforded.
+    /// Settings of a preset, reduced to the cost budget.
     pub(super) fn settings(&self, preset: ModelSettings) -> ModelSettings {
         let mut settings = ModelSettings {
             is_shadow_withheld: self.is_shadow_withheld,
@@ -259,7 +259,7 @@ impl Stage {
         settings
     }
 
-    /// Turns settings down from the next frame on, or up again; what was learned stays.
+    /// Sets the quality reductions from the next frame on. The learned state stays.
     pub(crate) fn set_quality_reductions(&mut self, steps: &[QualityStep]) {
         if self.asked_down != steps {
             self.asked_down = steps.to_vec();
@@ -269,7 +269,7 @@ impl Stage {
         }
     }
 
-    /// Of a region; its boxes become no smaller than those of a plan that is known.
+    /// Facts of a region. Its boxes never become smaller than those of a known plan.
     pub(super) fn facts(
         &self,
         footprint: &Footprint,
@@ -304,7 +304,7 @@ impl Stage {
         }
     }
 
-    /// What a pixel is across at the nearest part of the toy.
+    /// Size of a pixel at the nearest part of the toy.
     fn pixel_in_object(&self, footprint: &Footprint) -> f64 {
         let world_from_anchor = self.layout().world_from_anchor();
         let camera = footprint.view.camera_in(&world_from_anchor);
@@ -314,7 +314,8 @@ impl Stage {
         footprint.view.pixel_m(from_nearest_m) / metres_per_unit
     }
 
-    /// One plate or several show all of the region, which may be larger than the frame asks for.
+    /// Whether one or several plates show the whole region, which may be larger than the frame
+    /// requires.
     fn is_plate_complete(&self, footprint: &Footprint, region: &PixelRect) -> bool {
         let Footprint { view, choice, .. } = footprint;
         let fraction = if *region == footprint.region {
@@ -333,7 +334,8 @@ impl Stage {
         (fraction < 1.0).then_some(Warning::PlatePartial { fraction })
     }
 
-    /// The plates as the baseline takes them; the model fits the exposure with the light.
+    /// The plates at the frame's exposure, as the baseline reads them; the model fits the exposure
+    /// together with the light.
     pub(super) fn plate_views_at_exposure_of(&self, input: &FrameInput, footprint: &Footprint) -> PlateViews {
         let frame = Plate {
             camera: input.camera,
@@ -344,7 +346,7 @@ impl Stage {
         exposed(&footprint.plate_views, gain)
     }
 
-    /// That no light is known.
+    /// The warning that no light is known.
     pub(super) fn light_warning(&self) -> Option<Warning> {
         let has_ambient = matches!(self.settings, Settings::Model(_));
         self.lights
@@ -353,7 +355,7 @@ impl Stage {
             .then_some(Warning::NoLight { has_ambient })
     }
 
-    /// What is known to be in the pictures beside the toy.
+    /// Warnings about things beside the toy in the pictures.
     pub(super) fn thing_warnings(&self) -> impl Iterator<Item = Warning> {
         let things = self.things.as_ref();
         let told = [
@@ -362,7 +364,7 @@ impl Stage {
             (Mark::WrongPlate, Thing::InPlateAlone),
         ];
         let count = move |mark| things.map_or(0, |things| things.given().count(mark));
-        // Beside a thing before the toy there is mostly its shadow.
+        // A thing before the toy mostly comes with a shadow.
         let is_told = move |mark: Mark| match mark {
             Mark::Thing => count(mark) > count(Mark::BeforeToy),
             _ => count(mark) > 0,
@@ -382,7 +384,8 @@ impl Stage {
         Method::Model(Box::new(Model::new(gpu, plan, &globals, light_points, state)))
     }
 
-    /// The points of each light, as many as are planned, then the eyes that see the toy reflected in a view.
+    /// The planned number of points of each light, followed by the eyes that see the toy reflected
+    /// in a view.
     pub(super) fn light_points(&self, plan: &Plan, view: &View) -> Vec<Vec<Vec4>> {
         let lights = self.lights.used.iter().zip(&plan.n_light_points);
         lights
@@ -391,7 +394,8 @@ impl Stage {
             .collect()
     }
 
-    /// Points over a light in the space of each receiver in turn: the same ones, so that shadows meet where receivers do.
+    /// Points over a light in the space of each receiver in turn. They are the same points, so that
+    /// shadows meet at the receivers' common edges.
     pub(super) fn points_of(&self, light: &Light, n_points: usize) -> Vec<Vec4> {
         let world_from_anchor = self.layout().world_from_anchor();
         let target = self.toy_in_anchor();
@@ -409,7 +413,7 @@ impl Stage {
             .collect()
     }
 
-    /// What the baseline is made of in a view.
+    /// The components of the baseline in a view.
     fn baseline_parts(
         &self,
         settings: &BaselineSettings,
@@ -423,15 +427,15 @@ impl Stage {
     }
 }
 
-/// The region that a footprint asks for, of a size that it can keep for a while.
+/// The region of a footprint, with a size that can stay the same for a while.
 fn region_in(method: &Method, footprint: &Footprint) -> PixelRect {
     let image_px = footprint.view.image_px;
     let size_px = moving_size(method.region().size_px, &footprint.region, image_px);
     footprint.region.within(size_px, image_px)
 }
 
-/// The part of the image that is to be a box of a region which holds at least some pixels of it. Where there are none, it keeps its
-/// size for when they are seen again; none where it never had one.
+/// The part of the image that becomes a box of a region which contains at least some of its pixels.
+/// If no pixel is needed, the box keeps its size for later; `None` if it never had one.
 fn box_in(
     (region, image_px): (&PixelRect, UVec2),
     least: Option<PixelRect>,
@@ -444,7 +448,7 @@ fn box_in(
             ..*region
         });
     };
-    // A first one is as large as it must be, as the region is.
+    // A first box is as small as possible, like the region.
     let size_px = known_px.map_or(needed.size_px, |known_px| {
         moving_size(known_px, &needed, region.size_px)
     });
@@ -459,7 +463,8 @@ fn box_in(
     })
 }
 
-/// The size a region takes under a moving camera: as it is while that is enough, else the next step.
+/// The region's size under a moving camera: the current one if it suffices, otherwise the next
+/// step.
 fn moving_size(current_px: UVec2, needed: &PixelRect, image_px: UVec2) -> UVec2 {
     let step = |side_px: u32| side_px.div_ceil(REGION_STEP_PX) * REGION_STEP_PX;
     let stepped = UVec2::new(step(needed.size_px.x), step(needed.size_px.y)).min(image_px);
@@ -470,7 +475,8 @@ fn moving_size(current_px: UVec2, needed: &PixelRect, image_px: UVec2) -> UVec2 
     }
 }
 
-/// What either reaches of each receiver, so that going back and forth between clips starts nothing anew.
+/// Union of both reaches on each receiver, so that switching between clips does not restart the
+/// method.
 fn united(known: &[PlaneRect], new: &[PlaneRect]) -> Vec<PlaneRect> {
     if known.is_empty() {
         return new.to_vec();

@@ -1,4 +1,4 @@
-//! The shown shadow to taste: what a frame's style changes of what is there.
+//! The style of the shown shadow, and its differences from the physical shadow.
 
 use glam::Vec4;
 
@@ -13,13 +13,14 @@ use app_scene::frame::FrameInput;
 use app_scene::scene::Light;
 use app_scene::shadow_style::ShadowStyle;
 
-/// How much wider lights are taken to be than they are, so that the work region holds both the real shadow and the shown one.
+/// Factor by which the lights are widened, so that the work region contains both the real shadow
+/// and the shown one.
 fn widening(style: ShadowStyle) -> f64 {
     style.softness.max(1.0)
 }
 
 impl Stage {
-    /// Takes the style of a frame; the baseline draws shadows as published.
+    /// Sets the style of a frame's shadow; the baseline draws shadows as published.
     pub(super) fn take_shadow_style(&mut self, input: &FrameInput) {
         let style = match self.settings {
             Settings::Model(_) => input.shadow_style,
@@ -31,12 +32,12 @@ impl Stage {
         self.shadow_style = style;
     }
 
-    /// The lights whose shadows the work region has to hold.
+    /// The lights whose shadows the work region must contain.
     pub(super) fn reaching_lights(&self) -> Vec<Light> {
         self.lights_times(widening(self.shadow_style))
     }
 
-    /// Makes the method draw shadows in the style of the frame, where that or the view has changed.
+    /// Applies the frame's style to the method's shadows, if the style or the view changed.
     pub(super) fn style_shadow(&mut self, gpu: &Gpu, change: Change) {
         if self.drawn_style == self.shadow_style && change < Change::View {
             return;
@@ -54,7 +55,8 @@ impl Stage {
         }
     }
 
-    /// Points over the lights as the shown shadow has them, receiver by receiver, and the eyes that see the toy reflected in a view.
+    /// Points over the lights for the shown shadow, receiver by receiver, and the eyes that see the
+    /// toy reflected in a view.
     fn softened_points(&self, plan: &Plan, view: &View) -> Vec<Vec<Vec4>> {
         let lights = self.lights_times(self.shadow_style.softness);
         let lights = lights.iter().zip(&plan.n_light_points);
@@ -64,7 +66,7 @@ impl Stage {
             .collect()
     }
 
-    /// The lights so many times as wide, as the toy sees them.
+    /// The lights with their widths multiplied by a factor, as seen from the toy.
     fn lights_times(&self, factor: f64) -> Vec<Light> {
         let toy_in_world = self
             .layout()

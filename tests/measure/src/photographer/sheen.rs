@@ -1,4 +1,4 @@
-//! Specular reflection of a toy's surface: of lamps by their middles, of all else by rays.
+//! Specular reflection of a toy's surface: of lamps by their centres, of everything else by rays.
 
 use std::f64::consts::PI;
 
@@ -8,11 +8,11 @@ use super::lamp::Lamp;
 use super::rays::{Hit, Place};
 use super::world::Sheen;
 
-/// Reflectance of plastic where light falls straight on it.
+/// Reflectance of plastic at normal incidence.
 const STRAIGHT: f64 = 0.04;
 
 impl Sheen {
-    /// Radiance that a lamp's light gives towards `to_camera`, over that which a white matt surface has of it.
+    /// Radiance of a lamp's reflection towards `to_camera`, relative to a white matt surface.
     pub(super) fn of_lamp(&self, hit: &Hit, to_camera: DVec3, lamp: &Lamp) -> f64 {
         let to_lamp = lamp.cone(hit.at).axis;
         let half_way = (to_camera + to_lamp).normalize();
@@ -28,7 +28,8 @@ impl Sheen {
         self.strength * PI * brdf
     }
 
-    /// Radiance of what stands around, and of the sky, by facets that slope along a pattern over the unit disc.
+    /// Radiance of the reflected surroundings and sky, with the facets' slopes in a pattern over
+    /// the unit disc.
     pub(super) fn of_place(
         &self,
         (place, hit): (&Place<'_>, &Hit),
@@ -46,7 +47,8 @@ impl Sheen {
             if l <= 0.0 || v <= 0.0 {
                 return DVec3::ZERO;
             }
-            // Facets are drawn by their area as seen along the normal. Source: Walter et al. 2007, (41).
+            // Facets are sampled by their area as seen along the normal. Source: Walter et al.
+            // 2007, (41).
             let weight = facet.dot(to_camera) * self.unmasked(v) * self.unmasked(l) / (v * h);
             weight * fresnel(facet.dot(to_camera)) * place.light_along(hit, direction)
         });
@@ -54,7 +56,8 @@ impl Sheen {
         self.strength * light.sum::<DVec3>() / n_rays
     }
 
-    /// Part of the facets that others do not hide, along a direction at a cosine to the normal. Source: Walter et al. 2007, table 1.
+    /// Share of the facets that are visible along a direction, for its cosine to the normal.
+    /// Source: Walter et al. 2007, table 1.
     fn unmasked(&self, cosine: f64) -> f64 {
         let a = cosine / (self.roughness * (1.0 - cosine * cosine).max(f64::MIN_POSITIVE).sqrt());
         if a >= 1.6 {
@@ -64,7 +67,7 @@ impl Sheen {
     }
 }
 
-/// Source: Schlick 1994.
+/// Fresnel reflectance. Source: Schlick 1994.
 fn fresnel(cosine: f64) -> f64 {
     STRAIGHT + (1.0 - STRAIGHT) * (1.0 - cosine.clamp(0.0, 1.0)).powi(5)
 }

@@ -49,7 +49,7 @@ fn a_video_is_known_by_its_ending_and_leaves_nothing_if_it_cannot_be_read() {
     let (video, pictures) = (folder.0.join("walk.mp4"), folder.0.join("pictures"));
     fs::create_dir_all(&folder.0).unwrap();
     fs::write(&video, "no video").unwrap();
-    // With ffmpeg, and without.
+    // This holds with ffmpeg, and without.
     let error = Video::open(&video, &pictures, 1).unwrap_err();
     assert!(format!("{error:#}").contains("walk.mp4: "), "{error:#}");
     assert!(!pictures.exists());

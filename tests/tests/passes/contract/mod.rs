@@ -51,7 +51,7 @@ fn every_shader_keeps_the_contract() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A part comes once, after those that it imports itself, and there is a file of each.
+/// Each part is included once, after its own imports, and every part has a file.
 #[test]
 fn shaders_import_parts_that_exist() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shaders");
@@ -96,7 +96,7 @@ fn the_limits_are_those_of_a_phone() {
 #[test]
 fn the_sums_of_the_fit_have_room() {
     let n = u32::try_from(N_COLUMNS).unwrap();
-    // Of the normal equations, and that of clipped pixels.
+    // The sums of the normal equations, and that of clipped pixels.
     let n_sums = n * (n + 1) / 2 + n + 1;
     let (fit, solve) = (module("fit"), module("fit_solve"));
     assert_eq!([number(&fit, "N_SUMS"), number(&solve, "N_SUMS")], [n_sums; 2]);
@@ -115,7 +115,7 @@ fn the_sums_of_the_fit_have_room() {
     assert_eq!(workgroup % strided, 0, "as many in each strided sum");
     assert!(strided * part <= workgroup, "a lane for each");
     assert_eq!(n_sums % part, 0, "whole parts");
-    // One pixel more than sixteen for each invocation of a workgroup takes a second one.
+    // One pixel more than sixteen for each invocation of a workgroup requires a second one.
     let full = 16 * workgroup;
     assert_eq!(
         [plan(full, 1), plan(full + 1, 1)].map(|plan| plan.n_fit_rows(plan.fit_stride_px)),
@@ -170,11 +170,11 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
     )
 }
 
-/// A shader with a fault must be found out, in words that name it.
+/// Each fault in a shader must be found, with a message that names it.
 #[test]
 fn faults_in_a_shader_are_found() {
-    // Shader, text in it, text in its place, words of the problem.
-    #[rustfmt::skip] // One case a line.
+    // Columns: shader, a text in it, the replacement, a part of the expected message.
+    #[rustfmt::skip] // Each case has a line of its own.
     let faults = [
         ("composite", "bounce", "rebound", ["Fit", "rebound"]),
         ("residual", "size: vec2u,\n  _pad: vec2u,", "_pad: vec2u,\n  size: vec2u,", ["Grid", "size"]),
@@ -271,7 +271,7 @@ fn what_the_device_was_not_asked_for_is_found() {
     let half = "enable f16;\n@fragment fn fs_half(@builtin(position) at: vec4f) -> @location(0) vec4f {\n\
         let half_at = vec4h(at);\n  return vec4f(half_at + half_at);\n}";
     assert_found(&problems(half, &[]), &["not valid for the device"], "f16");
-    // It is the capability that is missing, nothing else.
+    // Only the capability is missing.
     validate(&parse(half).unwrap(), Capabilities::all()).unwrap();
 }
 

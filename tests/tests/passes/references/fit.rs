@@ -1,4 +1,4 @@
-//! A frame made from a known solution gives that solution back.
+//! A frame made from a known solution gives this solution back.
 
 use glam::{DVec2, DVec3, DVec4, UVec2};
 use reference::fit::{
@@ -23,14 +23,15 @@ fn layout(n_lights: usize) -> Region {
     region(UVec2::splat(80), two_bulbs()[..n_lights].to_vec())
 }
 
-/// Receiver points all over the place, lit and in all kinds of shade, over a plate of many colours.
+/// Receiver points over the whole region, lit and in every kind of shadow, over a plate of many
+/// colours.
 fn samples(region: &Region, solution: &Solution) -> Vec<ReceiverSample> {
     let sample = |seed: u32| {
         let unit = |dimension| scatter(seed, dimension);
         let in_plane = DVec2::new(unit(0) - 0.5, unit(1) - 0.5);
         let plate = DVec3::new(unit(2), unit(3), unit(4)) * 0.6 + 0.2;
         let ambient = 1.0 - 0.8 * unit(5) * unit(5);
-        // Half of the points are out of each shadow.
+        // Half of the points are outside each shadow.
         let visibility = DVec4::new(unit(6), unit(7), 0.0, 0.0) * 2.0;
         let visibility = visibility.min(DVec4::ONE);
         let model = solution.receiver_model(region, point(in_plane), ambient, visibility);
@@ -46,7 +47,7 @@ fn samples(region: &Region, solution: &Solution) -> Vec<ReceiverSample> {
     (0..N_SAMPLES).map(sample).collect()
 }
 
-/// Most of a bounce that a point sees: A (1 - A) where half of the sky is hidden.
+/// Largest bounce at a point: A (1 - A) with half of the sky hidden.
 const MOST_BOUNCED: f64 = 0.25;
 
 /// Largest difference of gain, shares, and bounce times `weight`.
@@ -69,7 +70,8 @@ fn known_light_is_recovered() {
     for n_lights in [1, 2] {
         let region = layout(n_lights);
         let samples = samples(&region, &truth(n_lights));
-        // The falloff of the plate is linearised, so this takes steps; each one halves the error and more.
+        // The falloff of the plate is linearised, so several steps are needed; each one at least
+        // halves the error.
         let fitted = fit_receiver(&region, (0, &samples), &start(n_lights), &without_priors(), 40);
         let error = difference(&fitted, &truth(n_lights), 1.0);
         assert!(error < 1e-6, "{n_lights} lights: off by {error:e}, {fitted:?}");
@@ -84,7 +86,8 @@ fn priors_and_few_steps_cost_little() {
         let samples = samples(&region, &truth(n_lights));
         let fitted = fit_receiver(&region, (0, &samples), &start(n_lights), &constants, 5);
         let error = difference(&fitted, &truth(n_lights), MOST_BOUNCED);
-        // Priors pull by their weight, 1e-4, over the share of energy that tells two unknowns apart. Measured: 3.5e-4.
+        // Priors pull by their weight, 1e-4, relative to the share of energy that separates two
+        // unknowns. Measured: 3.5e-4.
         assert!(error < 1e-3, "{n_lights} lights: off by {error:e}");
     }
 }
@@ -148,12 +151,13 @@ fn unseen_shadow_leaves_the_expected_share() {
         sample.frame = sample.plate * 0.9;
     }
     let fitted = fit_receiver(&region, (0, &lit), &start(2), &constants, 5);
-    // Like bulbs: cosine over squared distance of each, from the reference point at the origin.
+    // As for bulbs: the cosine over the squared distance of each, from the reference point at the
+    // origin.
     let of_bulb = |bulb: DVec4| bulb.y / bulb.truncate().length().powi(3);
     let bulbs = two_bulbs();
     let both: f64 = bulbs.iter().map(|bulb| of_bulb(*bulb)).sum();
     for (direct_fraction, bulb) in fitted.receivers[0].direct_fractions.iter().zip(bulbs) {
-        // Whatever the gain is, which is found first.
+        // The result does not depend on the gain, which is estimated first.
         let expected = PRIOR_DIRECT_FRACTION * of_bulb(bulb) / both;
         assert!(
             (direct_fraction - expected).abs().max_element() < 1e-3,
@@ -164,7 +168,7 @@ fn unseen_shadow_leaves_the_expected_share() {
     assert!(fitted.receivers[0].clipped.max_element() < 1e-12, "{fitted:?}");
 }
 
-/// How a toy is lit, what else is known of it, and pixels of it.
+/// The light on a toy, the known part of the solution, and pixels of the toy.
 fn lit_toy() -> ([DVec3; 4], Solution, Vec<ToySample>) {
     let lit = [
         DVec3::new(0.3, 0.32, 0.4),
@@ -172,7 +176,7 @@ fn lit_toy() -> ([DVec3; 4], Solution, Vec<ToySample>) {
         DVec3::splat(0.5),
         DVec3::splat(0.2),
     ];
-    // One of the lights is dimmed, the other turned up.
+    // One light is dimmed, the other one is stronger.
     let known = Solution {
         intensities: vec![DVec3::new(0.5, 0.6, 0.7), DVec3::splat(1.3)],
         ..start(2)
@@ -181,7 +185,7 @@ fn lit_toy() -> ([DVec3; 4], Solution, Vec<ToySample>) {
         let unit = |dimension| scatter(seed, dimension);
         let normal = DVec3::new(unit(0) - 0.5, unit(1) - 0.2, unit(2) - 0.5).normalize();
         let base = DVec3::new(0.2 + 0.5 * unit(3), 0.2 + 0.3 * unit(4), 0.3);
-        // Any light that rises and falls otherwise than the normal will do.
+        // Any light that varies differently from the normal is suitable.
         let received = DVec4::new(unit(5), unit(6), 0.0, 0.0);
         let columns = toy_columns(normal, received, &known.intensities);
         let lights = columns.into_iter().zip(lit);

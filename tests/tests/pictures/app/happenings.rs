@@ -1,4 +1,4 @@
-//! What may happen to an app, in no order.
+//! Events of an app, in arbitrary order.
 
 use app_core::app::{ArSession, GraphicsState, Permission, Saved, Thermal, UserAction};
 use app_core::camera_frame::Tracking;
@@ -8,7 +8,7 @@ use proptest::sample::select;
 
 use crate::app::world;
 
-/// Something that happens.
+/// An event.
 #[derive(Clone, Debug)]
 pub(crate) enum Happening {
     Permission(Permission),
@@ -16,24 +16,25 @@ pub(crate) enum Happening {
     Surface(bool),
     Graphics(GraphicsState),
     ArSession(ArSession),
-    /// So many frames, 33 ms apart, 17 or 50.
+    /// A number of frames, 33 ms apart, 17 or 50.
     Frames(u8, i64, Tracking),
-    /// The last one once more, or an older one.
+    /// The last frame again, or an older one.
     StaleFrame(bool),
     NewWorld,
     Thermal(Thermal),
     MemoryLow,
     Restarted,
-    /// It finds the toy so far from where it is drawn, in pixels, or sees too little of it.
+    /// The alignment finds the toy at that distance in pixels from its drawn place, or sees too
+    /// little of it.
     AlignmentEnds(Option<f64>),
-    /// It runs as it would, on a picture that shows no toy.
+    /// The alignment runs on a picture that shows no toy.
     AlignmentRuns,
     AlignmentDies,
-    /// What else threads work on comes to its end, or they do.
+    /// Other threads end their work, or end without a result.
     WorkEnds(bool),
     OtherToy(bool),
     Saved(Saved),
-    /// The first or the last recording ends, asked or not.
+    /// The first or the last recording ends, on command or not.
     RecordingEnds(bool),
     FreeSpace(u64),
     User(UserAction),

@@ -1,4 +1,4 @@
-//! The card on the table: it is the table, and the lens on it tells the lights.
+//! The card on the table: it defines the table, and the lens on it shows the lights.
 
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
@@ -19,16 +19,16 @@ use view::feed::Feed;
 use crate::app::world;
 
 const SIZE_PX: [u32; 2] = [512, 288];
-/// Where the lens lies, beside the toy.
+/// The lens's place, beside the toy.
 const LENS: DVec3 = DVec3::new(-0.14, 0.0, 0.06);
-/// Of the frame's pixels: on the table, beside the toy.
+/// A pixel of the frame that shows the table beside the toy.
 const BESIDE_TOY_PX: DVec2 = DVec2::new(150.0, 200.0);
 
 fn lamp() -> DVec3 {
     toward(50.0, 30.0)
 }
 
-/// A session with a picture of a lens that lies on the card, under a sun; and without any lamp.
+/// A session with a picture of a lens on the card, under a sun; or without any lamp.
 fn session(name: &str, is_lit: bool) -> Capture {
     let lamps = if is_lit {
         vec![Lamp::sun(lamp(), 0.01, 1.0)]
@@ -69,12 +69,12 @@ struct Person {
     app: App,
     feed: Feed,
     commands: Vec<String>,
-    /// Whether the camera does as it is told.
+    /// Whether the camera follows the command.
     can_darken: bool,
 }
 
 impl Person {
-    /// At the ghost, without a plate.
+    /// The step of the ghost, without a plate.
     fn at_ghost(session: &Capture) -> Self {
         let feed = Feed::of(session).unwrap();
         let mut person = Self {
@@ -131,7 +131,7 @@ fn the_card_is_the_table_where_no_plane_is_found() {
     let mut person = Person::at_ghost(&LIT);
     assert_eq!(person.app.step(), Step::PlaceToy);
     assert!(person.app.sees_card());
-    // Without it there is no table to tap on.
+    // Without the card there is no table to tap on.
     person.tell(ShellEvent::User(UserAction::StartOver));
     let mut frame = person.frame();
     frame.world_from_card = None;
@@ -145,7 +145,7 @@ fn the_card_is_the_table_where_no_plane_is_found() {
 fn a_dark_picture_of_the_lens_tells_the_light_and_the_camera_is_given_back() {
     let mut person = Person::at_ghost(&LIT);
     person.take_lens();
-    // A toy is not placed meanwhile: the picture is too dark to align it.
+    // No toy is placed meanwhile: the picture is too dark to align it.
     person.tell(ShellEvent::User(UserAction::Placed));
     assert_eq!(person.app.step(), Step::PlaceToy);
     person.frames(1);
@@ -217,7 +217,7 @@ fn a_card_that_is_not_seen_tells_no_lens() {
 
 #[test]
 fn the_lens_lies_where_the_page_says() {
-    // 29 mm left of the pattern's middle and 113 mm further down the page.
+    // The place is 29 mm left of the pattern's centre and 113 mm further down the page.
     let place = card_from_lens().w_axis.truncate();
     assert!(place.abs_diff_eq(DVec3::new(-0.029, 0.0, 0.113), 1e-9), "{place}");
 }

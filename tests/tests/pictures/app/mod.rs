@@ -1,4 +1,4 @@
-//! The app's logic: its table of steps, every order of events, and a person's way to a toy that moves.
+//! The app's logic: its table of steps, every order of events, and a person's way to a moving toy.
 
 mod happenings;
 mod lens;

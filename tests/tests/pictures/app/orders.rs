@@ -1,4 +1,4 @@
-//! Whatever happens in whatever order, what the shell is asked for makes sense.
+//! The commands to the shell are consistent for every order of events.
 
 use app_core::app::{
     AlignJob, AlignedJob, App, GraphicsState, Notice, Permission, PlateJob, PlatformCommand, SearchJob,
@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use super::happenings::{Happening, happening};
 use crate::app::world;
 
-/// A platform that does as it is told, and finds fault with what makes no sense.
+/// A platform that follows commands, and reports inconsistent ones.
 #[derive(Default)]
 struct Platform {
     permission: Permission,
@@ -108,7 +108,7 @@ impl Platform {
         }
     }
 
-    /// The latest alignment comes to an end, if there is one.
+    /// Ends the latest alignment, if there is one.
     fn end(&mut self, end: impl FnOnce(AlignJob) -> Option<AlignedJob>) -> Vec<ShellEvent> {
         let ended = self.jobs.pop().map(end);
         ended
@@ -119,7 +119,7 @@ impl Platform {
 
     fn frame(&self, tracking: Tracking) -> ShellEvent {
         let mut frame = world::frame(self.n_frames, self.time_ns, self.world_epoch, tracking);
-        // A camera takes some frames to darken, and may not.
+        // A camera takes some frames to darken, and may fail.
         let is_dark = self.is_dark && self.n_frames.is_multiple_of(7);
         frame.exposure = Some(Exposure {
             duration_s: if is_dark { 0.01 / 64.0 } else { 0.01 },
@@ -128,12 +128,12 @@ impl Platform {
         ShellEvent::Frame(Box::new(frame))
     }
 
-    /// Obeys, and says what makes no sense.
+    /// Executes a command, or describes its inconsistency.
     fn obey(&mut self, command: ShellCommand) -> Result<(), String> {
         let is_wrong = match &command {
             ShellCommand::Platform(PlatformCommand::PauseTracking) => !self.runs,
             ShellCommand::Platform(PlatformCommand::LockExposure(_)) => !self.runs,
-            // Only what is held can be darkened.
+            // Only a locked exposure can be darkened.
             ShellCommand::Platform(PlatformCommand::Underexpose(is_on)) => {
                 !self.runs || !self.is_locked || *is_on == self.is_dark
             }
@@ -158,7 +158,7 @@ impl Platform {
             ShellCommand::Work(WorkCommand::Video(is_on)) => self.makes_video = is_on,
             ShellCommand::Work(WorkCommand::Record(job)) => {
                 self.records = job.is_some();
-                // One after the other, each with a number of its own.
+                // Jobs run one after the other, each with its own number.
                 if let Some(job) = job {
                     if self
                         .recordings
@@ -178,14 +178,14 @@ impl Platform {
         Ok(())
     }
 
-    /// What must hold between two events.
+    /// Conditions that hold between two events.
     fn check(&self, app: &App) -> Result<(), String> {
         let step = app.step();
         let (effect, is_toy) = match app.show() {
             Show::Toy { input, .. } => (input.effect, true),
             _ => (0.0, false),
         };
-        #[rustfmt::skip] // One rule a line.
+        #[rustfmt::skip] // Each rule has a line of its own.
         let rules = [
             (self.runs && !(self.is_foreground && self.permission == Permission::Granted), "the camera runs where it may not"),
             (self.runs && step == Step::Welcome, "the camera runs before it is needed"),
@@ -205,7 +205,7 @@ impl Platform {
     }
 }
 
-/// Lets all of it happen; the first thing that makes no sense is an error.
+/// Applies all events; the first inconsistency is an error.
 fn live_through(happenings: Vec<Happening>) -> Result<(App, Platform), String> {
     let (mut app, mut platform) = (world::app(), Platform::default());
     for happening in happenings {
@@ -231,12 +231,12 @@ fn live_through(happenings: Vec<Happening>) -> Result<(App, Platform), String> {
     Ok((app, platform))
 }
 
-/// The app after all of it.
+/// The app after all events.
 pub(crate) fn happen(happenings: Vec<Happening>) -> App {
     live_through(happenings).unwrap().0
 }
 
-/// What leads to a toy that moves.
+/// Events that lead to a moving toy.
 pub(crate) fn straight() -> Vec<Happening> {
     vec![
         Happening::Foreground(true),
@@ -310,7 +310,7 @@ fn the_effect_comes_and_goes_with_the_pose() {
     let going = frames(&mut app, 2, Tracking::TooFast);
     assert!(going > 0.0 && going < 1.0, "{going}");
     assert!(frames(&mut app, 4, Tracking::TooFast) == 0.0);
-    // Lost for a while, the toy is shown again without anything to be done.
+    // After a short loss the toy is shown again without any action.
     assert!(frames(&mut app, 20, Tracking::Normal) == 1.0);
 }
 
@@ -340,7 +340,7 @@ fn a_recording_that_ended_late_leaves_the_next_one_alone() {
     assert!(
         matches!(app.notice(), Some(Notice::Recorded(recorded)) if recorded.outcome.ending == Ending::NoRoom)
     );
-    // With hardly anything free none begins.
+    // With hardly any free space no recording begins.
     let _ = app.event(ShellEvent::FreeSpace(1 << 20));
     action(&mut app, &mut platform, true);
     assert!(!app.is_recording() && app.notice() == Some(&Notice::NoRoomToRecord));

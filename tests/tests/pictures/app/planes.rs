@@ -1,4 +1,5 @@
-//! Planes above the table that the toy's shadow may reach are receivers, too; pieces of the table, the floor and what is far away are none.
+//! Planes above the table that the toy's shadow may reach are receivers, too; pieces of the table,
+//! the floor and distant planes are not.
 
 use std::sync::Arc;
 
@@ -53,7 +54,7 @@ fn planes_above_the_table_are_receivers() {
     let places: Vec<DVec3> = places.skip(1).collect();
     assert_eq!(places.len(), 2, "{places:?}");
     assert!(places.contains(&STEP) && places.contains(&RAMP), "{places:?}");
-    // What is told later is no other scene.
+    // A plane that is reported later does not change the scene.
     let known = Arc::clone(scene);
     person.frames(3);
     let Show::Toy { scene, .. } = person.app.show() else {

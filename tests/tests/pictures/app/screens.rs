@@ -1,4 +1,4 @@
-//! The interface without a device: what can be read out and touched, on every screen.
+//! The interface without a device: its labels and touch targets, on every screen.
 
 use app_core::app::{App, GraphicsState, Language, Permission, ShellEvent, Step, UserAction};
 use app_core::camera_frame::Tracking;
@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use crate::app::world;
 
-/// Nothing to be touched is lower, in points.
+/// Smallest height of a touch target, in points.
 const TOUCH_POINTS: f64 = 44.0;
 
 const PORTRAIT: Screen = Screen {
@@ -46,7 +46,7 @@ fn screens() -> [(&'static str, Screen); 3] {
 
 fn widgets(app: &App, screen: &Screen) -> Vec<Widget> {
     let mut interface = Interface::default();
-    // Sheets find their size with the first picture.
+    // Sheets get their size with the first picture.
     for _ in 0..3 {
         interface.actions(app, screen);
     }
@@ -69,7 +69,7 @@ fn events() -> Vec<ShellEvent> {
         ShellEvent::User(UserAction::Answer(true)),
         ShellEvent::User(UserAction::Answer(true)),
         ShellEvent::User(UserAction::CheckPhone(false)),
-        // Beside the table.
+        // This pixel is beside the table.
         ShellEvent::User(UserAction::Tap(DVec2::new(32.0, -400.0))),
         ShellEvent::User(UserAction::Tap(DVec2::new(32.0, 24.0))),
         ShellEvent::Frame(Box::new(world::frame(3, 66_000_000, 0, Tracking::Normal))),
@@ -79,7 +79,7 @@ fn events() -> Vec<ShellEvent> {
     ]
 }
 
-/// The app on each of its screens but that of the last step, which needs a toy that was found.
+/// The app on each of its screens except that of the last step, which needs a found toy.
 fn apps(language: Language) -> Vec<App> {
     let apps = (1..=events().len()).map(|n| {
         let mut app = world::app();
@@ -178,13 +178,13 @@ fn a_finger_presses_the_button_below_it() {
     assert_eq!(press([5.0, 5.0]), []);
 }
 
-/// What is wrong with words, of which there is one of each language.
+/// The flaw of a text, given in each language.
 fn flaw([english, german]: [&str; Language::ALL.len()]) -> Option<&'static str> {
     let n_filled = |text: &str| text.matches("{}").count();
     let length = |text: &str| text.chars().count() as f64;
     let is_of_font = |text: &str| text.chars().all(|sign| u32::from(sign) < 256);
     let is_long = |one: &str, other: &str| length(one) > 1.45 * length(other) + 12.0;
-    #[rustfmt::skip] // One flaw a line.
+    #[rustfmt::skip] // Each flaw has a line of its own.
     let flaws = [
         (english.trim().is_empty() || german.trim().is_empty(), "a language lacks them"),
         (n_filled(english) != n_filled(german), "not the same is filled in"),

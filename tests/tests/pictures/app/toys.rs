@@ -1,4 +1,4 @@
-//! Another toy: the list of those that there are, one of which is read, and one that the platform recognises.
+//! Another toy: one from the list of available toys, and one that the platform recognises.
 
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ fn a_toy_is_chosen_from_the_files_that_there_are() {
         assert!(app.event(ShellEvent::User(action)).is_empty());
         assert_eq!(app.toy_files(), None);
     }
-    // The ghost is the other toy's, where the person taps next.
+    // The ghost is that of the other toy, at the next tap.
     let _ = app.event(ShellEvent::Toy(Ok(world::toy())));
     assert_eq!(app.step(), Step::PlaceToy);
     assert!(app.ghost().is_none());

@@ -1,4 +1,5 @@
-//! A person's way through the bundled session: a table, a plate, a ghost that is a little off, and a toy that moves.
+//! A person's way through the bundled session: a table, a plate, a ghost with a small offset, and a
+//! moving toy.
 
 use std::sync::Arc;
 
@@ -12,14 +13,14 @@ use view::feed::Feed;
 
 use crate::app::world;
 
-/// How far off the ghost is left.
+/// Offset of the ghost.
 pub(crate) const OFF_M: DVec3 = DVec3::new(0.004, 0.0, -0.003);
 const OFF_RAD: f64 = 0.1;
 
 pub(crate) struct Person {
     pub(crate) app: App,
     pub(crate) feed: Feed,
-    /// Recordings that wait to be written.
+    /// Recordings that are waiting to be written.
     pub(crate) recordings: Vec<RecordingJob>,
 }
 
@@ -94,7 +95,7 @@ fn photographed() -> Person {
     person
 }
 
-/// A person who has placed the ghost, as far off as told, and waits.
+/// A person who has placed the ghost with this offset, and waits.
 pub(crate) fn placed(off_m: DVec3) -> Person {
     let mut person = photographed();
     person.feed.is_toy_there = true;
@@ -167,7 +168,7 @@ fn a_toy_that_is_put_down_is_found_without_a_touch() {
     let (truth, _) = person.feed.toy();
     let turned_rad = (yaw_rad(&input.world_from_object) - yaw_rad(truth)).abs();
     assert!(turned_rad < 0.01, "{turned_rad}");
-    // Moved again, it begins where it was found.
+    // The ghost returns to the estimated place.
     person.act(UserAction::Replace);
     assert_eq!(person.app.placing(), Placing::ByHand);
     assert!(person.app.ring_px().is_some());
@@ -180,7 +181,7 @@ fn a_thumb_around_the_ring_turns_the_ghost_and_within_it_moves_it() {
     let pose = |person: &Person| person.app.ring_px().expect("a ring");
     let (ring, knob) = pose(&person);
     let middle: DVec2 = ring.iter().sum::<DVec2>() / ring.len() as f64;
-    // From the ring's knob to the corner a quarter of it away.
+    // The drag goes from the ring's knob to the corner a quarter of the ring away.
     let at = ring.iter().enumerate();
     let (at, _) = at
         .min_by(|(_, a), (_, b)| a.distance(knob).total_cmp(&b.distance(knob)))

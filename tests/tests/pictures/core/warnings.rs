@@ -1,4 +1,4 @@
-//! What broken input is told in words: each case with all of its warnings, and no others.
+//! Warnings for broken input: each case has exactly the expected ones.
 
 use std::sync::Arc;
 
@@ -60,7 +60,7 @@ impl Case {
         self
     }
 
-    /// The real toy somewhere else.
+    /// Moves the real toy to another place.
     fn standing_at(mut self, in_world: DVec3) -> Self {
         let by = in_world - self.scene.world_from_object.w_axis.truncate();
         self.input.world_from_object = DMat4::from_translation(by) * self.scene.world_from_object;
@@ -111,7 +111,7 @@ fn brighter([r, g, b, a]: [u8; 4]) -> [u8; 4] {
     ]
 }
 
-/// As cameras do that make pictures brilliant: what is dark becomes darker, what is bright becomes brighter.
+/// A camera's contrast: dark values become darker, and bright ones brighter.
 fn with_contrast([r, g, b, a]: [u8; 4]) -> [u8; 4] {
     #[allow(
         clippy::cast_possible_truncation,
@@ -139,7 +139,7 @@ fn toy_middle() -> DVec3 {
     scene.world_from_object.transform_point3(middle)
 }
 
-/// The first picture with all of the real shadow in one code.
+/// The first picture with the whole real shadow in one code.
 fn picture_with_shadow_of(core: &mut Core, code: u8) -> Arc<Image> {
     let (scene, input) = (scene(), first_input());
     let width = scene.width_px as usize;
@@ -160,7 +160,7 @@ fn picture_with_shadow_of(core: &mut Core, code: u8) -> Arc<Image> {
     })
 }
 
-/// What is wrong with a picture or with where things stand.
+/// Each defect of the picture or of the scene gives the warning of its cause.
 #[test]
 fn broken_input_is_told_by_its_cause() {
     let mut core = core();
@@ -184,7 +184,7 @@ fn broken_input_is_told_by_its_cause() {
         Case::new("white plate", &["PlateUnreadable"]).with_plate(|_| [255; 4]),
         Case::new("black shadow", &["ShadowUnreadable"]).with_picture(black_shadow),
         Case::new("white shadow", &["ShadowUnreadable"]).with_picture(white_shadow),
-        // The shadow in the picture is then that of a light that is not listed.
+        // The shadow in the picture then belongs to no listed light.
         Case::new("light inside the toy", &["LightsInsideToy", "Outlier(Shadow)"])
             .lit_by(vec![bulb(toy_middle())]),
         Case::new("a toy like a mirror", &["TooGlossy"]).made_glossy(0.02, 1.0),
@@ -193,7 +193,7 @@ fn broken_input_is_told_by_its_cause() {
             .lit_by(vec![bundled, bulb(toy_middle())]),
         Case::new("light where there is none", &["NoShadow", "Outlier(Shadow)"])
             .lit_by(vec![bulb(toy_middle() + DVec3::new(0.0, 0.2, 0.0))]),
-        // The bulb's own shadow is then that of nothing that is known.
+        // The bulb's own shadow then has no known light.
         Case::new("no light", &["NoLight", "AmbientAlone", "Outlier(Shadow)"]).lit_by(Vec::new()),
         Case::new("toy behind the camera", &["ToyOutOfPicture"]).standing_at(behind),
         Case::new("toy far behind the camera", &["OutOfPicture"]).standing_at(behind.with_y(0.0)),
@@ -208,7 +208,7 @@ fn broken_input_is_told_by_its_cause() {
     }
 }
 
-/// The toy moves without a light, too, and out of its old place.
+/// The toy moves out of its old place even without a light.
 #[test]
 fn without_a_light_every_preset_moves_the_toy() {
     let mut core = core();
@@ -228,7 +228,7 @@ fn without_a_light_every_preset_moves_the_toy() {
     }
 }
 
-/// What there is too much of is counted, not listed.
+/// A warning counts items if there are many, and does not list them.
 #[test]
 fn many_of_a_kind_are_one_short_warning() {
     let mut core = core();
@@ -264,7 +264,7 @@ fn numbers_and_lists_in_messages_are_short() {
         min: 1e-6,
         max: 1e6,
     };
-    #[rustfmt::skip] // One case a line.
+    #[rustfmt::skip] // Each case has a line of its own.
     let cases = [
         (range(1e308).to_string(), "1e308 is not from 1e-6 to 1000000"),
         (range(-f64::MAX).to_string(), "-1.79769e308 is not from 1e-6 to 1000000"),

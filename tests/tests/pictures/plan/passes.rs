@@ -1,4 +1,4 @@
-//! Which passes a plan runs on which path, with which sizes and formats.
+//! Passes of a plan on each path, with their sizes and formats.
 
 use app_core::Core;
 use app_core::frame::{FrameInput, PassGroup};
@@ -14,7 +14,7 @@ use glam::UVec2;
 use harness::bundled_session;
 use measure::bench::{FrameKind, with_new};
 
-/// Sizes of regions, from a pixel to more than any camera.
+/// Sizes of regions, from a pixel to more than that of any camera.
 const SIZES_PX: [[u32; 2]; 12] = [
     [1, 1],
     [1, 2],
@@ -92,7 +92,8 @@ fn counting(preset: Preset, has_plates: bool) -> (Core, FrameInput) {
     (core, FrameInput::from(&session.frame(0).unwrap()))
 }
 
-/// What runs for a new scene, then for two views, a pose, two pictures and a view, one new after the other; each pose is drawn.
+/// The passes for a new scene, then for two views, a pose, two pictures and a view in sequence;
+/// each pose is drawn.
 fn runs(preset: Preset, has_plates: bool) -> Vec<Ran> {
     use FrameKind::{Picture, Pose, View};
     let (mut core, mut input) = counting(preset, has_plates);
@@ -109,7 +110,7 @@ fn expected(change: Change, capture: &str, frame: &str) -> Ran {
     (Some(change), [capture.to_owned(), frame.to_owned()])
 }
 
-/// Passes of the model that each pose needs.
+/// Passes of the model for each new pose.
 const DRAWN: &str = "occlusion self_shadow moved_mask toy coverage composite";
 
 #[test]
@@ -172,7 +173,7 @@ fn the_published_method_runs_its_passes_in_this_order() {
     );
 }
 
-/// A new picture changes the colours alone; if that is the same, too, nothing runs.
+/// A new picture changes the colours alone; if the picture is unchanged, too, nothing runs.
 #[test]
 fn a_paused_toy_is_not_drawn_again() {
     let of_paper = "warp pcss search box_filter retarget";
@@ -194,7 +195,8 @@ fn a_paused_toy_is_not_drawn_again() {
     }
 }
 
-/// Plate and light are estimated from one another three times; `fill` follows `lit` each time, and `residual`.
+/// Plate and light are estimated alternately three times; `fill` runs after `lit` each time, and
+/// after `residual`.
 #[test]
 fn a_new_scene_without_plates_is_estimated_in_rounds() {
     let (mut core, input) = counting(Preset::Balanced, false);
@@ -225,7 +227,7 @@ fn a_wide_penumbra_and_a_hard_edge_are_drawn_from_more_points() {
     assert_eq!(plan.n_light_points, [64, 64]);
 }
 
-/// A camera that sways about a threshold leaves a light as many points as it had.
+/// A camera that sways about a threshold does not change a light's number of points.
 #[test]
 fn a_penumbra_that_is_nearly_as_wide_counts_as_it_was() {
     let facts = |width_px| facts_with([640, 360], vec![width_px]);
@@ -240,7 +242,7 @@ fn a_penumbra_that_is_nearly_as_wide_counts_as_it_was() {
         [64, 32]
     );
     assert_eq!([n_points(0.0, 5.0), n_points(5.0, 0.0)], [32, 64]);
-    // And if not, nothing is made anew for it.
+    // Another number of points does not change the allocations.
     let [few, many] = [8.0, 80.0].map(|width_px| plan_with([640, 360], vec![width_px]));
     assert!(few.has_sizes_of(&many));
 }
@@ -273,7 +275,8 @@ fn the_fit_takes_enough_pixels_and_not_many() {
         let plan = plan(size_px, 1);
         let [width, height] = size_px.map(|side_px| u64::from(side_px / plan.fit_stride_px));
         let (n_taken, n_pixels) = (width * height, u64::from(size_px[0]) * u64::from(size_px[1]));
-        // The next smaller stride would be too many: at most one in four is lost by that, and as much by rounding.
+        // The next smaller stride would give too many pixels: at least a quarter of them remains, and
+        // half of these after rounding.
         assert!(n_taken <= 1 << 16, "{size_px:?}: {n_taken}");
         assert!(n_taken >= n_pixels.min(1 << 16) / 8, "{size_px:?}: {n_taken}");
         let n_rows = plan.n_fit_rows(plan.fit_stride_px);
@@ -282,7 +285,7 @@ fn the_fit_takes_enough_pixels_and_not_many() {
             u64::from(n_rows - 1) * 16 * 256 < n_taken,
             "{size_px:?}: a workgroup without work"
         );
-        // For gain and intensities a quarter of them, but not of a small region.
+        // Gain and intensities use a quarter of them, except in a small region.
         let [width, height] = size_px.map(|side_px| u64::from(side_px / plan.intensity_fit_stride_px));
         let n_for_gain = width * height;
         assert!(n_for_gain <= 1 << 14, "{size_px:?}: {n_for_gain}");

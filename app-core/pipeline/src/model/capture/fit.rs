@@ -25,11 +25,11 @@ pub(crate) const FIT_STEP: Mirrors = mirrors!(
     constants: [SUBJECT_RECEIVER, SUBJECT_TOY, SUBJECT_INTENSITIES],
 );
 pub(crate) const SHADER: Shader = shader!("capture/fit");
-/// Grids and lit cells, of which a plate is completed.
+/// Grids and lit cells, from which a plate is completed.
 const LIT_SLOTS: &[Slot] = &[Slot::uniform::<Grids>(), Slot::Read];
-/// Group of all else.
+/// Group of all other resources.
 const GROUP_FIT: usize = 2;
-/// Step, sums, and what is seen of receivers; then what is seen of the toy.
+/// Step, sums and observations of receivers, followed by the observations of the toy.
 const SLOTS: &[Slot] = &[
     Slot::per_use::<FitStep>(),
     Slot::ReadWrite,
@@ -44,7 +44,7 @@ const SLOTS: &[Slot] = &[
     Slot::Depth,
     Slot::uniform::<Specular>(),
 ];
-/// Slots of what is seen of receivers.
+/// Number of slots for observations of receivers.
 const N_RECEIVER_SLOTS: usize = 7;
 const SUBJECT_RECEIVER: u32 = Subject::Receiver as u32;
 const SUBJECT_TOY: u32 = Subject::Toy as u32;
@@ -83,14 +83,15 @@ pub(crate) struct Task {
     /// The receiver that is fitted, for [`Subject::Receiver`].
     pub(crate) receiver: u32,
     pub(crate) n_steps: u32,
-    /// The solution so far is good enough to down-weight outliers.
+    /// Whether the solution so far is good enough to down-weight outliers.
     pub(crate) is_refinement: bool,
-    /// The plate is not yet completed where none was photographed: it is, by a smooth estimate, as it is read.
+    /// Whether the plate is still incomplete. Its missing pixels are then replaced by a smooth
+    /// estimate as they are read.
     pub(crate) completes_plate: bool,
 }
 
 impl Task {
-    /// Of the first receiver, with its plate as it is.
+    /// The task for the first receiver, with its plate unchanged.
     pub(crate) fn new(plan: &Plan, subject: Subject, is_first: bool) -> Self {
         Self {
             subject,
@@ -129,9 +130,9 @@ impl Task {
 }
 
 pub(crate) struct Pass {
-    /// Of a plate as it is, and of one that is completed.
+    /// Pipelines for a plate as it is, and for one that is completed.
     receiver: [ByForm<Compute>; 2],
-    /// The same.
+    /// Pipelines for the same two plates.
     intensities: [ByForm<Compute>; 2],
     toy: ByForm<Compute>,
 }
@@ -141,7 +142,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) grids: &'a Buffer,
     pub(crate) lit_cells: &'a Buffer,
     pub(crate) observed: Observed<'a>,
-    /// Photographed alone for a task that completes it.
+    /// The photographed plate alone, for a task that completes it.
     pub(crate) plate: &'a TextureView,
     pub(crate) gbuffer: &'a gbuffer::Targets,
     pub(crate) specular: &'a Buffer,

@@ -1,4 +1,5 @@
-//! `gloss`: what a glossy toy reflects in its physical pose, and how far its paint shows under that.
+//! `gloss`: reflected radiance of a glossy toy in its physical pose, and the share of its paint
+//! that is visible below it.
 
 use wgpu::{Color, TextureFormat};
 
@@ -26,7 +27,7 @@ const SLOTS: &[Slot] = &[
 /// Format of reflected radiance, which a lamp's highlight makes larger than any code.
 const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
-/// Only where any of the toy is glossy.
+/// Whether any part of the toy is glossy.
 pub(crate) fn is_needed(plan: &Plan) -> bool {
     plan.specular.is_glossy()
 }
@@ -42,7 +43,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) gbuffer: &'a gbuffer::Targets,
 }
 
-/// Of the physical box's size, where any of the toy is glossy.
+/// Targets of the physical box's size; present if any part of the toy is glossy.
 pub(crate) struct Targets {
     pub(crate) reflected: Option<Texture>,
 }
@@ -85,7 +86,7 @@ impl Pass {
             inputs.seen.bind(recorder, draw),
             recorder.bind(draw, GROUP_PASS, &resources),
         ];
-        // Beyond the toy nothing is reflected, and every pixel tells its own.
+        // Nothing is reflected beyond the toy, and every pixel depends on itself alone.
         let near = inputs.plan.near_physical_toy(0);
         recorder.fullscreen_within(
             draw,

@@ -26,7 +26,7 @@ passes!(Plan:
     appearance,
 );
 
-/// Rounds in which plate and light are estimated from one another.
+/// Rounds in which plate and light are estimated alternately.
 const N_ESTIMATE_ROUNDS: u32 = 3;
 
 /// Targets of the capture path for one region.
@@ -51,19 +51,19 @@ impl CaptureTargets {
     /// Whether the targets suffice for `plan`, of a region of the same size.
     pub(crate) fn serves(&self, plan: &Plan) -> bool {
         let has_photographed = !estimate::is_needed(plan) || self.by_pass.estimate.photographed.is_some();
-        // A finer plate will do where codes would.
+        // A finer plate suffices for one that is kept as codes.
         let has_soft = !plan.is_softened || self.by_pass.soften.sharp.is_some();
         has_photographed && has_soft && (self.plate.format() == FINE_FORMAT || !plan.is_plate_fine)
     }
 }
 
-/// Maps of the region that passes which learn from the receivers read, each pixel by pixel.
+/// Maps of the region for passes that learn from the receivers; each is read pixel by pixel.
 #[derive(Clone, Copy)]
 pub(crate) struct Observed<'a> {
     pub(crate) validity: &'a TextureView,
-    /// Of each light, in the physical pose.
+    /// Visibility of each light in the physical pose.
     pub(crate) visibility: &'a TextureView,
-    /// Of the ambient light; smaller, and filtered.
+    /// Visibility of the ambient light; smaller, and filtered.
     pub(crate) ambient: &'a TextureView,
 }
 
@@ -81,7 +81,7 @@ pub(crate) struct CapturePath<'a> {
 }
 
 impl CapturePath<'_> {
-    /// Learns what a frame's differences ask for: nothing of a new pose.
+    /// Learns from a frame's changes. A new shown pose alone changes nothing.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, delta: FrameDelta) {
         let change = delta.change;
         match change {
@@ -97,7 +97,8 @@ impl CapturePath<'_> {
         }
         let (passes, of) = (self.passes, &self.captured.by_pass);
         let is_view_new = change >= Change::View;
-        // For a new picture of a known view, the two means over several pictures take turns.
+        // A new picture of a known view updates one of the two means over several pictures, in
+        // turn.
         let is_residual_next = self.pictures.n_before.is_multiple_of(2);
         if is_view_new || is_residual_next {
             let inputs = self.residual_inputs(change >= Change::Scene);
@@ -124,7 +125,7 @@ impl CapturePath<'_> {
         }
     }
 
-    /// Draws what depends on how soft the picture is, of a known view.
+    /// Draws everything that depends on the picture's sharpness, for a known view.
     fn sharpen(&self, recorder: &mut Recorder<'_>) {
         let (passes, of) = (self.passes, &self.captured.by_pass);
         passes
@@ -139,7 +140,7 @@ impl CapturePath<'_> {
         self.estimate(recorder);
     }
 
-    /// Refines what is known of the scene by another view.
+    /// Refines the scene state by another view.
     fn learn_view(&self, recorder: &mut Recorder<'_>) {
         self.observe(recorder);
         self.withhold(recorder);
@@ -149,7 +150,7 @@ impl CapturePath<'_> {
         self.fit_toy(recorder, false);
     }
 
-    /// Learns a scene of which nothing is known.
+    /// Learns the state of a new scene.
     fn learn_scene(&self, recorder: &mut Recorder<'_>) {
         self.state.forget(recorder);
         self.observe(recorder);
@@ -216,7 +217,7 @@ impl CapturePath<'_> {
         }
     }
 
-    /// Makes the plate as soft as the picture, where there are targets for it.
+    /// Makes the plate as soft as the picture, if there are targets for it.
     fn soften(&self, recorder: &mut Recorder<'_>) {
         if let Some(sharp) = &self.captured.by_pass.soften.sharp {
             let spread = self.region.plan.sharpness.plate_spread;
@@ -225,7 +226,8 @@ impl CapturePath<'_> {
         }
     }
 
-    /// The plate that the first passes read: those before `estimate` read the photographed one, too.
+    /// The plate that the first passes read. Passes before `estimate` read the photographed one as
+    /// well.
     fn read_plate(&self) -> &Texture {
         self.photographed().unwrap_or(&self.captured.plate)
     }
@@ -256,8 +258,8 @@ impl CapturePath<'_> {
             .encode(recorder, &inputs, &self.captured.plate.view);
     }
 
-    /// Fits each receiver in turn, the first as prior of the others; before it, what they look like in the light where plates
-    /// are missing.
+    /// Fits each receiver in turn; the first is the prior of the others. If plates are missing, the
+    /// lit appearance of the receivers is estimated before.
     fn fit_receivers(&self, recorder: &mut Recorder<'_>, is_first: bool) {
         let plan = &self.region.plan;
         if lit::is_needed(plan) {
@@ -279,8 +281,8 @@ impl CapturePath<'_> {
         self.fit(recorder, Task::new(&self.region.plan, Subject::Toy, is_first));
     }
 
-    /// Fits exposure and intensities of this picture. A jump of the exposure makes every pixel an outlier, so that
-    /// weights start anew.
+    /// Fits exposure and intensities of this picture. A jump of the exposure makes every pixel an
+    /// outlier, so the weights start again.
     fn fit_intensities(&self, recorder: &mut Recorder<'_>, completes_plate: bool) {
         let task = Task {
             completes_plate,
@@ -322,7 +324,7 @@ impl CapturePath<'_> {
         self.passes.fill.encode(recorder, &inputs, &cells.cells);
     }
 
-    /// The plate as it was photographed, if `estimate` is to complete it.
+    /// The plate as photographed, if `estimate` is to complete it.
     fn photographed(&self) -> Option<&Texture> {
         let photographed = self.captured.by_pass.estimate.photographed.as_ref();
         photographed.filter(|_| estimate::is_needed(&self.region.plan))

@@ -33,7 +33,7 @@ const WORKGROUP_PX: u32 = 8;
 
 pub(crate) struct Pass {
     matt: ByForm<Compute>,
-    /// Of a glossy toy, once one comes.
+    /// Pipelines for a glossy toy, made on first use.
     glossy: OnceLock<ByForm<Compute>>,
 }
 
@@ -53,7 +53,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) seen: SeenScene<'a>,
     pub(crate) validity: &'a TextureView,
     pub(crate) gbuffer: &'a gbuffer::Targets,
-    /// What a glossy toy reflects.
+    /// Radiance that a glossy toy reflects.
     pub(crate) reflected: Option<&'a TextureView>,
 }
 
@@ -84,7 +84,7 @@ impl Pass {
             (&gbuffer.normal.view).into(),
             (&gbuffer.received.view).into(),
             (&gbuffer.base.view).into(),
-            // A placeholder that is not read where there is none.
+            // A matt toy binds a placeholder that is not read.
             inputs.reflected.unwrap_or(&gbuffer.base.view).into(),
         ];
         let stride_px = inputs.plan.fit_stride_px;
@@ -92,7 +92,7 @@ impl Pass {
             inputs.seen.bind(recorder, compute),
             recorder.bind_with(compute, GROUP_PASS, &stride_px, &resources),
         ];
-        // As many steps as can begin in the box.
+        // The number of steps that can begin in the box.
         let size_px = inputs.plan.physical_box.size_px;
         let sampled_px = size_px.map(|side_px| side_px.div_ceil(stride_px));
         let workgroups = sampled_px.map(|side_px| side_px.div_ceil(WORKGROUP_PX)).extend(1);

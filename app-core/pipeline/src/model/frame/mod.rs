@@ -25,11 +25,11 @@ passes!(Plan: moved_mask, toy, coverage, composite);
 pub(crate) struct FrameTargets {
     /// Visibility of the lights in the shown pose.
     pub(crate) light: LightMaps,
-    /// What the toy in the physical pose changes of the region, once it was looked for.
+    /// Changes of the region by the toy in the physical pose, once they have been computed.
     pub(crate) physical_marks: Option<Marks>,
-    /// As both poses part the region.
+    /// Parts of the region, as divided by both poses.
     pub(crate) parts: RegionParts,
-    /// The part of the toy box in which the shown toy may be seen.
+    /// The part of the toy box in which the shown toy may be visible.
     pub(crate) shown_toy: Option<PixelRect>,
     pub(crate) by_pass: Targets,
 }
@@ -63,7 +63,8 @@ pub(crate) struct FramePath<'a> {
 }
 
 impl FramePath<'_> {
-    /// Draws what cannot stay of the frame before: of a paused toy a new picture changes the colours alone.
+    /// Draws everything that cannot be reused from the previous frame. A new picture of a paused
+    /// toy changes its colours alone.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, delta: FrameDelta) {
         if delta.keeps_picture() {
             return;
@@ -85,13 +86,13 @@ impl FramePath<'_> {
         passes.composite.encode(recorder, &inputs, &of.composite);
     }
 
-    /// Draws the picture of what is there, in light.
+    /// Draws the picture of the physical scene, in linear light.
     pub(crate) fn encode_light(&self, recorder: &mut Recorder<'_>, target: &Texture) {
         let inputs = self.composite_inputs();
         self.passes.composite.encode_light(recorder, &inputs, target);
     }
 
-    /// Draws the layers of what is there.
+    /// Draws the layers of the physical scene.
     pub(crate) fn encode_layers(
         &self,
         recorder: &mut Recorder<'_>,

@@ -1,4 +1,5 @@
-//! `toy`: the toy in the pose to be shown, with its camera pixels, once for each offset within a pixel.
+//! `toy`: the toy in the shown pose with its camera pixels, drawn once for each offset within a
+//! pixel.
 
 use std::sync::OnceLock;
 
@@ -26,7 +27,7 @@ use crate::passes::pictures::ByForm;
 use crate::passes::toy_mesh::{LOOK_STREAMS, Sided, ToyMesh};
 
 pub(crate) const SHADER: Shader = shader!("frame/toy");
-/// The offset of a draw in pixels, then what it reads.
+/// The offset of a draw in pixels, followed by its inputs.
 const SLOTS: &[Slot] = &[
     Slot::per_use::<Vec2>(),
     Slot::Depth,
@@ -39,7 +40,7 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::uniform::<Specular>(),
 ];
-/// As a draw with materials, then the physical pose.
+/// Streams of a draw with materials, followed by the physical pose.
 const STREAMS: &[Stream] = &[
     LOOK_STREAMS[0],
     LOOK_STREAMS[1],
@@ -48,14 +49,16 @@ const STREAMS: &[Stream] = &[
     (4, VertexFormat::Float32x3),
     (5, VertexFormat::Float32x3),
 ];
-/// Format of premultiplied radiance where it is drawn once: the resolve averages linear light, and the picture has no more codes.
+/// Format of premultiplied radiance for a single draw: the resolve averages linear light, and the
+/// picture has no more codes.
 const CODED_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
-/// And where draws are still to be averaged.
+/// Format for draws that are still to be averaged.
 const FINE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 const N_SAMPLES: u32 = 4;
-/// Offsets of the draws: the multisample positions at half their size around the pixel's centre. The 16 samples of four
-/// draws then lie in rows and columns of their own and leave no hole. RMS error of the area that a straight edge of any
-/// direction cuts off a pixel: 0.088 with the 4 samples of one draw, 0.041 with 16; at a quarter of their size 0.054.
+/// Offsets of the draws: the multisample positions at half their size around the pixel's centre.
+/// The 16 samples of four draws then lie in rows and columns and leave no hole. RMS error of the
+/// area that a straight edge of any direction cuts off a pixel: 0.088 with the 4 samples of one
+/// draw, 0.041 with 16; at a quarter of their size 0.054.
 const OFFSETS_PX: [Vec2; 4] = [
     Vec2::new(-0.0625, -0.1875),
     Vec2::new(0.1875, -0.0625),
@@ -63,14 +66,14 @@ const OFFSETS_PX: [Vec2; 4] = [
     Vec2::new(0.0625, 0.1875),
 ];
 
-/// Both sides of each triangle, and the one that faces the camera.
+/// Draws of both sides of each triangle, and of the side that faces the camera.
 type Sides = ByForm<[Draw; 2]>;
 
-/// Draws onto targets of a format and so many samples.
+/// Draws onto targets of a format and a number of samples.
 struct Variants {
     target: (TextureFormat, u32),
     matt: Sides,
-    /// Of a glossy toy, once one comes.
+    /// Draws of a glossy toy, made on first use.
     glossy: OnceLock<Sides>,
 }
 
@@ -95,40 +98,40 @@ impl Variants {
 pub(crate) struct Pass {
     coded: Variants,
     fine: Variants,
-    /// Of one sample.
+    /// Draws with one sample per pixel.
     single: Variants,
 }
 
 pub(crate) struct Inputs<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) camera_in_anchor: Vec3,
-    /// The part of the toy box in which the toy may be seen.
+    /// The part of the toy box in which the toy may be visible.
     pub(crate) shown_toy: Option<PixelRect>,
     pub(crate) seen: SeenScene<'a>,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) appearance: &'a appearance::Targets,
     pub(crate) gbuffer_depth: &'a TextureView,
-    /// Of the shown pose, and of the physical one.
+    /// Self-shadow of the shown pose, and of the physical one.
     pub(crate) self_shadow: [&'a self_shadow::Targets; 2],
     pub(crate) tints: &'a Tints,
-    /// What a soft picture mixes into the toy's colours.
+    /// Colours that a soft picture mixes into those of the toy.
     pub(crate) rim: Option<&'a TextureView>,
-    /// What a glossy toy reflected.
+    /// Radiance that a glossy toy reflected.
     pub(crate) reflected: Option<&'a TextureView>,
     pub(crate) specular: &'a Buffer,
 }
 
-/// Of the toy box's size: one for each draw, and those that stay on the chip.
+/// Targets of the toy box's size: one for each draw, and those that stay in tile memory.
 pub(crate) struct Targets {
-    /// None where a pixel has one.
+    /// `None` if a pixel has a single sample.
     samples: Option<Samples>,
     depth: Texture,
     drawn: Vec<Texture>,
-    /// Where it shows what the camera did not see in that place.
+    /// Share of the pixel that shows a surface which the camera did not see in that place.
     pub(crate) moved: Texture,
 }
 
-/// What is resolved into the targets.
+/// Multisampled textures that are resolved into the targets.
 struct Samples {
     drawn: Texture,
     moved: Texture,
@@ -160,7 +163,8 @@ impl Targets {
         self.drawn.len() as u32
     }
 
-    /// Those of one draw: radiance, and where it has moved. The samples of the last draw show that well enough.
+    /// Attachments of one draw: radiance and the moved share. The samples of the last draw are
+    /// enough for the moved share.
     fn attachments<'a>(&'a self, drawn: &'a Texture, is_last: bool) -> [Attachment<'a>; 2] {
         let samples = self.samples.as_ref();
         let moved_samples = samples.map(|samples| &samples.moved.view);
@@ -174,7 +178,7 @@ impl Targets {
         ]
     }
 
-    /// What was drawn; the first stands in for draws that there are not.
+    /// The drawn textures; the first one also replaces the draws that are left out.
     pub(crate) fn views(&self) -> [&TextureView; OFFSETS_PX.len()] {
         [0, 1, 2, 3].map(|draw| &self.drawn.get(draw).unwrap_or(&self.drawn[0]).view)
     }
@@ -189,7 +193,7 @@ impl Pass {
         }
     }
 
-    /// Draws the toy once in the middle of the pixel, or once for each offset.
+    /// Draws the toy once at the pixel's centre, or once for each offset.
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         let variants = match targets.drawn.len() {
             1 if targets.samples.is_none() => &self.single,
@@ -218,7 +222,7 @@ impl Pass {
             let depth = Some(&targets.depth.view);
             let mut render = recorder.render(SHADER.name, &colors, depth, StoreOp::Discard);
             render.part_of(inputs.plan.part_drawn(&inputs.plan.toy_box));
-            // Of a toy that is not seen nothing is drawn: the targets are only cleared.
+            // An invisible toy is not drawn: the targets are only cleared.
             let Some(part) = inputs.shown_toy else { continue };
             render.within((part.origin_px, part.size_px));
             let sided = Sided {
@@ -262,7 +266,7 @@ impl<'a> Inputs<'a> {
             (&self.tints.grid).into(),
             (&self.tints.cells).into(),
             (&self.appearance.source.view).into(),
-            // A placeholder that is not read where there is none.
+            // A sharp picture binds a placeholder that is not read.
             self.rim.unwrap_or(&self.appearance.base.view).into(),
             self.reflected.unwrap_or(&self.appearance.base.view).into(),
             self.specular.into(),

@@ -19,9 +19,9 @@ use app_scene::geometry::disc::ambient_directions;
 
 passes!(occlusion, self_shadow);
 
-/// Pixels along each side of the tiles in which shadows, and the toy, are looked for.
+/// Pixels along each side of the tiles in which shadows and the toy are located.
 pub(crate) const TILE_PX: u32 = 16;
-/// Pixels beyond a shadow's triangles that it may reach by rounding.
+/// Margin in pixels around a shadow's triangles for rounding errors.
 const AROUND_SHADOW_PX: f32 = 1.0;
 
 /// Visibility and self-shadow maps of one pose.
@@ -30,11 +30,11 @@ pub(crate) struct LightMaps {
     pub(crate) self_shadow: self_shadow::Targets,
     /// Replaces the visibility of the lights that the passes compute.
     pub(crate) injected: Option<InjectedLights>,
-    /// Points that the shadow on receivers is drawn from, where these are others than the lights' own.
+    /// Points from which the shadow on receivers is drawn, if these are not the lights' own.
     softened: Option<Vec<LightPointsBuffer>>,
 }
 
-/// Visibility of the lights from outside.
+/// Visibility of the lights, as given by the caller.
 pub(crate) struct InjectedLights {
     visibility: Texture,
     /// Tiles in which any light is hidden.
@@ -42,7 +42,7 @@ pub(crate) struct InjectedLights {
 }
 
 impl InjectedLights {
-    /// With the values of a map of the first `n_lights`, for a texture of the size and format of `like`.
+    /// The values of a map of the first `n_lights`, for a texture of the size and format of `like`.
     pub(crate) fn new(gpu: &Gpu, map: &FloatMap, n_lights: usize, like: &Texture) -> Self {
         let size_px = UVec2::new(map.width, map.height);
         let mut shadowed = Tiles::over(size_px, TILE_PX);
@@ -64,8 +64,8 @@ impl InjectedLights {
 }
 
 impl LightMaps {
-    /// Takes the points of each light, receiver by receiver, that the shadow on receivers is to be drawn from; with none, the lights'
-    /// own.
+    /// Sets the points of each light, receiver by receiver, from which the shadow on receivers is
+    /// drawn; `None` selects the lights' own.
     pub(crate) fn soften(&mut self, gpu: &Gpu, plan: &Plan, points: Option<Vec<Vec<Vec4>>>) {
         let on_device = |(light, points)| {
             LightPointsBuffer::new(gpu, points, plan.n_receivers, PartOfMap::of_light(plan, light))
@@ -83,9 +83,9 @@ impl LightMaps {
     }
 }
 
-/// Points over the lights, directions of the ambient light, and the order in which they are drawn.
+/// Points over the lights, directions of the ambient light, and their drawing order.
 pub(crate) struct Lighting {
-    /// Of each light, then of the eyes behind a receiver that reflects.
+    /// Points of each light, followed by those of the eyes behind a reflecting receiver.
     lights: Vec<LightPointsBuffer>,
     ambient: LightPointsBuffer,
     n_lights: usize,
@@ -95,7 +95,7 @@ pub(crate) struct Lighting {
     orders: occlusion::Orders,
 }
 
-/// A toy in a pose, in a view.
+/// A posed toy in a view.
 #[derive(Clone, Copy)]
 pub(crate) struct Posed<'a> {
     pub(crate) globals: GlobalsOnDevice<'a>,
@@ -104,7 +104,7 @@ pub(crate) struct Posed<'a> {
 }
 
 impl Lighting {
-    /// `points` are those of each light, receiver by receiver.
+    /// Uploads `points`: those of each light, receiver by receiver.
     pub(crate) fn new(gpu: &Gpu, plan: &Plan, points: Vec<Vec<Vec4>>) -> Self {
         let n_receivers = plan.n_receivers;
         let on_device = |points, part| LightPointsBuffer::new(gpu, points, n_receivers, part);
@@ -125,12 +125,12 @@ impl Lighting {
         }
     }
 
-    /// Takes the shapes that cast shadows in another view.
+    /// Sets the shapes that cast shadows in another view.
     pub(crate) fn cast_by(&mut self, casters: Casters) {
         self.casters = casters;
     }
 
-    /// Moves the lights, as many as before, or takes other points of them.
+    /// Moves the lights, whose number stays the same, or replaces their points.
     pub(crate) fn relocate(&mut self, gpu: &Gpu, points: Vec<Vec<Vec4>>) {
         for (light, points) in self.lights.iter_mut().zip(points) {
             light.write(gpu, points, self.n_receivers);
@@ -177,7 +177,8 @@ impl Lighting {
         passes.occlusion.encode(recorder, &inputs, &ambient, map, order);
     }
 
-    /// Draws the visibility of the lights, if there are any: all of it that is as sharp as the picture.
+    /// Draws the part of the lights' visibility that is as sharp as the picture, if there are any
+    /// lights.
     pub(crate) fn encode_light_visibility(
         &self,
         recorder: &mut Recorder<'_>,
@@ -194,7 +195,8 @@ impl Lighting {
             .enumerate()
             .map(|(index, points)| Light {
                 points,
-                // Eyes behind a receiver see the other side of what the camera sees of their image.
+                // Eyes behind a receiver see the opposite side of the faces that the camera sees in
+                // the image.
                 side: (index < self.n_lights).then_some(Side::Light(index)),
             })
             .collect();

@@ -1,5 +1,5 @@
-//! `occlusion`: visibility of lights behind the posed toy, from its shadows on the receivers from many points of each, in one
-//! pass.
+//! `occlusion`: visibility of the lights behind the posed toy, from its shadows on the receivers
+//! for many points of each light, in one pass.
 
 use glam::{UVec2, Vec4};
 use wgpu::{BlendOperation, Color, CompareFunction, TextureFormat, VertexFormat};
@@ -27,7 +27,7 @@ const SLOTS: &[Slot] = &[Slot::uniform::<LightPoints>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Maximum number of points of one light.
 pub(crate) const MAX_LIGHT_POINTS: usize = 64;
-/// Maximum number of points of all lights, which a map is drawn from in one pass.
+/// Maximum number of points of all lights that one pass draws into a map.
 #[allow(clippy::cast_possible_truncation, reason = "some hundreds")]
 const MOST_POINTS: u32 = (MAX_LIGHTS * MAX_LIGHT_POINTS) as u32;
 
@@ -43,7 +43,7 @@ shared_struct! {
 }
 
 impl LightPoints {
-    /// `points` are 16, 32 or 64, in the space of the first receiver, then those of the next.
+    /// Takes `points`: 16, 32 or 64 in the space of the first receiver, then those of the next.
     fn new(points: &[Vec4], n_points: u32, part: &PartOfMap) -> Self {
         let (size_px, region_px) = part.sizes;
         let mut light_points = Self {
@@ -60,17 +60,17 @@ impl LightPoints {
     }
 }
 
-/// Where a light's visibility is written.
+/// Place in a map to which a light's visibility is written.
 #[derive(Clone, Copy)]
 pub(crate) struct PartOfMap {
-    /// Of the map in texels, and of the region in pixels.
+    /// Sizes of the map in texels, and of the region in pixels.
     sizes: (UVec2, UVec2),
     format: TextureFormat,
     channel: usize,
 }
 
 impl PartOfMap {
-    /// A light's own channel, in fractions of 8 bits: it has no more than 64 points.
+    /// A light's own channel, in 8 bits: it has at most 64 points.
     pub(crate) fn of_light(plan: &Plan, channel: usize) -> Self {
         Self {
             sizes: (plan.region.size_px, plan.region.size_px),
@@ -94,15 +94,15 @@ impl PartOfMap {
         (MAX_LIGHT_POINTS * self.channel) as u32
     }
 
-    /// The map that it is a part of.
+    /// Allocates the map that contains this part.
     fn map(&self, gpu: &Gpu, label: &str) -> Texture {
         Texture::target(gpu, label, self.sizes.0, self.format)
     }
 
-    /// What each of so many points takes from the visibility, in the light's channel.
+    /// Amount that each of `n_points` subtracts from the visibility, in the light's channel.
     ///
-    /// In 8 bits whole codes, of which all points take all 255: of 16, 32 and 64 points it is off by less than 1/255. Floats of 16
-    /// bits are exact.
+    /// With 8 bits it is a whole code, and all points together take all 255: for 16, 32 and 64
+    /// points the error is below 1/255. Floats of 16 bits are exact.
     fn share(&self, n_points: u32) -> [f32; 4] {
         let n_points = n_points.max(1);
         let of_each = if self.format == AMBIENT_FORMAT {
@@ -120,7 +120,7 @@ impl PartOfMap {
 
 /// The points of one light, on the device.
 pub(crate) struct LightPointsBuffer {
-    /// Those in the space of the first receiver, then those of the next.
+    /// Points in the space of the first receiver, then those in the space of the next.
     pub(crate) points: Vec<Vec4>,
     /// Points of the light; each is in `points` once per receiver.
     pub(crate) n_points: u32,
@@ -139,7 +139,7 @@ impl LightPointsBuffer {
         }
     }
 
-    /// Replaces the points, for as many receivers.
+    /// Replaces the points, for the same number of receivers.
     pub(crate) fn write(&mut self, gpu: &Gpu, points: Vec<Vec4>, n_receivers: u32) {
         self.n_points = n_each(&points, n_receivers);
         let light_points = LightPoints::new(&points, self.n_points, &self.part);
@@ -158,17 +158,19 @@ impl LightPointsBuffer {
     }
 }
 
-/// Points of a light, of which there is one for each receiver.
+/// Number of points of a light for each receiver.
 fn n_each(points: &[Vec4], n_receivers: u32) -> u32 {
     u32::try_from(points.len()).unwrap_or(0) / n_receivers.max(1)
 }
 
-/// Format of the ambient light's visibility, at a fraction of the resolution: drivers may filter 8 bits in no more than those.
+/// Format of the ambient light's visibility at a reduced resolution: 8 bits are the most that all
+/// drivers can filter.
 const AMBIENT_FORMAT: TextureFormat = half_float(1);
 
 /// Visibility maps of one pose.
 pub(crate) struct Targets {
-    /// One channel per light, and one of what of the first receiver's reflection the toy leaves, where that reflects.
+    /// One channel per light. If the first receiver reflects, one more has the share of its
+    /// reflection that the toy does not hide.
     pub(crate) lights: Texture,
     pub(crate) ambient: Texture,
 }
@@ -182,7 +184,7 @@ impl Targets {
     }
 }
 
-/// Which point was drawn last, over the region and over the ambient map.
+/// Index of the point that was drawn last, over the region and over the ambient map.
 pub(crate) struct Orders {
     pub(crate) lights: InstanceOrder,
     pub(crate) ambient: InstanceOrder,
@@ -198,7 +200,7 @@ impl Orders {
     }
 }
 
-/// The formats of maps: of the ambient light, of one light, of two, of more.
+/// Formats of the maps: ambient light, one light, two lights, more lights.
 const FORMATS: [TextureFormat; 4] = [AMBIENT_FORMAT, fractions(1), fractions(2), fractions(MAX_LIGHTS)];
 
 pub(crate) struct Pass {
@@ -207,7 +209,7 @@ pub(crate) struct Pass {
 
 struct Draws {
     cover: CountingDraws,
-    /// Masks pixels that show another receiver, where there are several.
+    /// Masks pixels that show another receiver, if there are several.
     route: Draw,
 }
 
@@ -229,7 +231,8 @@ impl Draws {
             ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
         };
         Self {
-            // Counter-clockwise seen from outside is so in the shadow, too: light and camera are above the receiver.
+            // A face that is counter-clockwise from outside is counter-clockwise in the shadow,
+            // too: light and camera are above the receiver.
             cover: CountingDraws::new(gpu, &cover),
             route: gpu.draw(&route),
         }
@@ -242,15 +245,15 @@ pub(crate) struct Inputs<'a> {
     pub(crate) n_receivers: u32,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) pose: &'a PoseBuffers,
-    /// What casts the shadow.
+    /// The mesh that casts the shadow.
     pub(crate) caster: CasterLod,
 }
 
-/// A light that is drawn from.
+/// A light from which shadows are drawn.
 #[derive(Clone, Copy)]
 pub(crate) struct Light<'a> {
     pub(crate) points: &'a LightPointsBuffer,
-    /// Which one it is; none of what comes from all sides.
+    /// The side that faces it; `None` for ambient light.
     pub(crate) side: Option<Side>,
 }
 
@@ -261,8 +264,8 @@ impl Pass {
         }
     }
 
-    /// Draws the caster from the lights' points on each receiver, and takes the hidden points from each light's channel of the
-    /// map.
+    /// Draws the caster from the lights' points on each receiver, and subtracts the hidden points
+    /// from each light's channel of the map.
     pub(crate) fn encode(
         &self,
         recorder: &mut Recorder<'_>,
@@ -303,11 +306,11 @@ impl Pass {
 }
 
 impl<'a> Inputs<'a> {
-    /// Corners to draw for a light onto a map of so many texels.
+    /// Corners to draw for a light onto a map of this size in texels.
     fn corners(&self, gpu: &Gpu, light: Light<'a>, map_px: UVec2) -> Corners<'a> {
         let points = light.points.in_anchor();
         let projection = self.globals.uniform.onto_receiver(0, points);
-        // Each receiver would have silhouettes of its own.
+        // Each receiver would have silhouettes in another space.
         let projection = projection.filter(|_| self.n_receivers == 1);
         let target = projection.as_ref().map(|projection| SilhouetteTarget {
             projection,
@@ -326,7 +329,8 @@ impl<'a> Inputs<'a> {
         self.toy.corners(gpu, &seen, target)
     }
 
-    /// Points of a light, from the first on, whose shadows of the toy on a receiver need not be cut off.
+    /// Number of a light's points, from the first on, whose shadows of the toy on a receiver need
+    /// no clipping.
     fn n_whole_shadows(&self, light: &LightPointsBuffer, receiver: u32) -> u32 {
         let points = light.by_receiver().nth(receiver as usize);
         let globals = self.globals.uniform;

@@ -8,7 +8,7 @@ use crate::stability::exact::small;
 use crate::stability::lab::{Lab, Label};
 use crate::stability::row::Findings;
 
-/// Through contact, which is at 0; the world is photographed for each step.
+/// Moves through contact, which is at 0; the world is photographed again for each step.
 pub(super) fn height(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let worlds = evenly(41, -20.0, 20.0).map(|height_mm| {
         let world_from_object = DMat4::from_translation(DVec3::new(0.0, 1e-3 * height_mm, 0.0));
