@@ -1,12 +1,11 @@
-//! Planes of things that were found at a place; they become receivers of the scene.
+//! Keeps the found planes of things, which become receivers of the scene.
 
 use std::sync::Arc;
 
 use super::report::PlaneAlignment;
 use app_scene::scene::{Receiver, Scene};
 
-/// Maximum number of views with things in which planes are searched: each search takes some
-/// seconds.
+/// Most searches, in the first views that show things: each takes some seconds.
 const MOST_SEARCHES: usize = 2;
 
 /// A thing's plane as a receiver.
@@ -27,12 +26,12 @@ pub(super) struct FoundPlanes {
 }
 
 impl FoundPlanes {
-    /// Whether a search is still due.
+    /// Whether a search is due.
     pub(super) fn are_wanted(&self) -> bool {
         self.found.is_empty() && self.n_searches < MOST_SEARCHES
     }
 
-    /// Records a search in a view that shows things. Returns whether it found any plane.
+    /// Stores the result of a search in a view that shows things; whether it found any.
     pub(super) fn take(&mut self, planes: Vec<FoundReceiver>) -> bool {
         self.n_searches += 1;
         self.report = planes.iter().map(|found| found.report).collect();

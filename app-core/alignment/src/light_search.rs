@@ -167,8 +167,8 @@ impl Aligner {
         // front of the toy.
         let are_told = !self.are_shadows_withheld && seen.view.is_trusted(MOST_OUTLINE_PX);
         let as_it_is = seen;
-        let is_looked_for = self.look_for_reflection(seen, &known)?;
-        let freed = self.freed_of_reflection(seen)?;
+        let is_searched = !self.are_shadows_withheld && self.reflection.search(&self.scene, seen, &known)?;
+        let freed = self.reflection.removed_from(&self.scene, seen)?;
         let seen = freed.as_ref().unwrap_or(seen);
         let things = if !are_told {
             None
@@ -186,8 +186,9 @@ impl Aligner {
             Some(kept) => self.watch_lights(kept, looked_at)?,
             None => self.find_lights(Arc::clone(&given), looked_at)?,
         };
-        if is_looked_for && lights.in_use() != &*known {
-            self.look_again(as_it_is, lights.in_use())?;
+        if is_searched && lights.in_use() != &*known {
+            self.reflection
+                .search_again(&self.scene, as_it_is, lights.in_use())?;
         }
         let things = if !are_told || lights.in_use() == &*known {
             things
@@ -196,7 +197,7 @@ impl Aligner {
             let is_same = Arc::ptr_eq(&before, &self.scene);
             let relit = (!is_same).then(|| Seen::again(&self.scene, seen.view.clone(), &seen.input));
             let relit = relit.as_ref().unwrap_or(as_it_is);
-            let freed = self.freed_of_reflection(relit)?;
+            let freed = self.reflection.removed_from(&self.scene, relit)?;
             match self.look_for_things(lights.in_use(), freed.as_ref().unwrap_or(relit))? {
                 Looked::Things(things) => things,
                 Looked::Planes(again) => {

@@ -157,7 +157,6 @@ fn a_fault_in_the_reflection_is_found() {
             "STRAIGHT_REFLECTANCE: f32 = 0.05",
         ),
         ("HORIZON_SLOPE: f32 = 2.5", "HORIZON_SLOPE: f32 = 2.0"),
-        ("LEAST_COSINE: f32 = 0.05", "LEAST_COSINE: f32 = 0.1"),
         ("2.0 / lobe - 2.0", "2.0 / lobe - 1.0"),
         ("min(material, N_GLOSSES - 1u)", "min(material, 3u)"),
         ("specular.lobes[i]", "specular.lobes[0]"),

@@ -383,13 +383,19 @@ impl<'a> Tour<'a> {
     /// Touches a button by its accessibility label, after scrolling if needed.
     fn press(&mut self, label: &str) -> Result<(), TourError> {
         for _ in 0..N_SCROLLS {
-            let [left, _, right, bottom] = self.button(label)?;
+            let [left, top, right, bottom] = self.button(label)?;
             let height = f64::from(self.screen.size_px[1]);
-            let beyond_px = bottom - (height - SHEET_MARGIN_POINTS * self.screen.pixels_per_point);
-            if beyond_px <= 0.0 {
+            let margin_px = SHEET_MARGIN_POINTS * self.screen.pixels_per_point;
+            let below_px = bottom - (height - margin_px);
+            let above_px = margin_px - top;
+            let by_px = if below_px > 0.0 {
+                below_px.min(0.4 * height)
+            } else if above_px > 0.0 {
+                -above_px.min(0.25 * height)
+            } else {
                 break;
-            }
-            self.drag_up([0.5 * (left + right), 0.7 * height], beyond_px.min(0.4 * height))?;
+            };
+            self.drag_up([0.5 * (left + right), 0.7 * height], by_px)?;
         }
         let [left, top, right, bottom] = self.button(label)?;
         self.touch([0.5 * (left + right), 0.5 * (top + bottom)])

@@ -2,14 +2,15 @@
 
 use glam::{DMat4, DVec3};
 
+use super::columns::{Columns, N_COLUMNS};
 use super::light_depth::LightDepth;
-use super::solve::{Columns, N_COLUMNS};
-use super::{reflectance, slot_of};
+use super::reflectance;
 use crate::pose::Surfel;
 use crate::raster::Rasterizer;
 use crate::shape::Shape;
 use app_scene::geometry::color::linear_of_codes;
 use app_scene::geometry::disc::vogel_disc;
+use app_scene::gloss::N_GLOSSES;
 use app_scene::scene::{Light, MAX_LIGHTS};
 
 /// Points over a light.
@@ -43,6 +44,7 @@ pub(super) struct Sample {
     pub(super) shown: [f64; 3],
     pub(super) is_usable: [bool; 3],
     pub(super) base: [f64; 3],
+    /// Index of the strength of its material.
     pub(super) material: usize,
     /// Light that a white matt surface there receives from the ambient light above and below, and
     /// from each light.
@@ -90,7 +92,7 @@ impl Look {
                 shown: surfel.shown.map(f64::from),
                 is_usable: surfel.shown.map(|value| (darkest..=brightest).contains(&value)),
                 base: surfel.base.map(f64::from),
-                material: slot_of(surfel.material),
+                material: surfel.material.min(N_GLOSSES - 1),
                 received,
                 normal,
                 to_camera: (-surfel.point).normalize_or(normal),

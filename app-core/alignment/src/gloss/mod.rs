@@ -10,6 +10,7 @@
 //! A tone curve imitates a broad, weak lobe. So the loss must fall by more than it does for a matt
 //! toy with a tone curve.
 
+mod columns;
 mod light_depth;
 mod look;
 mod reflectance;
@@ -19,7 +20,6 @@ mod solve;
 use app_scene::gloss::{Gloss, N_GLOSSES};
 
 pub(crate) use look::{Lights, Look};
-use solve::Material;
 
 /// Share of the loss that a lobe must explain: accepted from the first value on, in full from the
 /// second. Measured: matt toys 0 to .02, through a phone's pipeline too; glossy ones .3 and more.
@@ -61,9 +61,4 @@ pub(crate) fn gloss(look: &Look) -> Gloss {
 fn smoothstep([low, high]: [f64; 2], x: f64) -> f64 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
-}
-
-/// Index of a material's strength.
-fn slot_of(material: usize) -> Material {
-    material.min(N_GLOSSES - 1)
 }

@@ -2,8 +2,9 @@
 
 use app_scene::gloss::N_GLOSSES;
 
+use super::columns::{Columns, N_COLUMNS};
 use super::look::Look;
-use super::solve::{Columns, Glossy, N_COLUMNS, loss};
+use super::solve::{Glossy, loss};
 
 /// Start values of the search: slopes of facets of a glaze, of satin and of a sheen.
 const STARTS: [f64; 3] = [0.05, 0.12, 0.24];

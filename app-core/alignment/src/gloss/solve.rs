@@ -4,21 +4,13 @@
 //! 23 (light is not negative).
 
 use app_scene::gloss::N_GLOSSES;
-use app_scene::scene::MAX_LIGHTS;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SMatrix;
 
+use super::columns::{Columns, N_COLUMNS};
 use super::look::{Look, Sample};
 use crate::median::median;
 
-/// Unknowns: ambient light from above and from below, and each lamp.
-pub(super) const N_COLUMNS: usize = 2 + MAX_LIGHTS;
-/// One value for each unknown.
-pub(super) type Columns = SVector<f64, N_COLUMNS>;
-/// Index of a material's strength.
-pub(super) type Material = usize;
-
-/// Residual, relative to the expected light, at which a pixel's weight is one half: light between
-/// parts of the toy is not modelled.
+/// Residual, over what is expected, at which a pixel counts half: light between parts of the toy is not modelled.
 const CAUCHY_SCALE: f64 = 0.12;
 /// Smallest expected linear light: below it residuals are noise.
 const DARKEST: f64 = 0.02;

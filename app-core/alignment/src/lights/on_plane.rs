@@ -1,4 +1,4 @@
-//! Expected shadow on an unlisted plane, in the light that was estimated on a receiver.
+//! Predicts the shadow on an unlisted plane in the estimated light of a receiver.
 
 use glam::{DVec2, DVec3, IVec2};
 
@@ -14,11 +14,10 @@ use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
 use app_scene::scene::Intrinsics;
 
-/// Points over a lamp, and directions of ambient light; few suffice, since only the shadow's place
-/// is compared.
+/// Samples of a lamp and directions of ambient light. Few suffice: the shadow's place matters.
 const N_POINTS: usize = 12;
 const N_DIRECTIONS: usize = 16;
-/// Smallest light on a plane without a toy, relative to the receiver.
+/// Least light on a plane without a toy, over the receiver's.
 const LEAST_UNSHADOWED: f64 = 0.05;
 
 /// The light on a receiver, and a toy in it.
@@ -34,7 +33,7 @@ pub(crate) struct OnPlane<'a> {
 }
 
 impl<'a> OnPlane<'a> {
-    /// The light on one of the compared receivers.
+    /// In the light of one of the compared receivers.
     pub(crate) fn new(
         comparison: &'a Comparison,
         (shape, receivers): (&'a Shape, &[SeenReceiver]),
@@ -58,8 +57,7 @@ impl<'a> OnPlane<'a> {
         }
     }
 
-    /// Ratio of frame to plate of pixels, row by row, if they show a plane; `None` if it is not
-    /// visible.
+    /// Frame over plate of pixels, row by row, if they show a plane; `None` for a pixel that does not.
     pub(crate) fn ratios(
         &self,
         raster: &mut Rasterizer,

@@ -28,6 +28,7 @@ mod settle;
 mod sides;
 mod sightings;
 mod standing;
+mod texels;
 mod texture;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};

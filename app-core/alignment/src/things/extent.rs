@@ -1,4 +1,4 @@
-//! Extent of a thing's plane: the smallest rectangle around its visible part.
+//! Estimates the extent of a thing's plane: the smallest rectangle around its visible part.
 
 use glam::{DMat4, DVec2, DVec3};
 
@@ -6,16 +6,16 @@ use super::grown::Grown;
 use crate::picture::{Level, places};
 use crate::receivers::SeenReceiver;
 
-/// Number of turns of the rectangle that are tried, over a quarter turn.
+/// Number of trial angles of the rectangle, over a quarter turn.
 const N_TURNS: usize = 45;
 /// Share of the points that may lie beyond each side.
 const BEYOND: f64 = 0.005;
-/// Minimum share of the rectangle's pixels that must show the thing.
+/// Least part of the rectangle's pixels that show the thing.
 const FILLED: f64 = 0.6;
-/// Minimum number of pixels of a rectangle.
+/// Least pixels for a rectangle.
 const LEAST_PIXELS: usize = 100;
-/// Largest height of a tilted plane's lowest side, relative to its highest, at which it is extended
-/// down to the receiver.
+/// If the lowest side of a tilted plane is at most this part as high as the highest one, the plane
+/// continues down to the receiver.
 const LOW: f64 = 0.4;
 
 /// A thing in a level, on a receiver.
@@ -34,9 +34,8 @@ pub(super) struct Extent {
 }
 
 impl Outline<'_> {
-    /// Places on a plane that show the thing's upper side, in metres. For a level plane these are
-    /// the ones with the thing above its receiver below them: the sides are visible below its near
-    /// edge, and do not count.
+    /// Places of the thing's upper side on a plane, in metres. For a level plane these are the places
+    /// directly above the thing's footprint, which excludes its visible sides.
     fn places(&self, plane_from_camera: &DMat4, is_level: bool) -> Vec<DVec2> {
         let endless = SeenReceiver::of_size(*plane_from_camera, DVec2::INFINITY);
         let k = &self.level.intrinsics;
@@ -59,7 +58,7 @@ impl Outline<'_> {
             .collect()
     }
 
-    /// Share of a plane's visible pixels that show the thing.
+    /// The part of a plane's visible pixels that shows the thing.
     fn filled(&self, plane: &SeenReceiver) -> f64 {
         let pixels = places(self.level.frame.size_px);
         let seen = pixels.filter(|at| plane.point_at(&self.level.intrinsics, *at).is_some());
@@ -73,7 +72,7 @@ impl Outline<'_> {
 }
 
 impl Extent {
-    /// `None` if too little is visible, or the thing is not rectangular.
+    /// `None` if too little is visible, or the thing is no rectangle.
     pub(super) fn of(outline: &Outline<'_>, plane_from_camera: &DMat4, is_level: bool) -> Option<Self> {
         let places = outline.places(plane_from_camera, is_level);
         if places.len() < LEAST_PIXELS {
@@ -104,8 +103,7 @@ impl Extent {
         }
     }
 
-    /// Extends a plane's low side to the receiver if it comes near: the space beneath is not
-    /// visible.
+    /// Extends the low side of a plane to the receiver, if it comes close to it.
     fn down_to(self, table: &SeenReceiver, plane_from_camera: &DMat4) -> Self {
         let axis = DVec2::from_angle(self.turn_rad);
         let table_from_plane = table.plane_from_camera * plane_from_camera.inverse();
@@ -150,7 +148,7 @@ impl Extent {
     }
 }
 
-/// The first and the last of some values, without the outliers.
+/// The least and the largest of some values, without outliers.
 fn ends(mut values: Vec<f64>) -> [f64; 2] {
     values.sort_unstable_by(f64::total_cmp);
     #[allow(

@@ -1,8 +1,8 @@
-//! Planes of things, such as the top of a book or a ramp, detected by the toy's shadow on them.
+//! Estimates the plane of a thing, such as the top of a book or a ramp, from the toy's shadow on it.
 //!
-//! A shadow on a plane is the toy flattened onto it, so height and tilt of a plane are searched
-//! until its expected shadow agrees with the visible one. The residual then decides whether the
-//! thing has a plane at all: a cup, a cloth or a hand has none.
+//! The shadow on a plane is the toy projected onto it. The search varies a plane's height and tilt
+//! until the predicted shadow matches the photograph. The remaining loss decides whether the thing
+//! has a plane at all: a cup, a cloth or a hand has none.
 
 use glam::{DMat4, DQuat, DVec2, DVec3, IVec2};
 
@@ -17,63 +17,58 @@ use crate::report::PlaneAlignment;
 use crate::shape::Shape;
 use app_scene::scene::{Intrinsics, MAX_RECEIVERS};
 
-/// Minimum number of a thing's pixels in the level for a plane, and the number that is sampled at
-/// most.
+/// Least pixels of a thing, in the level, for a search, and most pixels that a search samples.
 const LEAST_PIXELS: usize = 300;
 const MOST_PIXELS: usize = 2500;
-/// Minimum number of pixels in the shadow on a level plane, and on a tilted one.
+/// Least shadowed pixels that a level and a tilted plane need.
 const LEAST_SHADOWED: [usize; 2] = [90, 250];
-/// Share of light that a pixel must lose to count as shadowed.
+/// Least part of the light that a shadowed pixel loses.
 const SHADOWED: f32 = 0.25;
-/// Largest noise of a usable pixel, in plates.
+/// Largest noise of a pixel that counts, in plates.
 const NOISIEST: f32 = 0.2;
-/// Upper limit of a squared difference, in plates.
+/// Largest loss of a pixel: a squared difference in plates.
 const MOST_LOSS: f64 = 0.03;
-/// Largest residual of a plane, absolutely and relative to those of the receiver below and of no
-/// shadow at all.
+/// Largest loss of an accepted plane: absolute, and over the smaller loss of the known receivers and
+/// of no shadow at all.
 const OF_PLANE: f64 = 0.0012;
 const OF_OTHERS: f64 = 0.35;
-/// Smallest of these residuals that needs an explanation.
+/// If these leave a smaller loss, there is nothing to explain.
 const LEAST_LEFT: f64 = 3e-4;
-/// Distance up to which a plane counts as a known receiver, in metres.
+/// Largest distance in metres between a found plane and the receiver that it replaces.
 const SAME_M: f64 = 0.012;
-/// Index of the receiver nearest to the toy, on which it stands.
+/// The receiver nearest to the toy, which stands on it.
 const GROUND: usize = 0;
-/// A level plane is preferred if its residual is at most this many times that of a tilted one, plus
-/// a margin.
+/// A level plane wins if its loss is at most so many times a tilted plane's, plus a constant.
 const LEVEL_TIMES: f64 = 1.3;
 const LEVEL_MORE: f64 = 1e-4;
-/// Range of the shadow's depth relative to the expected one, and the number of rounds that estimate
-/// it.
+/// Least and largest depth of the shadow over the expected one, and rounds of its estimate.
 const DEPTHS: [f64; 2] = [0.6, 1.3];
 const N_ROUNDS: usize = 3;
-/// Tried heights relative to the toy's radius: the first, the step, and their number.
+/// Heights of the first search, over the toy's radius: the first, the step, and their number.
 const HEIGHTS: (f64, f64, usize) = (-0.03, 0.03, 24);
-/// Tried slopes, and the number of directions of each.
+/// Slopes of the first search, and the directions of each.
 const SLOPES: [f64; 2] = [0.1, 0.22];
 const N_SIDES: usize = 8;
-/// Steepest slope, and largest depth of a plane below the receiver in metres.
+/// Steepest slope, and how far below the receiver a plane may reach, in metres.
 const STEEPEST: f64 = 0.6;
 const BELOW_M: f64 = 0.004;
-/// Number of descents, the size of their first steps relative to the toy's radius, and the number
-/// of tries of each.
+/// Starts of the descents, their first steps over the toy's radius, and the tries of each.
 const N_STARTS: usize = 2;
 const FIRST_STEP: f64 = 0.05;
 const N_TRIES: usize = 60;
-/// Size of the cells in which the toy's points are merged, in pixels of the level.
+/// Side of the cells that merge the toy's vertices, in pixels of the level.
 const CELL_PX: f64 = 0.7;
 
-/// A plane with its extent, and its residuals.
+/// A plane with its extent and its evidence.
 pub(crate) struct FoundPlane {
     pub(crate) plane: SeenReceiver,
-    /// Index of the receiver that it replaces: one above the toy's own that is listed at a slightly
-    /// different place.
+    /// Index of the receiver that it replaces: one above the toy's ground that is listed slightly off.
     pub(crate) instead_of: Option<usize>,
     pub(crate) report: PlaneAlignment,
 }
 
 impl FoundPlane {
-    /// Whether its centre is near a receiver.
+    /// Whether its middle is close to a receiver.
     fn is_near(&self, receiver: &SeenReceiver) -> bool {
         let middle = self.plane.plane_from_camera.inverse().w_axis.truncate();
         receiver.plane_from_camera.transform_point3(middle).y.abs() < SAME_M
@@ -107,7 +102,7 @@ pub(super) fn find(
     planes.collect()
 }
 
-/// The pixels inside a thing, away from its border, row by row.
+/// The inner pixels of a thing, row by row.
 fn pixels<'a>(comparison: &'a Comparison, grown: &Grown, thing: usize) -> Vec<&'a Compared> {
     let steps = [IVec2::ZERO, IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
     let is_within = |at: IVec2| steps.iter().all(|step| grown.of_pixel(at + *step) == Some(thing));
@@ -118,7 +113,7 @@ fn pixels<'a>(comparison: &'a Comparison, grown: &Grown, thing: usize) -> Vec<&'
     all
 }
 
-/// The receiver that most pixels are on; `None` for too few pixels.
+/// The receiver behind most of the pixels; `None` for too few pixels.
 fn most_on(pixels: &[&Compared]) -> Option<usize> {
     if pixels.len() < LEAST_PIXELS {
         return None;
@@ -132,7 +127,7 @@ fn most_on(pixels: &[&Compared]) -> Option<usize> {
     (0..counts.len()).max_by_key(|on| counts[*on])
 }
 
-/// A thing's plane: searched in the whole thing, then in the rectangle of its upper side.
+/// Searches a thing's plane, first by all of its pixels, then by those of its upper side.
 fn found(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     let raster = &mut Rasterizer::default();
     let first = search.best_plane(raster)?;
@@ -164,8 +159,8 @@ struct Candidate {
     is_level: bool,
 }
 
-/// A plane as heights in metres above the receiver: at the thing's centre, and the rise along
-/// either axis over the thing's size.
+/// Parameters of a plane, in metres: its height above the receiver in the thing's middle, and its
+/// rise over the thing's size along either axis.
 type Heights = [f64; 3];
 
 /// A search for one thing's plane.
@@ -173,11 +168,11 @@ struct Search<'a> {
     on_plane: OnPlane<'a>,
     table: &'a SeenReceiver,
     intrinsics: Intrinsics,
-    /// Sampling stride of the pixels.
+    /// Every so many pixels one is sampled.
     apart: usize,
     pixels: Vec<IVec2>,
     seen: Vec<(Color, f32)>,
-    /// Expected colours on the known receivers.
+    /// Prediction of the known receivers.
     expected: Vec<Option<Color>>,
     /// The thing's centre and size on the receiver, in metres.
     middle: DVec2,
@@ -267,7 +262,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The same search among the pixels inside a rectangle.
+    /// The same search, restricted to the pixels of a rectangle.
     fn within(mut self, plane: &SeenReceiver) -> Self {
         let k = self.intrinsics;
         let is_within: Vec<bool> = self
@@ -281,8 +276,7 @@ impl<'a> Search<'a> {
         self
     }
 
-    /// The plane, if its residual is small enough; `None` if something else explains the thing
-    /// about as well.
+    /// Losses of the known receivers and of the plane; `None` if the plane is no clear improvement.
     fn told(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Option<[f64; 2]> {
         let of_receiver = self.loss_of(&self.expected);
         let of_light = self.loss_of(&vec![Some([1.0; 3]); self.seen.len()]);
@@ -294,7 +288,7 @@ impl<'a> Search<'a> {
         (is_told && n_shadowed >= least).then_some([of_receiver, loss])
     }
 
-    /// The best of some planes, with their losses.
+    /// The best of some tries, with their losses.
     fn best(
         &self,
         raster: &mut Rasterizer,
@@ -318,7 +312,7 @@ impl<'a> Search<'a> {
         SeenReceiver::of_size(plane_from_table * self.table.plane_from_camera, DVec2::INFINITY)
     }
 
-    /// Mean squared difference between the picture and the expectation for a plane, in plates.
+    /// Mean squared difference between photograph and prediction of a plane, in plates.
     fn loss(&self, raster: &mut Rasterizer, heights: &Heights) -> f64 {
         let steepest_m = STEEPEST * self.size_m;
         let rise_m = heights[1].hypot(heights[2]);
@@ -329,7 +323,7 @@ impl<'a> Search<'a> {
         self.loss_of(&expected)
     }
 
-    /// The same for given expected colours; `None` if there are none.
+    /// The same for a prediction of each pixel, if there is one.
     fn loss_of(&self, expected: &[Option<Color>]) -> f64 {
         let depth = self.depth(expected);
         let pixels = expected.iter().zip(&self.seen);
@@ -338,8 +332,8 @@ impl<'a> Search<'a> {
         losses.sum::<f64>() / self.seen.len().max(1) as f64
     }
 
-    /// Depth of the shadow relative to the expected one, which is uncertain if little of the shadow
-    /// is visible on the receiver.
+    /// Depth of the shadow over the prediction, which is uncertain if the receiver shows little of the
+    /// shadow.
     fn depth(&self, expected: &[Option<Color>]) -> f64 {
         let mut depth = 1.0;
         for _ in 0..N_ROUNDS {
@@ -379,8 +373,8 @@ fn keep<T>(values: &mut Vec<T>, marks: &[bool]) {
     values.retain(|_| marks.next().is_some_and(|is_kept| *is_kept));
 }
 
-/// Squared difference between a pixel and its expectation, for a shadow of that depth, less the
-/// squared noise.
+/// Squared difference between photograph and prediction, its shadow scaled by a depth, less the
+/// noise's.
 fn square((ratio, noise): &(Color, f32), expected: Color, depth: f64) -> f64 {
     let squares = (0..3).map(|channel| {
         let expected = 1.0 - depth * f64::from(1.0 - expected[channel]);

@@ -1,10 +1,9 @@
-//! Minimisation of a loss of three numbers, of which the first ones are free, by the downhill
-//! simplex method.
+//! Minimises a loss of three numbers, of which the first ones are free, by the downhill simplex.
 //!
 //! Source: Nelder and Mead 1965.
 
-/// The best point: its loss, and its numbers. The simplex begins at a start, with steps of a length
-/// along each free number.
+/// Loss and place of the best try. The simplex begins at a start, with one step along each free
+/// number.
 pub(super) fn descend(
     (start, step): ([f64; 3], f64),
     n_free: usize,

@@ -214,10 +214,7 @@ impl fmt::Display for Warning {
                 "no real shadow is seen of {}: the new one there has the shade of others",
                 listed(unseen, ", ")
             ),
-            Self::MirrorLike { roughness } => write!(
-                f,
-                "the table is nearly a mirror (roughness {roughness:.2}): the toy's reflection is shown in one colour, and sharper things of the room in it stay as photographed; lay something duller under the toy"
-            ),
+            Self::MirrorLike { roughness } => mirror_like(f, *roughness),
             Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Outlier(unknown) => unknown.fmt(f),
             Self::Thing(thing) => thing.fmt(f),
@@ -268,6 +265,13 @@ fn too_glossy(f: &mut fmt::Formatter<'_>, (roughness, strength): (f32, f32)) -> 
     write!(
         f,
         "the toy is as glossy as a mirror or metal (roughness {roughness:.3}, {strength:.1} times as reflective as plastic): its reflection of the room moves like paint; a matt spray or softer light would help"
+    )
+}
+
+fn mirror_like(f: &mut fmt::Formatter<'_>, roughness: f64) -> fmt::Result {
+    write!(
+        f,
+        "the table is nearly a mirror (roughness {roughness:.2}): the toy's reflection in it has one colour; lay something duller under the toy"
     )
 }
 

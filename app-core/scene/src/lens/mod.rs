@@ -26,9 +26,9 @@ const LAST_STEP: f64 = 1e-13;
 
 /// Radial distortion (Brown 1966), two terms.
 ///
-/// The pinhole's point `(x, y) = ((u - cx) / fx, (v - cy) / fy)`, with `r2 = x x + y y`, is at `(1
-/// + k1 r2 + k2 r2 r2) (x, y)` in the photograph. Negative coefficients are a barrel, positive ones
-/// a pincushion.
+/// The pinhole's point `(x, y) = ((u - cx) / fx, (v - cy) / fy)`, with `r2 = x x + y y`, is at
+/// `(1 + k1 r2 + k2 r2 r2) (x, y)` in the photograph. Negative coefficients are a barrel, positive
+/// ones a pincushion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Distortion {
     /// Coefficient of `r2`.

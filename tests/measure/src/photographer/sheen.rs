@@ -6,18 +6,10 @@ use glam::DVec3;
 
 use super::lamp::Lamp;
 use super::rays::{Hit, Place};
+use super::world::Sheen;
 
 /// Reflectance of plastic at normal incidence.
 const STRAIGHT: f64 = 0.04;
-
-/// Uniform gloss of a toy.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sheen {
-    /// Slope of Beckmann's distribution of facets.
-    pub roughness: f64,
-    /// Reflectance relative to plastic.
-    pub strength: f64,
-}
 
 impl Sheen {
     /// Radiance of a lamp's reflection towards `to_camera`, relative to a white matt surface.

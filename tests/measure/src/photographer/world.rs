@@ -7,7 +7,6 @@ use super::lamp::Lamp;
 use super::motion::{Key, Stance};
 use super::paint::Paint;
 use super::shape::Shape;
-use super::sheen::Sheen;
 
 /// A toy on its receivers under lights, and the camera that looks at it.
 #[derive(Clone, Debug)]
@@ -38,6 +37,15 @@ pub struct World {
     pub sensor: Sensor,
     /// Numbers of rays.
     pub quality: Quality,
+}
+
+/// How glossy a toy is: the same all over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheen {
+    /// Slope of Beckmann's distribution of facets.
+    pub roughness: f64,
+    /// Reflectance over that of plastic.
+    pub strength: f64,
 }
 
 /// A rectangle, local y = 0, that catches shadows.
