@@ -1,15 +1,18 @@
-// Box filter of the shadow term of one label along one axis; samples outside that shadow are discarded.
+// Box filter of the shadow term of one label along one axis; samples outside that shadow are
+// discarded.
 //
-// Sums and counts are separable though their ratio is not, so two passes, rows then columns, make the exact square box.
-// Each texel keeps the sums of its own receiver: one receiver's columns leave the others' texels as they are.
-// Reads: terms with their label; then sums of rows. Writes: their sums, alpha the count.
-// CPU reference: tests/reference/src/box_filter.rs. Source: Casas et al. 2018, sections 3.3 and 3.5.
+// Sums and counts are separable although their ratio is not, so two passes, rows then columns, make
+// the exact square box. Each texel keeps the sums of its own receiver: one receiver's columns do
+// not change the others' texels.
+// Reads: terms with their label; then sums of rows. Writes: their sums, with the count in alpha.
+// CPU reference: tests/reference/src/box_filter.rs. Source: Casas et al. 2018, sections 3.3 and
+// 3.5.
 
 //#import common/baseline
 //#import common/fullscreen
 
 struct Summed {
-  // The label whose rows are summed; 0 sums columns of these sums, in texels of `receiver`.
+  // The label whose rows are summed; 0 sums the columns of these sums, in texels of `receiver`.
   label: u32,
   receiver: u32,
 }

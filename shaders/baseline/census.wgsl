@@ -1,7 +1,7 @@
-// Sets of lights whose shadows occur in mask 3c, so that `search` skips sets that occur nowhere.
+// Sets of lights whose shadows occur in mask 3c, so that `search` skips the others.
 //
-// Reads: eligible (mask 3c). Writes: seen_sets, one word per receiver, bit s where the set s occurs; the words start
-// at 0.
+// Reads: eligible (mask 3c). Writes: seen_sets, one word per receiver, in which bit s is set if the
+// set s occurs; the words start at 0.
 // CPU reference: tests/reference/src/census.rs.
 
 //#import common/baseline

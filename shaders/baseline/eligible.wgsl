@@ -1,13 +1,14 @@
-// The paper's masks 3b and 3c, of all lights and receivers: g is the real shadow with its penumbra, r the part of it
-// to sample from, labelled with its receiver and the set of lights whose umbra contains it.
+// The paper's masks 3b and 3c, of all lights and receivers: g is the real shadow with its penumbra,
+// r the part of it that is sampled, labelled with its receiver and the set of lights whose umbra
+// contains it.
 //
-// Eligible are pixels that show the receiver with each light either hidden or fully visible, and the same within a
-// margin around them: penumbrae, of whichever light, are excluded.
+// Eligible are pixels that show the receiver with each light either hidden or fully visible, and
+// that are like all pixels within a margin: the penumbrae of all lights are excluded.
 //
 // Reads: masks (3a), visibility of each light with the physical toy. Writes: a label; 0 or 1.
-// CPU reference: tests/reference/src/eligible.rs. Source: Casas et al. 2018, sections 3.3, 4.2 (3b is the soft shadow made
-// binary) and 4.6 (a mask per light); 2019, section 5.7 (a subregion per receiver). The margin is an addition: a
-// pixel at an edge is half lit, or half toy.
+// CPU reference: tests/reference/src/eligible.rs. Source: Casas et al. 2018, sections 3.3, 4.2 (3b
+// is the soft shadow made binary) and 4.6 (a mask per light); 2019, section 5.7 (a subregion per
+// receiver). The margin is an addition: a pixel at an edge is half lit, or half toy.
 
 //#import common/baseline
 //#import common/fullscreen
@@ -15,10 +16,10 @@
 @group(1) @binding(0) var masks: texture_2d<f32>;
 @group(1) @binding(1) var visibility: texture_2d<f32>;
 
-// Less shadow than this is not worth cropping: two codes of a white table.
+// A fainter shadow is not cropped: two codes of a white table.
 const FAINT: f32 = 0.01;
 
-// The label of the umbra that a texel shows; 0 where it shows the toy, a penumbra or no shadow.
+// The label of the umbra that a texel shows; 0 for the toy, a penumbra or no shadow.
 fn umbra_at(texel: vec2i) -> u32 {
   let at = clamp(texel, vec2i(0), vec2i(textureDimensions(masks)) - 1);
   if textureLoad(masks, at, 0).r != 0.0 { return 0u; }

@@ -1,4 +1,4 @@
-// The paper's mask 3a: where the camera sees the physical toy.
+// The paper's mask 3a: the pixels in which the camera sees the physical toy.
 //
 // Reads: physical positions in anchor space. Writes: 0 or 1.
 // Source: Casas et al. 2018, section 4.2.

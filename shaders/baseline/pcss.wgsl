@@ -1,12 +1,14 @@
-// Percentage-closer soft shadows of the animated toy, of each light, in the edge region.
+// Percentage-closer soft shadows of the animated toy for each light, in the edge region.
 //
-// The kernel is a disc perpendicular to the ray to the light, as it is in a shadow map, projected to the receiver and
-// on to the image. Its radius follows from the light's size and the mean height of the blockers, which are searched
-// on the receiver within the penumbra of the tallest; where all blocker taps agree there is no edge and nothing is
-// filtered.
+// The kernel is a disc perpendicular to the ray to the light, as in a shadow map, projected to the
+// receiver and on to the image. Its radius follows from the light's size and the mean height of the
+// blockers, which are searched on the receiver within the penumbra of the tallest one. If all
+// blocker taps agree, there is no edge and nothing is filtered.
 //
-// Reads: warp of each light (occluder's height, coverage). Writes: visibility in [0, 1], one channel per light.
-// CPU reference: tests/reference/src/pcss.rs. Source: Fernando 2005; Casas et al. 2018, section 3.5.
+// Reads: warp of each light (occluder's height, coverage). Writes: visibility in [0, 1], one
+// channel per light.
+// CPU reference: tests/reference/src/pcss.rs. Source: Fernando 2005; Casas et al. 2018, section
+// 3.5.
 
 //#import common/baseline
 //#import common/fullscreen
@@ -26,8 +28,9 @@ fn disc_point(k: u32, n: u32) -> vec2f {
   return sqrt((f32(k) + 0.5) / f32(n)) * vec2f(cos(turn), sin(turn));
 }
 
-// Penumbra radius on the receiver of an occluder at `height_m`, at most that height: a disc that fills more than 45
-// degrees around the vertical, up to all when the occluder is as high as the light, has an unbounded penumbra.
+// Penumbra radius on the receiver of an occluder at `height_m`, limited to that height: a disc that
+// fills more than 45 degrees around the vertical has a wider penumbra, which is unbounded for an
+// occluder as high as the light.
 fn penumbra_radius_m(height_m: f32, receiver: u32, light: u32) -> f32 {
   let at = globals.receivers[receiver].lights[light];
   let radius = baseline.light_radii[light];
@@ -48,7 +51,7 @@ fn visibility_at(texel: vec2i, point: ReceiverPoint, half_pixel_m: f32, light: u
   // A light behind the receiver casts no shadow on it.
   if globals.receivers[receiver_of(point)].lights[light].y <= 0.0 { return 1.0; }
   let here = textureLoad(warp, texel, light, 0);
-  // Never less than half a pixel, so that a hard edge is antialiased.
+  // At least half a pixel, so that a hard edge is antialiased.
   let tallest_m = baseline.tallest_m[receiver_of(point)];
   let reach_m = max(penumbra_radius_m(tallest_m, receiver_of(point), light), half_pixel_m);
   var height_sum = 0.0;

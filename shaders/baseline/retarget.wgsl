@@ -1,14 +1,15 @@
-// The baseline's picture: plate in the masks of toy and shadow with a linear seam, the new shadows over it, the toy
-// by projective texturing.
+// The baseline's picture: plate in the masks of toy and shadow with a linear seam, the new shadows
+// over it, the toy by projective texturing.
 //
-// Algorithm 1 blends by PCSS between the receiver without and with a light's shadow, light after light. That is a
-// weighted mean over all sets of lights: a set's weight is the product of 1 - V over its lights and V over the
-// others, its colour that of the real shadow of just these lights (section 4.6).
+// Algorithm 1 blends by PCSS between the receiver without and with a light's shadow, light after
+// light. That is a weighted mean over all sets of lights: a set's weight is the product of 1 - V
+// over its lights and V over the others, its colour that of the real shadow of just these lights
+// (section 4.6).
 //
-// Reads: frame, plate, masks (3a), eligible (3b), visibility of each light, terms of each set. Writes: linear colour,
-// opaque.
-// CPU reference: tests/reference/src/retarget.rs, of the receiver. Source: Casas et al. 2018, Algorithm 1 and sections 3.4,
-// 4.3, 4.4 and 4.6.
+// Reads: frame, plate, masks (3a), eligible (3b), visibility of each light, terms of each set.
+// Writes: linear colour, opaque.
+// CPU reference: tests/reference/src/retarget.rs, for the receiver. Source: Casas et al. 2018,
+// Algorithm 1 and sections 3.4, 4.3, 4.4 and 4.6.
 
 //#import common/baseline
 //#import common/fullscreen
@@ -37,7 +38,8 @@ fn cropped(texel: vec2i) -> f32 {
   return saturate(1.0 - nearest / (f32(seam) + 1.0));
 }
 
-// Sums of the terms of the set itself or, where it has none in the box, of the most similar set that has.
+// Sums of the terms of the set itself or, if it has none in the box, of the most similar set that
+// has some.
 fn sums_near(texel: vec2i, lights: u32) -> vec4f {
   let own = textureLoad(terms, texel, lights - 1u, 0);
   if own.a > 0.0 { return own; }
@@ -54,12 +56,12 @@ fn sums_near(texel: vec2i, lights: u32) -> vec4f {
   return sums;
 }
 
-// Colour of the receiver with the lights of a set hidden and all others visible.
+// Colour of the receiver if the lights of a set are hidden and all others visible.
 fn shaded(texel: vec2i, lights: u32, lit: vec3f, b: vec3f) -> vec3f {
   let is_textured = ((baseline.textured_receivers >> receiver_at(texel)) & 1u) != 0u;
   if baseline.is_constant == 1u { return pow(baseline.constant_ratio, f32(countOneBits(lights))) * b; }
   let sums = sums_near(texel, lights);
-  // No sample in reach: the receiver stays lit rather than turning black.
+  // Without a sample in reach the receiver stays lit and does not turn black.
   if sums.a == 0.0 { return lit; }
   let term = sums.rgb / sums.a;
   return select(term, term * b, is_textured);

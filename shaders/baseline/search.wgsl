@@ -1,14 +1,16 @@
-// The shadow term of each texel of the new shadows: the warped sample where the same lights are hidden there, else
-// the closest such sample.
+// The shadow term of each texel of the new shadows: the warped sample if the same lights are hidden
+// there, otherwise the closest such sample.
 //
-// If the receiver has no sample with the same lights hidden, the closest of the most similar sets is taken, and if it
-// has no sample at all another receiver's: the papers name this case as a failure of the method.
+// If the receiver has no sample with the same lights hidden, the closest one of the most similar
+// sets is used, and if it has no sample at all, one of another receiver: the papers call this case
+// a failure of the method.
 //
-// Reads: warp of each light, eligible (mask 3c), seen_sets, frame, plate. Writes: term (ratio to the plate, or
-// colour), and the texel's label, 0 where nothing was found; number of taps.
-// CPU reference: tests/reference/src/search.rs. Source: Casas et al. 2018, sections 3.3 (concentric rings, all candidates of a
-// ring, the closest wins, early exit), 4.6 (no sample until all masks agree) and 3.4, whose ratio is corrected here
-// to shadow over light at the sample; Casas et al. 2019, section 5.7 (each receiver by itself).
+// Reads: warp of each light, eligible (mask 3c), seen_sets, frame, plate. Writes: term (ratio to
+// the plate, or colour), and the texel's label, 0 if nothing was found; number of taps.
+// CPU reference: tests/reference/src/search.rs. Source: Casas et al. 2018, sections 3.3 (concentric
+// rings, all candidates of a ring, the closest wins, early exit), 4.6 (no sample until all masks
+// agree) and 3.4, whose ratio is corrected here to shadow over light at the sample; Casas et al.
+// 2019, section 5.7 (each receiver separately).
 
 //#import common/baseline
 //#import common/fullscreen
@@ -24,10 +26,10 @@ struct Term {
   @location(1) taps: vec4f,
 }
 
-// What a search found: xy is the texel, z is 1 where there is one, w the taps that were taken.
+// Result of a search: xy is the texel, z is 1 if there is one, w the number of taps.
 alias Found = vec4i;
 
-// Whether a texel will do as a sample: of `receiver`, and of a set s whose bit is 1 in `sets`.
+// Whether a texel can be a sample: it shows `receiver`, and a set s whose bit in `sets` is 1.
 fn is_eligible(texel: vec2i, receiver: u32, sets: u32) -> bool {
   let size = vec2i(textureDimensions(eligible));
   if any(texel < vec2i(0)) || any(texel >= size) { return false; }
@@ -38,11 +40,12 @@ fn is_eligible(texel: vec2i, receiver: u32, sets: u32) -> bool {
 fn ratio_at(texel: vec2i) -> vec3f {
   let shaded = textureLoad(frame, texel + vec2i(globals.region_origin_px), 0).rgb;
   let lit = textureLoad(plate, texel, 0).rgb;
-  // The ratio over a black plate is undefined: no change. It is at most 1: noise in the dark would add light.
+  // The ratio over a black plate is undefined and counts as 1. It is at most 1: noise in dark
+  // pixels would add light.
   return select(vec3f(1.0), min(shaded / lit, vec3f(1.0)), lit > vec3f(0.0));
 }
 
-// The term for a texel of `receiver` from a sample, of that receiver or `borrowed` from another.
+// The term for a texel of `receiver` from a sample, which may be `borrowed` from another receiver.
 fn term_at(texel: vec2i, found: vec2i, receiver: u32, borrowed: bool) -> vec3f {
   if ((baseline.textured_receivers >> receiver) & 1u) != 0u { return ratio_at(found); }
   if borrowed { return ratio_at(found) * textureLoad(plate, texel, 0).rgb; }
@@ -87,7 +90,8 @@ fn search(texel: vec2i, lights: u32, receiver: u32, sets: u32) -> Found {
       if ((lights >> light) & 1u) == 0u { continue; }
       let warped = textureLoad(warp, texel, light, 0).xy;
       for (var k = 0u; k < baseline.n_ring_directions; k++) {
-        // Every other ring is rotated by half a step, so that directions in between are sampled too.
+        // Every other ring is rotated by half a step, so that the directions in between are
+        // sampled, too.
         let turn = (f32(k) + 0.5 * f32(ring & 1u)) / f32(baseline.n_ring_directions) * 6.2831853;
         let candidate = vec2i(floor(warped + f32(ring) * baseline.ring_step_px * vec2f(cos(turn), sin(turn))));
         taps++;

@@ -1,11 +1,12 @@
-// The real shadow of one light warped to the animated pose: for each texel of the new shadow, the position in the
-// frame of its vertex's real shadow.
+// The real shadow of one light warped to the animated pose: for each texel of the new shadow, the
+// position in the frame of its vertex's real shadow.
 //
-// The animated mesh, flattened from the light, is the geometry; the flattened physical mesh gives the texture
-// coordinates. Where several parts of the toy overlap in a texel the one closest to the light is kept.
-// Each receiver has its own shadow, cut off where another receiver is visible.
+// The animated mesh, flattened from the light, is the geometry; the flattened physical mesh gives
+// the texture coordinates. If several parts of the toy overlap in a texel, the one closest to the
+// light is kept. Each receiver has its own shadow, cut off at the next receiver.
 //
-// Reads: positions of both poses. Writes: source in region_px, occluder's height over the receiver in metres, 1.
+// Reads: positions of both poses. Writes: source in region_px, occluder's height over the receiver
+// in metres, 1.
 // Source: Casas et al. 2018, sections 3.2 and 4.5; 2019, section 5.7.
 
 //#import common/baseline

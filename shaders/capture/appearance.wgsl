@@ -1,13 +1,14 @@
-// Which of the camera's pixels the toy's own colours are from, also a little past its outline.
+// The camera pixels from which the toy's own colours come, also a little beyond its outline.
 //
-// Where a pixel mixes two surfaces its colour is that of the nearest pixel that shows one, of those at its own depth
-// before others, so that a moved limb carries no rim of what was behind it.
+// A pixel that mixes two surfaces gets the colour of the nearest pixel that shows a single one,
+// preferably at its own depth, so that a moved limb has no rim of the background.
 //
-// Each colour goes with what light it was seen under, so that it can be shown under another. All of that is the same for
-// all pictures of a view, of which `toy` takes the colours.
+// Each colour is stored with the light on it, so that it can be shown in another light. This is the
+// same for all pictures of a view, from which `toy` takes the colours.
 //
-// Reads: validity, gbuffer. Writes: in the physical box, the source, which pixels colours are from; each light's cosine times
-// its visibility there; their base colour, alpha how far they face upwards.
+// Reads: validity, gbuffer. Writes: in the physical box, the source, which is the pixel of the
+// colour; each light's cosine times its visibility there; its base colour, with its upward part in
+// alpha.
 // CPU reference: tests/reference/src/appearance.rs.
 
 //#import common/globals
@@ -23,9 +24,10 @@
 @group(1) @binding(3) var gbuffer_received: texture_2d<f32>;
 @group(1) @binding(4) var gbuffer_base: texture_2d<f32>;
 
-// Added to the squared distance of a pixel at another depth: it counts where there is no other.
+// Added to the squared distance of a pixel at another depth, which counts only if there is no
+// other.
 const OTHER_SURFACE: i32 = 64;
-// Base colour, and the part of what the surface sees that lies above the horizon.
+// Base colour, and the part of the surface's view that lies above the horizon.
 fn base_at(texel: vec2i) -> vec4f {
   let normal = textureLoad(gbuffer_normal, texel, 0).xyz;
   return vec4f(textureLoad(gbuffer_base, texel, 0).rgb, hemispheres(normal).x);
@@ -35,14 +37,15 @@ fn is_one_surface(texel: vec2i) -> bool {
   return textureLoad(validity, texel, 0).g == 1.0;
 }
 
-// Number of the pixel that a pixel's colour is from.
+// Number of the pixel from which a pixel's colour comes.
 fn nearest_source(texel: vec2i) -> u32 {
   let marks = textureLoad(validity, texel, 0);
   if marks.g == 1.0 { return number_of(vec2i(0)); }
-  // Well clear of the toy.
+  // The pixel is well clear of the toy.
   if marks.b == 1.0 { return NO_SOURCE; }
   let here = textureLoad(gbuffer_depth, texel, 0);
-  // A part too thin to have such a pixel: its own is the best there is, unless that shows a thing before it.
+  // A part without such a pixel is too thin: its own pixel is the best, unless that shows a thing
+  // before it.
   var nearest = select(NO_SOURCE, number_of(vec2i(0)), here > 0.0 && !is_before_toy(marks));
   var least = 2 * OTHER_SURFACE;
   for (var y = -REACH_PX; y <= REACH_PX; y++) {
@@ -62,7 +65,7 @@ fn nearest_source(texel: vec2i) -> u32 {
 struct Appearance {
   @location(0) received: vec4f,
   @location(1) base: vec4f,
-  // Number in r, in codes.
+  // The number is in r, in codes.
   @location(2) source: vec4f,
 }
 

@@ -1,12 +1,11 @@
-// Each pixel's own residual, denoised where it lies in the real shadow.
+// Each pixel's own residual, denoised in the real shadow.
 //
-// A shadow is the noisiest part of a photograph, and the plate has the same texture without: the residual is smoothed
-// over
-// a few pixels, and of what the smoothing takes away only what stands out of the noise is put back. Light that is not
-// in
-// shadow keeps its pixels as they are.
+// A shadow is the noisiest part of a photograph, and the plate has the same texture without it: the
+// residual is smoothed over a few pixels, and only the removed detail that exceeds the noise is
+// restored. Light that is not in shadow keeps its pixels unchanged.
 //
-// Reads: frame, plate, validity, visibility, ambient. Writes: r, in plates. CPU reference: tests/reference/src/detail.rs.
+// Reads: frame, plate, validity, visibility, ambient. Writes: r, in plates.
+// CPU reference: tests/reference/src/detail.rs.
 // Source: thresholding of detail as in Donoho 1995; smoothing guided by the plate, which divides
 // out the texture, as in Eisemann and Durand 2004.
 
@@ -26,16 +25,15 @@
 @group(1) @binding(4) var ambient_sampler: sampler;
 
 const RADIUS_PX: i32 = 3;
-// Detail, in plates, up to which it is noise, and from which none of it is.
+// Detail, in plates, up to which it is only noise, and from which it is kept in full.
 const NOISE: f32 = 0.03;
 const DETAIL: f32 = 0.08;
-// Light left, in plates, below which a pixel is in shadow, and from which it is not.
+// Remaining light, in plates, below which a pixel is in shadow, and from which it is not.
 const SHADOW: f32 = 0.85;
 const LIT: f32 = 0.98;
 
-// Adds a pixel's plate times residual, and its plate squared, where the frame shows the receiver; returns the model
-// there, 1
-// where it does not.
+// Adds a pixel's plate times residual, and its plate squared, if the frame shows the receiver.
+// Returns the model there, and 1 otherwise.
 fn add_own(texel: vec2i, receiver: u32, product: ptr<function, vec3f>, energy: ptr<function, vec3f>) -> vec3f {
   let at = vec2f(texel) + 0.5;
   if any(at < vec2f(0.0)) || any(at >= globals.region_size_px) { return vec3f(1.0); }

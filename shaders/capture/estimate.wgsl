@@ -1,9 +1,11 @@
-// The plate, completed by an estimate where no plate covers the pixel.
+// The plate, completed by an estimate in pixels that no plate covers.
 //
-// Where the fits have found the shadow it is B = (frame - gain reflected) / (gain M) per pixel of the receiver, with all its texture, as far as
-// enough light is left; pixels that the toy hides, or bleeds into, stay smooth, as the fits see all of them.
-// Reads: plate, frame, validity, visibility, ambient, lit cells. Writes: linear colour, alpha 1 where it was
-// photographed, less where it is an estimate. CPU reference: tests/reference/src/estimate.rs.
+// If the fits have found the shadow, it is B = (frame - gain reflected) / (gain M) per pixel of the
+// receiver, with all its texture, if enough light remains. Pixels that the toy hides, or bleeds
+// into, stay smooth, as in the fits.
+// Reads: plate, frame, validity, visibility, ambient, lit cells. Writes: linear colour, with alpha
+// 1 if it was photographed, and less if it is an estimate.
+// CPU reference: tests/reference/src/estimate.rs.
 
 //#import common/fit
 //#import common/frame
@@ -21,7 +23,8 @@
 @group(1) @binding(5) var ambient: texture_2d<f32>;
 @group(1) @binding(6) var ambient_sampler: sampler;
 
-// Light left, in plates, above which a pixel's own estimate is used in full, and below which not at all.
+// Remaining light, in plates, above which a pixel's own estimate is used in full, and below which
+// it is not used.
 const TELLS_ALL: f32 = 0.3;
 const TELLS_NONE: f32 = 0.1;
 

@@ -1,10 +1,12 @@
-// Fills the cells that the toy hides from those around: pull-push on the grids of residuals or lit colours.
+// Fills the cells that the toy hides from their neighbours: pull-push on the grids of residuals or
+// lit colours.
 //
-// Pull halves the grid and sums values times certainties; push fills each cell, as far as it is uncertain, from the
-// coarser level. One workgroup does a receiver's grid: it has at most 64 x 64 cells.
+// Pull halves the grid and sums values times certainties; push fills the uncertain part of each
+// cell from the coarser level. One workgroup processes a receiver's grid: it has at most 64 x 64
+// cells.
 //
-// Reads and writes: cells, level after level in one buffer, finest first. Afterwards the finest holds (value, 1), or
-// 0 where the whole grid is empty.
+// Reads and writes: cells, level after level in one buffer, finest first. Afterwards the finest
+// contains (value, 1), or 0 if the whole grid is empty.
 // CPU reference: tests/reference/src/fill.rs. Source: Gortler et al. 1996, section 3.4.
 
 //#import common/grid
@@ -52,7 +54,7 @@ fn cs_pull_push(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_i
     }
     storageBarrier();
   }
-  // The coarsest cell, normalised, fills where no finer level has data.
+  // The coarsest cell, normalised, fills cells for which no finer level has data.
   if lane == 0u {
     let top = level(grid, N_LEVELS - 1u).first;
     if cells[top].a > 0.0 { cells[top] /= cells[top].a; }

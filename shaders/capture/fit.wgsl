@@ -2,18 +2,22 @@
 //
 // Receiver: frame / gain = plate c (A + bounce A (1 - A)
 //   + sum_i fraction_i falloff_i (intensity_i V_i - A) / plate_falloff)
-// is linear in (c, c bounce, c fraction_i), with plate_falloff and gain of the previous step; c corrects the gain. What the receiver
-// reflects, over the gain, is taken from the left, and is a part of the gain's column in the fit of intensities.
-// Without any light the first two columns add up to the plate, and a third holds what the frame shows beside it.
-// Toy: frame / gain = base (toy_0 (1 + n.y) / 2 + toy_1 (1 - n.y) / 2 + sum_i toy_i intensity_i max(n.l_i, 0) V_i), V_i
-// with self-shadowing; a glossy toy adds, over its base, what it reflects of each.
-// Intensities: frame = gain plate (ambient_part + sum_i intensity_i f_i V_i) is linear in (gain, gain intensity_i).
-// Nothing is divided by plate or base, so dark texels weigh little by themselves. Weights are Cauchy's, from the
-// previous step. Sums run over pixels here and over workgroups in `fit_solve`.
+// is linear in (c, c bounce, c fraction_i), with plate_falloff and gain of the previous step; c
+// corrects the gain. The receiver's reflection, relative to the gain, is subtracted from the left
+// side, and is a part of the gain's column in the fit of intensities. Without any light the first
+// two columns add up to the plate, and a third one contains the difference of the frame.
+// Toy: frame / gain = base (toy_0 (1 + n.y) / 2 + toy_1 (1 - n.y) / 2 + sum_i toy_i intensity_i
+// max(n.l_i, 0) V_i), V_i with self-shadowing; a glossy toy adds its reflection of each, relative
+// to its base.
+// Intensities: frame = gain plate (ambient_part + sum_i intensity_i f_i V_i) is linear in (gain,
+// gain intensity_i). Nothing is divided by plate or base, so dark texels have little weight.
+// Weights are Cauchy's, from the previous step. Sums run over pixels here and over workgroups in
+// `fit_solve`.
 //
-// Reads: lit cells, frame, plate, validity, visibility, ambient, gbuffer. Writes: rows of 28 sums, one per workgroup and
-// channel.
-// CPU reference: tests/reference/src/fit.rs. Source: Holland and Welsch 1977 (iteratively reweighted least squares).
+// Reads: lit cells, frame, plate, validity, visibility, ambient, gbuffer. Writes: rows of 28 sums,
+// one per workgroup and channel.
+// CPU reference: tests/reference/src/fit.rs. Source: Holland and Welsch 1977 (iteratively
+// reweighted least squares).
 
 //#import common/fit
 //#import common/frame
@@ -28,7 +32,7 @@
 //#import common/gloss
 //#import common/toy_point
 
-// Where the plate is to be completed.
+// The lit cells from which the plate is completed.
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 
 @group(2) @binding(0) var<uniform> step: FitStep;
@@ -45,12 +49,12 @@
 @group(2) @binding(10) var gbuffer_depth: texture_depth_2d;
 @group(2) @binding(11) var<uniform> specular: Specular;
 
-// Residual, as a fraction of plate or base, at which a pixel counts half.
+// Residual, as a fraction of plate or base, at which a pixel's weight is one half.
 const CAUCHY_SCALE: f32 = 0.03;
-// As above for the toy, whose interreflections and curved faces are not modelled.
+// The same for the toy, whose interreflections and curved faces are not modelled.
 const TOY_CAUCHY_SCALE: f32 = 0.12;
-// Weight of an estimated plate in the fit of the intensities: it tells where no photographed one does. Its errors would else
-// pass for another gain, and what follows of it makes the next view's estimate.
+// Weight of an estimated plate in the fit of the intensities: it counts if there is no photographed
+// one. Its errors would otherwise act as another gain, which would enter the next view's estimate.
 const ESTIMATED_INTENSITIES: f32 = 1e-3;
 
 fn cauchy_weight(residual: vec3f, scale: vec3f) -> vec3f {
@@ -65,13 +69,13 @@ struct Observation {
   plate: vec3f,
   ambient: f32,
   visibility: vec4f,
-  // What the receiver reflects, over the gain.
+  // Light that the receiver reflects, relative to the gain.
   reflected: vec3f,
-  // 0 where the pixel is masked out or unusable.
+  // 0 if the pixel is masked out or unusable.
   weight: vec3f,
-  // 1 where frame and plate may both be clipped.
+  // 1 if frame and plate may both be clipped.
   clipped: vec3f,
-  // The plate there is an estimate, made with the previous intensities.
+  // Whether the plate there is an estimate, made with the previous intensities.
   is_estimated: bool,
 }
 
@@ -79,7 +83,7 @@ fn plate_at(texel: vec2u) -> vec4f {
   return textureLoad(plate, texel, 0);
 }
 
-// The same, where none was photographed an estimate: all that is known before the fits.
+// The same, completed by an estimate: the best plate before the fits.
 fn completed_at(texel: vec2u) -> vec4f {
   let photographed = plate_at(texel);
   let point = receiver_point(vec2f(texel) + 0.5);
@@ -113,10 +117,11 @@ fn receiver_equation(seen: Observation) -> Equation {
   eq.columns[0] = b * seen.ambient;
   eq.columns[1] = b * bounced(seen.ambient);
   var predicted = eq.columns[0] + fit.receivers[step.receiver].bounce.rgb * eq.columns[1];
-  // Not up to the number of lights, so that no column is looked for by its number.
+  // The loop does not end at the number of lights, so that no column is indexed dynamically.
   for (var i = 0u; i < MAX_LIGHTS; i++) {
     if i >= globals.n_lights { continue; }
-    // As bright as in shadow, as far as such a pixel tells; where a shadow does show, it is an outlier.
+    // Such a pixel counts as equally bright in shadow; if a shadow is visible there, it is an
+    // outlier.
     let lit = (1.0 - seen.clipped) * seen.visibility[i];
     let visible = fit.intensity[i].rgb * lit - seen.ambient;
     eq.columns[2u + i] = b * falloff(i, seen.point) * visible / total;
@@ -184,7 +189,7 @@ fn toy_equation(texel: vec2u) -> Equation {
     predicted += strength * (reflected_of_ambient(normal, point) + reflected_of_lights(normal, point, received));
     scale += TOY_CAUCHY_SCALE * (ambient.x + ambient.y);
   }
-  // A clipped toy is at least as bright, where nothing else tells how it is lit.
+  // A clipped toy is at least this bright, if no other pixel constrains its light.
   eq.weight = evidence_of(f, f);
   if step.is_reweighted == 1u { eq.weight *= cauchy_weight(eq.value - predicted, scale); }
   return eq;
@@ -204,7 +209,8 @@ fn sampled_texel(index: u32) -> vec2u {
   return vec2u(index % width, index / width) * step.stride_px;
 }
 
-// An entry point for each subject, and for each kind of plate, since some processors take all branches of a shader.
+// There is an entry point for each subject, and for each kind of plate, since some processors
+// execute all branches of a shader.
 @compute @workgroup_size(WORKGROUP)
 fn cs_receiver(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
   for (var index = group.x * WORKGROUP + lane; index < n_sampled(); index += step.n_rows * WORKGROUP) {
@@ -225,7 +231,7 @@ fn cs_receiver_completing(@builtin(workgroup_id) group: vec3u, @builtin(local_in
 
 @compute @workgroup_size(WORKGROUP)
 fn cs_toy(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
-  // Of the sampled pixels those in the physical box.
+  // Only sampled pixels in the physical box count.
   let low = vec2u(globals.physical_box_origin_px);
   let first = (low + step.stride_px - 1u) / step.stride_px;
   let end = (low + vec2u(globals.physical_box_size_px) + step.stride_px - 1u) / step.stride_px;

@@ -1,16 +1,19 @@
-// Solves the normal equations that `fit` summed, per channel, with weak priors for under-constrained unknowns.
+// Solves the normal equations of `fit` per channel, with weak priors for under-constrained
+// unknowns.
 //
-// A toy of few faces does not tell its lights apart from the ambient light. The receiver does: what falls on the toy from
-// above is to a light as the ambient part of the receiver's radiance is to that light's part, and what comes from below
-// is what the receiver throws back. Light is not negative, so an unknown that would be is 0, and the others make up.
+// A toy with few faces does not separate its lights from the ambient light. The receiver does: its
+// ambient part is to a light's part as the ambient light from above on the toy is to that light,
+// and it reflects the light from below. A negative unknown becomes 0, and the others are solved
+// again.
 //
-// Where no light is known, how much of the light comes from all around is not known either: the toy casts a shadow of it only if
-// that explains a part of what the frame shows beside the plate, else none.
+// If no light is known, the share of ambient light is unknown, too: the toy casts a shadow of it
+// only if this explains a part of the difference between frame and plate.
 //
-// Reads: rows of sums, and those accumulated over earlier frames, since scene and toy do not depend on the camera.
+// Reads: rows of sums, and those accumulated over earlier frames, since scene and toy do not depend
+// on the camera.
 // Writes: the solution, and in the last step the accumulated sums.
-// CPU reference: tests/reference/src/fit.rs. Source: Lawson and Hanson 1974, 23 (non-negative least squares); unknowns are
-// only ever taken out here, the most negative one first.
+// CPU reference: tests/reference/src/fit.rs. Source: Lawson and Hanson 1974, 23 (non-negative least
+// squares); here unknowns are only removed, the most negative one first.
 
 //#import common/fit
 //#import common/fit_step
@@ -20,24 +23,24 @@
 @group(1) @binding(0) var<uniform> step: FitStep;
 @group(1) @binding(1) var<storage, read> rows: array<f32>;
 @group(1) @binding(2) var<storage, read_write> solution: Fit;
-// 84 sums for each receiver, then for the toy.
+// 84 sums for each receiver, followed by those for the toy.
 @group(1) @binding(3) var<storage, read_write> accumulated: array<f32>;
 
 const N_SUMS: u32 = 28u;
 const CLIPPED_SUM: u32 = 27u;
-// Of the three channels.
+// Number of sums of the three channels.
 const N_ROW: u32 = 84u;
-// Weight of the priors against the energy of the first column.
+// Weight of the priors relative to the energy of the first column.
 const PRIOR_WEIGHT: f32 = 1e-4;
-// Weight of a light's previous intensity, against the energy of the ambient light.
+// Weight of a light's previous intensity, relative to the energy of the ambient light.
 const INTENSITY_WEIGHT: f32 = 1e-3;
 // Weight of the first receiver's gain for the other receivers: there is one exposure.
 const SAME_GAIN_WEIGHT: f32 = 10.0;
 // Cap of the accumulated sums' weight, in frames like the latest.
 const MAX_FRAMES: f32 = 8.0;
-// Weight of the three channels' common solution, for the toy, against their common energy.
+// Weight of the three channels' common solution for the toy, relative to their common energy.
 const WHITE_WEIGHT: f32 = 0.003;
-// Weight of what the receiver tells of the light on the toy, against the toy's energy.
+// Weight of the receiver's constraint on the toy's light, relative to the toy's energy.
 const RECEIVER_LIGHT_WEIGHT: f32 = 0.01;
 // Bounce of a toy of middle grey: the mean over channels in sessions of the bundled toy.
 const PRIOR_BOUNCE: f32 = 0.27;
@@ -51,7 +54,7 @@ var<workgroup> sums: array<f32, N_ROW>;
 var<private> matrix: array<f32, 36>;
 var<private> unknowns: array<f32, N_COLUMNS>;
 
-// Irradiance of a light on a receiver's reference point, up to a factor that is the light's own.
+// Irradiance of a light on a receiver's reference point, up to a factor of the light.
 fn irradiance(receiver: u32, i: u32) -> f32 {
   let to_light = reference_to_light(receiver, i);
   if to_light.y <= 0.0 { return 0.0; }
@@ -60,7 +63,7 @@ fn irradiance(receiver: u32, i: u32) -> f32 {
   return to_light.y / (distance_m * distance_m * distance_m);
 }
 
-// A light's irradiance on the fitted receiver, over that on the first.
+// A light's irradiance on the fitted receiver, relative to that on the first.
 fn of_first(i: u32) -> f32 {
   let first = irradiance(0u, i);
   return select(0.0, irradiance(step.receiver, i) / first, first > 0.0);
@@ -74,8 +77,8 @@ fn first_share(light: u32) -> f32 {
   return PRIOR_DIRECT_FRACTION * irradiance(0u, light) / total;
 }
 
-// Prior of a receiver's unknowns. For the first, common values; for the others, the same lights, amid as much ambient
-// light.
+// Prior of a receiver's unknowns: common values for the first one; for the others the same lights, with the same share
+// of ambient light.
 fn receiver_prior(column: u32, channel: u32) -> f32 {
   if column == 0u { return 1.0; }
   if column == 1u && step.receiver > 0u { return solution.receivers[0].bounce[channel]; }
@@ -160,7 +163,7 @@ fn solve_receiver(channel: u32) {
   if unknowns[0] > 0.0 { store_receiver(channel, sums[channel * N_SUMS + CLIPPED_SUM] / energy); }
 }
 
-// No valid pixel shows the receiver: it takes the prior.
+// If no valid pixel shows the receiver, it gets the prior.
 fn assume_receiver(channel: u32) {
   for (var i = 0u; i < step.n_columns; i++) { unknowns[i] = receiver_prior(i, channel); }
   store_receiver(channel, 0.0);
@@ -189,7 +192,7 @@ fn add_relation(weight: f32, coefficients: array<f32, N_COLUMNS>) {
   }
 }
 
-// Adds what the receivers tell of the light on the toy; `channels` are those whose mean is taken.
+// Adds the receivers' constraint on the light on the toy; the mean of `channels` is used.
 fn add_receiver_light(weight: f32, channels: vec3f) {
   let n_lights = step.n_columns - 2u;
   for (var i = 0u; i < n_lights; i++) {
@@ -198,7 +201,7 @@ fn add_receiver_light(weight: f32, channels: vec3f) {
   add_relation(weight, reflection_relation(n_lights));
 }
 
-// Takes unknown `column` out of the equations: it is 0.
+// Removes the unknown `column` from the equations: it is 0.
 fn take_out(column: u32) {
   for (var i = 0u; i < N_COLUMNS; i++) {
     matrix[i * N_COLUMNS + column] = 0.0;
@@ -208,7 +211,7 @@ fn take_out(column: u32) {
   unknowns[column] = 0.0;
 }
 
-// Solves the equations that are loaded, with no unknown below 0.
+// Solves the loaded equations without negative unknowns.
 fn solve_non_negative() {
   let whole = matrix;
   let right = unknowns;
@@ -230,7 +233,7 @@ fn solve_non_negative() {
   }
 }
 
-// A channel in which the toy is dark follows the others: light is nearly white, base colours are not.
+// A channel in which the toy is dark follows the others: light is nearly white, and base colours are not.
 fn solve_toy(channel: u32) {
   load_equations(0u, 3u);
   let energy = matrix[0] + matrix[N_COLUMNS + 1u];
@@ -247,7 +250,7 @@ fn solve_toy(channel: u32) {
   store_toy(channel);
 }
 
-// Without any valid pixel the starting values stay.
+// Without a valid pixel the start values stay.
 fn solve_channel(channel: u32, energy: f32, is_shadow_told: bool) {
   if step.subject == SUBJECT_INTENSITIES { solution.gain[channel] *= step.exposure_ratio; }
   if step.subject == SUBJECT_TOY {
@@ -289,9 +292,9 @@ fn cs_solve(@builtin(local_invocation_index) lane: u32) {
   if lane < N_ROW && is_accumulated && step.is_last == 1u && fresh_energy > 0.0 {
     accumulated[slot] = sums[lane] * min(1.0, MAX_FRAMES * fresh_energy / energy);
   }
-  // One invocation for all channels: a store to a component of a vector in memory may touch the others.
+  // One invocation processes all channels: a store to one component of a vector in memory may touch the others.
   if lane > 0u { return; }
-  // Judged in the last step: weights follow the shadow until then.
+  // This is decided in the last step: until then the weights follow the shadow.
   let is_shadow_told = !has_no_light() || step.is_last == 0u || is_ambient_shadow_told();
   for (var channel = 0u; channel < 3u; channel++) { solve_channel(channel, energy, is_shadow_told); }
 }

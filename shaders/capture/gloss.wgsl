@@ -1,9 +1,11 @@
-// What a glossy toy reflects at each pixel of its physical pose, and how far its paint shows under that.
+// Reflected radiance of a glossy toy at each pixel of its physical pose, and the visibility of its
+// paint below.
 //
-// A highlight that outshines the paint, or is clipped, does not tell the paint below it: `toy` fills that by what is around.
+// A highlight that is brighter than the paint, or clipped, hides the paint: `toy` fills it from its
+// neighbours.
 //
-// Reads: frame, gbuffer, fit. Writes: in the physical box, reflected radiance over the gain; alpha 1 where the pixel tells
-// the paint, 0 where it does not.
+// Reads: frame, gbuffer, fit. Writes: in the physical box, reflected radiance relative to the gain;
+// alpha is 1 if the pixel shows the paint, and 0 if it does not.
 // CPU reference: tests/reference/src/gloss.rs.
 
 //#import common/gloss
@@ -21,10 +23,11 @@
 @group(1) @binding(3) var gbuffer_received: texture_2d<f32>;
 @group(1) @binding(4) var gbuffer_base: texture_2d<f32>;
 
-// Part of a pixel's light that is reflected of lamps, up to which its paint is told in full, and from which on not at all.
+// Share of lamps' reflection in a pixel's light up to which its paint counts in full, and from
+// which it does not count.
 const PAINT_TOLD: f32 = 0.5;
 const PAINT_OUTSHONE: f32 = 0.8;
-// And from which on a clipped pixel is taken for a highlight.
+// The share from which a clipped pixel counts as a highlight.
 const CLIPPED_HIGHLIGHT: f32 = 0.1;
 
 @fragment

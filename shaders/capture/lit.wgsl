@@ -1,7 +1,8 @@
 // Colour of the lit receivers, pooled on coarse grids: the source of an estimated plate.
 //
-// B = (frame - gain reflected) / (gain M) where the receiver is visible and little of its light is missing.
-// Reads: frame, validity, visibility, ambient. Writes: cells of (B, 1) times their certainty, finest levels.
+// B = (frame - gain reflected) / (gain M) if the receiver is visible and most of its light remains.
+// Reads: frame, validity, visibility, ambient. Writes: cells of (B, 1) times their certainty,
+// finest levels.
 // CPU reference: tests/reference/src/lit.rs.
 
 //#import common/fit
@@ -17,7 +18,7 @@
 @group(1) @binding(6) var ambient: texture_2d<f32>;
 @group(1) @binding(7) var ambient_sampler: sampler;
 
-// Exponent of the light that is left: shadow counts little, since its depth may not be fitted yet.
+// Exponent of the remaining light: shadow counts little, since its depth may not be fitted yet.
 const LIT_POWER: f32 = 8.0;
 
 fn lit_color(point: ReceiverPoint) -> vec4f {

@@ -19,13 +19,13 @@
 @group(1) @binding(7) var ambient: texture_2d<f32>;
 @group(1) @binding(8) var ambient_sampler: sampler;
 
-// Residual, in plates, at which a point counts half: an outlier, such as a hand.
+// Residual, in plates, at which a point's weight is one half: an outlier, such as a hand.
 const CAUCHY_SCALE: f32 = 0.03;
 
 struct Sums {
   product: vec3f,
   energy: vec3f,
-  // Points by their evidence, outliers such as a hand included.
+  // Number of points, weighted by their evidence, including outliers such as a hand.
   n_points: f32,
 }
 
@@ -38,11 +38,11 @@ fn add_point(sums: Sums, point: ReceiverPoint) -> Sums {
   let f = frame_at(vec2i(texel));
   let b = textureLoad(plate, texel, 0);
   let brightness = dot(b.rgb, b.rgb);
-  // An estimated plate was made from this very frame.
+  // An estimated plate was made from this frame itself.
   if brightness == 0.0 || b.a < 1.0 { return sums; }
   let a = textureSampleLevel(ambient, ambient_sampler, (vec2f(texel) + 0.5) / globals.region_size_px, 0.0).r;
   let v = textureLoad(visibility, texel, 0);
-  // At the pixel's centre, where the visibilities were sampled.
+  // The visibilities were sampled at the pixel's centre.
   let here = receiver_point(vec2f(texel) + 0.5);
   let e = f / fit.gain.rgb - reflected(here, v) - b.rgb * receiver_model(here, a, v);
   let relative = dot(e, e) / (brightness * CAUCHY_SCALE * CAUCHY_SCALE);

@@ -1,12 +1,14 @@
-// What a soft picture mixes into the toy's colours at its outline: the receiver beside it, in the real shadow.
+// Colour that a soft picture mixes into the toy's at its outline: that of the receiver beside it,
+// in the real shadow.
 //
 //   frame = part of the toy x its own colour + (1 - part) x gain x this
-// The part is counted over positions that are spread as the picture spreads a point. Of a sharp picture only pixels within the
-// outline are used, which nothing is mixed into.
+// The part is counted over positions with the picture's spread of a point. In a sharp picture only
+// pixels inside the outline are used, which are not mixed.
 //
-// Reads: plate, visibility, ambient, residual cells, depth of the physical toy. Writes: in the physical box rgb what is
-// mixed in, over the gain; alpha the part of the pixel that shows the toy. CPU reference: tests/reference/src/rim.rs.
-// Source: Chuang et al. 2001 (matting: colours are unmixed where the part is known).
+// Reads: plate, visibility, ambient, residual cells, depth of the physical toy. Writes: in the
+// physical box, the mixed-in colour relative to the gain; alpha is the part of the pixel that shows
+// the toy. CPU reference: tests/reference/src/rim.rs.
+// Source: Chuang et al. 2001 (matting: colours are unmixed if the part is known).
 
 //#import common/model
 //#import common/cells
@@ -25,13 +27,13 @@ const N_POSITIONS: u32 = 64u;
 // Column and row step of the lattice from one position to the next.
 const POSITION_STEPS = vec2u(47u, 53u);
 
-// Part of what a pixel of the physical box shows that is the toy's.
+// Part of a pixel of the physical box that shows the toy.
 fn part_of_toy(at: vec2f) -> f32 {
   let size = vec2i(textureDimensions(gbuffer_depth));
   var n_toy = 0u;
   for (var k = 0u; k < N_POSITIONS; k++) {
     let lattice = (vec2f(k * POSITION_STEPS % N_POSITIONS) + 0.5) / f32(N_POSITIONS);
-    // As far as the mean over the texels around would spread it.
+    // The distance over which the mean over the neighbouring texels would spread it.
     let beside_px = sqrt(2.0 * globals.soft_side) * (2.0 * vec2f(vec2u(k, k >> 1u) & vec2u(1u)) - 1.0);
     let texel = vec2i(floor(at + spread_position_px(lattice) + beside_px));
     let is_inside = all(texel >= vec2i(0)) && all(texel < size);
@@ -41,7 +43,7 @@ fn part_of_toy(at: vec2f) -> f32 {
   return f32(n_toy) / f32(N_POSITIONS);
 }
 
-// What the receiver shows at a texel of the region over the gain: none where no plate tells it.
+// The receiver at a texel of the region, relative to the gain; 0 without a plate.
 fn shown_receiver(texel: vec2i) -> vec4f {
   let at = vec2f(texel) + 0.5;
   let b = textureLoad(plate, texel, 0);
@@ -59,6 +61,6 @@ fn fs_mix(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let part = part_of_toy(position.xy);
   if part == 0.0 || part == 1.0 { return vec4f(0.0, 0.0, 0.0, part); }
   let receiver = shown_receiver(region_texel(vec2i(position.xy)));
-  // What is not known is not taken out.
+  // An unknown colour is not unmixed.
   return vec4f(receiver.rgb, select(1.0, part, receiver.a == 1.0));
 }

@@ -1,16 +1,17 @@
-// The plate, made as soft as the picture: spread by a Gaussian, by taps on a grid along the axes of its spread.
+// The plate, made as soft as the picture: a Gaussian spread, with taps on a grid along its axes.
 //
-// Light is spread, not codes. Places that were not photographed give nothing. Taps are bilinear, so that those which are not much
-// more than a pixel apart leave no gaps.
-// Reads: the plate as it was taken. Writes: linear colour, alpha as it was. CPU reference: tests/reference/src/soften.rs.
+// Linear light is spread, not codes. Places that were not photographed do not contribute. Taps are
+// bilinear, so that distances of a little more than a pixel leave no gaps.
+// Reads: the plate as photographed. Writes: linear colour, with unchanged alpha.
+// CPU reference: tests/reference/src/soften.rs.
 
 //#import common/fullscreen
 
 struct Taps {
-  // From one tap to the next along each axis, in pixels.
+  // Distance between taps along each axis, in pixels.
   first_px: vec2f,
   second_px: vec2f,
-  // The same in standard deviations.
+  // The distance in standard deviations.
   spacing: f32,
   _pad_0: f32,
   _pad_1: vec2f,
@@ -20,7 +21,7 @@ struct Taps {
 @group(1) @binding(1) var sharp: texture_2d<f32>;
 @group(1) @binding(2) var linear_sampler: sampler;
 
-// Taps to either side of the middle, along each axis.
+// Number of taps on each side of the centre, along each axis.
 override N_BESIDE: i32 = 3;
 
 @fragment

@@ -1,18 +1,21 @@
-// Things that stand in the picture beside the toy, in the validity mask and in the plate.
+// Things beside the toy, in the validity mask and in the plate.
 //
-// A thing tells nothing of the light on a receiver, nor of the toy that it hides. What it shows stays.
-// Where the plate is wrong it is as if none had been photographed.
+// A thing gives no information on the light of a receiver, nor on the toy that it hides. It stays
+// as photographed.
+// A wrong part of the plate is treated as not photographed.
 //
-// Reads: validity, marks of things, which are of the picture that they were found in and are carried over by the first receiver's plane.
-// Writes: the same mask, but r is 0 on a thing, and b is 1 where its pixel is clear of the toy; a is THING or BEFORE_TOY, where g is 0
-// as well. Of the plate alpha alone: 0 where it is wrong.
+// Reads: validity, marks of things, which belong to the picture in which they were found and are
+// transferred by the first receiver's plane.
+// Writes: the same mask, but r is 0 on a thing, and b is 1 if its pixel is clear of the toy; a is
+// THING or BEFORE_TOY, for which g is 0 as well. In the plate alpha alone: 0 in a wrong part.
 // CPU reference: tests/reference/src/things.rs.
 
 //#import common/fullscreen
 //#import common/marks
 
 struct ThingsView {
-  // Homography: (u, v, w) in the marks' pixels of a pixel of the region, w > 0 before their camera.
+  // Homography to the marks' pixels: (u, v, w) for a pixel of the region, with w > 0 in front of
+  // their camera.
   marks_px_from_region_px: mat3x3f,
 }
 

@@ -1,10 +1,11 @@
 // Shown and expected colours of the toy's visible paint, summed in cells.
 //
-// Each pixel that shows one surface of the toy, and is not clipped, adds its colour, and the one expected from base
-// colour, gain and fitted light, to the cell that contains its point. Sums are of integers: their order does not
-// matter.
+// Each pixel that shows one surface of the toy, and is not clipped, adds its colour, and the one
+// expected from base colour, gain and fitted light, to the cell that contains its point. Sums are
+// of integers: their order does not matter.
 //
-// Reads: frame, validity, gbuffer, fit, what a glossy toy reflects. Writes: sums of the finest cells. CPU reference: tests/reference/src/tint.rs.
+// Reads: frame, validity, gbuffer, fit, reflection of a glossy toy. Writes: sums of the finest
+// cells. CPU reference: tests/reference/src/tint.rs.
 
 //#import common/fit
 //#import common/frame
@@ -16,7 +17,7 @@
 //#import common/marks
 //#import common/toy_point
 
-// Sampling stride in pixels along each side, so large that no sum overflows.
+// Sampling stride in pixels along each side, chosen so that no sum overflows.
 @group(1) @binding(0) var<uniform> stride_px: u32;
 @group(1) @binding(1) var<uniform> tint_grid: TintGrid;
 @group(1) @binding(2) var<storage, read_write> sums: array<atomic<u32>>;
@@ -26,15 +27,16 @@
 @group(1) @binding(5) var gbuffer_normal: texture_2d<f32>;
 @group(1) @binding(6) var gbuffer_received: texture_2d<f32>;
 @group(1) @binding(7) var gbuffer_base: texture_2d<f32>;
-// Of a glossy toy.
+// The reflection of a glossy toy.
 @group(1) @binding(8) var reflected: texture_2d<f32>;
 
 override IS_GLOSSY: bool = false;
 
-// Expected values above this are clipped in the photograph, whatever the paint; the cap also bounds the sums.
+// Larger expected values are clipped in the photograph for every paint; the limit also bounds the
+// sums.
 const MOST_EXPECTED: f32 = 3.0;
 
-// What the paint shows of a pixel's colour: without what it reflects.
+// The paint's part of a pixel's colour, without the reflection.
 fn paint_at(in_box: vec2i, shown: vec3f) -> vec3f {
   if !IS_GLOSSY { return shown; }
   return max(shown - fit.gain.rgb * textureLoad(reflected, in_box, 0).rgb, vec3f(0.0));
@@ -42,7 +44,7 @@ fn paint_at(in_box: vec2i, shown: vec3f) -> vec3f {
 
 @compute @workgroup_size(8, 8)
 fn cs_add(@builtin(global_invocation_id) id: vec3u) {
-  // The same texels of the region wherever the box begins.
+  // The samples are the same texels of the region, independent of the box.
   let start = (vec2u(globals.physical_box_origin_px) + stride_px - 1u) / stride_px;
   let texel = (start + id.xy) * stride_px;
   let in_box = physical_texel(vec2i(texel));

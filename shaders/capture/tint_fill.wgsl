@@ -1,12 +1,14 @@
-// The tint of the toy's paint in every cell, from cells around where its surface is hidden: pull-push in a volume.
+// The tint of the toy's paint in every cell, from neighbouring cells if its surface is hidden:
+// pull-push in a volume.
 //
-// tint = (sum shown + n d) / (sum expected + n d) of n pixels, d the darkest usable value: paint that is nearly
-// black, both shown and expected, has tint 1. Sums of earlier views count, too.
-// A material that was never seen keeps its model's colour. One workgroup fills a material's grid.
+// tint = (sum shown + n d) / (sum expected + n d) of n pixels, d the darkest usable value: paint
+// that is nearly black, both shown and expected, has tint 1. Sums of earlier views count, too.
+// A material that was never seen keeps its model's colour. One workgroup processes a material's
+// grid.
 //
-// Reads: sums of the finest cells, accumulated sums. Writes: tints, level after level, finest first; afterwards the
-// finest holds (tint, 1). CPU reference: tests/reference/src/tint.rs. Source: Gortler et al. 1996, section 3.4, here in a
-// volume.
+// Reads: sums of the finest cells, accumulated sums. Writes: tints, level after level, finest
+// first; afterwards the finest contains (tint, 1). CPU reference: tests/reference/src/tint.rs.
+// Source: Gortler et al. 1996, section 3.4, here in a volume.
 
 //#import common/pixel
 //#import common/accumulated
@@ -26,7 +28,7 @@ fn summed(first: u32) -> vec3f {
   return vec3f(f32(sums[first]), f32(sums[first + 1u]), f32(sums[first + 2u]));
 }
 
-// Adds a cell's tint in this frame to its accumulated sum; returns the mean.
+// Adds a cell's tint in this frame to its accumulated sum. Returns the mean.
 fn accumulate(slot: u32) -> vec4f {
   let first = N_TINT_SUMS * slot;
   let n_pixels = f32(sums[first + 6u]);
@@ -72,7 +74,7 @@ fn cs_fill(@builtin(local_invocation_index) lane: u32, @builtin(workgroup_id) gr
     }
     storageBarrier();
   }
-  // Where certainty is missing for a whole material its tint is 1: the model's colour.
+  // If certainty is missing for a whole material, its tint is 1: the model's colour.
   if lane == 0u {
     let top = level_first(grid.x, N_LEVELS - 1u);
     tints[top] += (1.0 - tints[top].a) * vec4f(1.0);

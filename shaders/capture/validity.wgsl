@@ -1,20 +1,24 @@
-// Validity mask of the frame: r is 1 where it is clear of the toy, g where it shows one surface of the toy, b
-// where it is well clear of the toy: colours bleed in a compressed picture, and no pose is quite right; a is 1.
+// Validity mask of the frame: r is 1 if the pixel is clear of the toy, g if it shows one surface of
+// the toy, b if it is well clear of the toy: colours bleed in a compressed picture, and no pose is
+// exact; a is 1.
 //
-// Pixels that mix two surfaces (an outline, camera blur, a pose half a pixel off) are valid as neither.
-// Reads: depth of the physical toy. Writes: 0 or 1 each. CPU reference: tests/reference/src/validity.rs.
+// Pixels that mix two surfaces (an outline, camera blur, a pose half a pixel off) are valid as
+// neither.
+// Reads: depth of the physical toy. Writes: 0 or 1 each.
+// CPU reference: tests/reference/src/validity.rs.
 
 //#import common/depth
 //#import common/fullscreen
 
 @group(1) @binding(0) var gbuffer_depth: texture_depth_2d;
-// Added to the distance from the toy's outline: how far a soft picture spreads the toy.
+// Added to the distance from the toy's outline: the distance over which a soft picture spreads the
+// toy.
 @group(1) @binding(1) var<uniform> soft_px: i32;
 
 // Distance kept from the toy's outline on the receiver.
 const EDGE_PX: i32 = 2;
-// The same for estimating a pixel's own plate. Rows and columns are sampled in steps, every other row between the columns
-// of the next, so that no part two pixels wide is missed.
+// The same for estimating a pixel's own plate. Rows and columns are sampled in steps, and every
+// other row between the columns of the next, so that no part of two pixels is missed.
 const BLEED_PX: i32 = 8;
 const BLEED_STEP_PX: i32 = 2;
 
@@ -43,7 +47,8 @@ fn is_well_clear_of_toy(texel: vec2i) -> bool {
   return true;
 }
 
-// The depths on both sides of `here` lie on one line with it, or nearly: a fold passes, a step does not.
+// Whether the depths on both sides of `here` are nearly collinear with it: a fold passes, a step
+// does not.
 fn is_straight(texel: vec2i, side: vec2i, here: f32) -> bool {
   let before = depth_at(texel - side);
   let after = depth_at(texel + side);

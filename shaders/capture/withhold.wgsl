@@ -1,7 +1,8 @@
-// Validity mask without the real shadow, to measure its reconstruction on a photograph without ground truth.
+// Validity mask without the real shadow, to measure its reconstruction on a photograph without
+// ground truth.
 //
-// Reads: validity, visibility, ambient. Writes: the same mask, but 0 where the receiver is in shadow, as if the toy
-// hid it; there a is 0, and a half beside the toy.
+// Reads: validity, visibility, ambient. Writes: the same mask, but 0 if the receiver is in shadow,
+// as if the toy hid it; a is then 0, and a half beside the toy.
 // CPU reference: tests/reference/src/withhold.rs.
 
 //#import common/model
@@ -13,7 +14,7 @@
 @group(1) @binding(2) var ambient: texture_2d<f32>;
 @group(1) @binding(3) var ambient_sampler: sampler;
 
-// Light left, in plates, below which a pixel is in the real shadow.
+// Remaining light, in plates, below which a pixel is in the real shadow.
 const LIT: f32 = 0.95;
 
 @fragment

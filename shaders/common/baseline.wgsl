@@ -5,9 +5,10 @@
 struct Baseline {
   // Radius of each light's disc: metres for a sphere, slope for a directional light.
   light_radii: vec4f,
-  // Bounds the toy's height over each receiver, in metres.
+  // Upper bound of the toy's height over each receiver, in metres.
   tallest_m: vec4f,
-  // Bit k is 1 where receiver k is textured: its shadow terms are ratios to the plate. 0: uniform, they are colours.
+  // Bit k is 1 if receiver k is textured: its shadow terms are ratios to the plate. For 0 they are
+  // colours.
   textured_receivers: u32,
   // 0: search for real shadow. 1: a constant ratio.
   is_constant: u32,
@@ -19,7 +20,7 @@ struct Baseline {
   n_ring_directions: u32,
   n_rings: u32,
   box_radius_px: i32,
-  // Width of the linear interpolation around the cropped masks.
+  // Width of the linear blend around the cropped masks.
   seam_px: i32,
   n_blocker_taps: u32,
   n_filter_taps: u32,
@@ -30,7 +31,7 @@ struct Baseline {
 
 // A set of hidden lights: bit i stands for light i. 0 is fully lit.
 
-// Label of a shadow: the receiver and the set of hidden lights in one number; 0 where there is no shadow.
+// Label of a shadow: the receiver and the set of hidden lights in one number; 0 without a shadow.
 const N_SETS: u32 = 16u;
 
 fn label_of(receiver: u32, lights: u32) -> u32 {
@@ -43,8 +44,8 @@ fn receiver_at(texel: vec2i) -> u32 {
   return receiver_of(receiver_point(vec2f(texel) + 0.5));
 }
 
-// Distance between the sets of lights `has` and `wanted`: first the number of lights that differ; among equals a set
-// that hides no light too much is closer.
+// Distance between the sets of lights `has` and `wanted`: first the number of lights that differ;
+// among equals a set without superfluous hidden lights is closer.
 fn unlikeness(wanted: u32, has: u32) -> u32 {
   return 2u * countOneBits(wanted ^ has) + select(0u, 1u, (has & ~wanted) != 0u);
 }

@@ -5,7 +5,7 @@
 // Cells of all levels of a grid: 16, 8, 4, 2 and 1 along each side, finest first.
 const TINT_PYRAMID: u32 = 4681u;
 
-// Of the level of a grid that begins at `first`; `at` is in its cells.
+// Tint in the level of a grid that begins at `first`; `at` is in its cells.
 fn between_tints(first: u32, side: u32, at: vec3f) -> vec4f {
   let low = floor(at - 0.5);
   let t = at - 0.5 - low;

@@ -1,6 +1,6 @@
-// Borders at which a picture is not made as elsewhere: of the region, and of a toy that has moved.
+// Borders of special pixels: at the region's edge, and beside a toy that has moved.
 //
-// Of the shader that imports it is `moved_mask`.
+// The importing shader declares `moved_mask`.
 
 //#import common/globals
 
@@ -14,8 +14,8 @@ fn inside_border(region_px: vec2f) -> f32 {
   return saturate(min(min(fade.x, fade.y), min(fade.z, fade.w)));
 }
 
-// Whether the toy's surface beside this texel of the toy box is no longer in its place. None is near the border of the box,
-// unless that is the region's.
+// Whether the toy's surface beside this texel of the toy box has moved. There is none near the
+// border of the box, unless that is the region's.
 fn has_moved_beside(texel: vec2i) -> bool {
   var most = 0.0;
   for (var k = 0u; k < 16u; k++) {

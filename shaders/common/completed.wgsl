@@ -1,8 +1,9 @@
-// A plate, completed by a smooth estimate where none was photographed: what the receiver looks like in the light, of coarse cells.
+// A plate, completed by a smooth estimate if none was photographed: the lit appearance of the
+// receiver, from coarse cells.
 
 //#import common/cells
 
-// Alpha of an estimated pixel: marks it as such, and is its weight in the fit.
+// Alpha of an estimated pixel: it marks the pixel as such, and is its weight in the fit.
 const ESTIMATED: f32 = 0.25;
 
 fn completed(photographed: vec4f, point: ReceiverPoint) -> vec4f {

@@ -1,8 +1,8 @@
-// Reversed depth: near / metres, 0 where there is nothing. On a plane it is linear in pixels.
+// Reversed depth: near / metres, 0 for nothing. On a plane it is linear in pixels.
 
 // Relative step of depth that makes an edge between two surfaces.
 const DEPTH_STEP: f32 = 0.005;
-// As above for the second difference, which a slope does not show.
+// The same for the second difference, which a slope does not show.
 const DEPTH_BEND: f32 = 0.002;
 
 fn is_same_surface(a: f32, b: f32) -> bool {

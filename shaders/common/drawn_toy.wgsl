@@ -1,6 +1,6 @@
-// The shown toy as it was drawn, once or four times: a pixel's colour and its coverage.
+// The shown toy as drawn, once or four times: a pixel's colour and its coverage.
 //
-// Of the shader that imports it are `toy_0` to `toy_3` and `covered`.
+// The importing shader declares `toy_0` to `toy_3` and `covered`.
 
 //#import common/covered
 //#import common/soft_toy
@@ -14,11 +14,12 @@ fn drawn_toy(texel: vec2i, n_draws: u32) -> vec4f {
 // Part of a pixel that the toy covers.
 fn coverage(texel: vec2i) -> f32 {
   let n_covered = soft_texel(covered, texel).r / COVERED_POSITION;
-  // Whole numbers, but for means of them.
+  // These are whole numbers, except for their means.
   return select(round(n_covered), min(n_covered, f32(N_POSITIONS)), globals.soft_side > 0.0) / f32(N_POSITIONS);
 }
 
-// The toy's colour in a pixel: that of its draws, or, where they miss the little that is in it, that beside it.
+// The toy's colour in a pixel: that of its draws or, if they miss its small part, that of its
+// neighbours.
 fn toy_color(texel: vec2i, n_draws: u32) -> vec4f {
   var own = drawn_toy(texel, n_draws);
   if own.a > 0.0 && is_soft() { own = softened_toy(texel, own, n_draws); }
@@ -34,7 +35,7 @@ fn toy_color(texel: vec2i, n_draws: u32) -> vec4f {
   return vec4f(sum.rgb / sum.a, 1.0);
 }
 
-// The toy over what is behind it: premultiplied colour, and its coverage.
+// The toy over its background: premultiplied colour, and its coverage.
 fn toy_layer(texel: vec2i, n_draws: u32) -> vec4f {
   if !is_in_toy_box(texel) { return vec4f(0.0); }
   let part = coverage(texel);

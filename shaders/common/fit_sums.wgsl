@@ -1,10 +1,11 @@
-// Sums of weighted normal equations: over the pixels of an invocation, then over its workgroup, into rows of the shader's.
+// Sums of weighted normal equations: over the pixels of an invocation, then over its workgroup,
+// into `rows` of the shader.
 
 //#import common/fit
 
 const WORKGROUP: u32 = 256u;
-// Upper triangle of the symmetric matrix row by row, then the right-hand side, then the clipped pixels' part of the
-// matrix' first element.
+// Upper triangle of the symmetric matrix row by row, followed by the right-hand side and the
+// clipped pixels' part of the matrix' first element.
 const N_SUMS: u32 = 28u;
 const CLIPPED_SUM: u32 = 27u;
 // Sums are reduced in four parts to stay within 16 KiB of workgroup memory.
@@ -15,20 +16,20 @@ const N_ALL_STRIDED: u32 = 112u; // N_PART * N_STRIDED
 
 var<workgroup> partial: array<f32, N_PARTIAL>;
 var<workgroup> strided: array<f32, N_ALL_STRIDED>;
-// Of the invocation's pixels.
+// Sums of the invocation's pixels.
 var<private> sums: array<vec3f, N_SUMS>;
 
-// Of each channel.
+// Values for each channel.
 struct Equation {
   columns: array<vec3f, N_COLUMNS>,
   value: vec3f,
   weight: vec3f,
-  // 1 where frame and plate may both be clipped.
+  // 1 if frame and plate may both be clipped.
   clipped: vec3f,
 }
 
-// Adds a pixel's equation to the invocation's sums. Without loops, since an index that is not a constant makes processors keep
-// all sums in memory.
+// Adds a pixel's equation to the invocation's sums. It has no loops, since processors keep
+// dynamically indexed sums in memory.
 fn add(eq: Equation) {
   if all(eq.weight == vec3f(0.0)) { return; }
   let w0 = eq.weight * eq.columns[0];
@@ -67,7 +68,8 @@ fn add(eq: Equation) {
   sums[CLIPPED_SUM] += eq.clipped * w0 * eq.columns[0];
 }
 
-// Sums of a workgroup into its rows, one a channel: strided ones, then all of those. Barriers cost more than additions.
+// Adds up a workgroup's sums into its rows, one per channel: first with a stride, then the rest,
+// since barriers cost more than additions.
 fn reduce(group: u32, lane: u32) {
   let first = lane / N_STRIDED * WORKGROUP + lane % N_STRIDED;
   for (var channel = 0u; channel < 3u; channel++) {

@@ -15,10 +15,10 @@ struct ReceiverPlane {
   clip_from_plane: mat3x3f,
   // The scene's lights in this plane's space, homogeneous: (position, 1) or (unit direction to the light, 0).
   lights: array<vec4f, MAX_LIGHTS>,
-  // Where the lights' shares are stated: nearest to the toy.
+  // Point at which the lights' shares are stated: the nearest one to the toy.
   reference_in_plane: vec2f,
   _pad: vec2f,
-  // Where the receiver ends: least x and z, then most.
+  // Bounds of the receiver: smallest x and z, then largest.
   rect: vec4f,
 }
 
@@ -35,28 +35,31 @@ struct Globals {
   region_size_px: vec2f,
   // Top left corner of the region in the camera image.
   region_origin_px: vec2f,
-  // The part of the region that targets of the toy hold: its corner, counted from the region's, and its size.
+  // The part of the region that the toy's targets cover: its corner, counted from the region's, and
+  // its size.
   toy_box_origin_px: vec2f,
   toy_box_size_px: vec2f,
-  // The same of the part that maps of the physical toy hold.
+  // The same for the part that the physical toy's maps cover.
   physical_box_origin_px: vec2f,
   physical_box_size_px: vec2f,
-  // How a softer picture than pixels make spreads a point, and the pixel itself: the lower triangle of the root of its
-  // covariance, (xx, yx, yy), in pixels; and how far. 0 of a sharp picture.
+  // Spread of a point in a softer picture, including the pixel itself: the lower triangle of the
+  // root of its covariance, (xx, yx, yy), in pixels; and its reach. 0 for a sharp picture.
   spread: vec4f,
   n_receivers: u32,
-  // Bit k is 1 where receiver k is seen from behind.
+  // Bit k is 1 if receiver k is seen from behind.
   seen_from_behind: u32,
-  // Depth in metres nearer than which a shadow is cut off: a small part of the distance to the toy.
+  // Depth in metres below which a shadow is clipped: a small part of the distance to the toy.
   near_m: f32,
-  // Weight of the neighbours on either side, along each axis, in means of what is drawn by spread positions: what they spread is
-  // left out of `spread`.
+  // Weight of the neighbours on either side, along each axis, in means over spread positions;
+  // `spread` does not include their spread.
   soft_side: f32,
-  // 1 in the channel of the visibilities that tells how much of the first receiver's reflection the toy leaves; 0 where that is matt.
+  // 1 in the channel of the visibilities with the unhidden part of the first receiver's reflection;
+  // 0 if the receiver is matt.
   reflection_channel: vec4f,
-  // Light of the surroundings that it reflects, at the plate's exposure; the square root of its lobe's width.
+  // Reflected light of the surroundings, at the plate's exposure; the square root of its lobe's
+  // width.
   reflected_surroundings: vec4f,
-  // The toy's light above that; below 0 where the toy is darker.
+  // The toy's light less that of the surroundings; negative if the toy is darker.
   reflected_toy: vec4f,
 }
 
@@ -66,7 +69,7 @@ fn has_no_light() -> bool {
   return globals.n_lights == 0u;
 }
 
-// The texel of the toy box at a texel of the region; `is_in_toy_box` tells whether there is one.
+// The texel of the toy box at a texel of the region, which exists if `is_in_toy_box`.
 fn box_texel(in_region: vec2i) -> vec2i {
   return in_region - vec2i(globals.toy_box_origin_px);
 }
@@ -75,12 +78,12 @@ fn is_in_toy_box(in_box: vec2i) -> bool {
   return all(in_box >= vec2i(0)) && all(in_box < vec2i(globals.toy_box_size_px));
 }
 
-// The texel of the box nearest to one that may lie beyond it.
+// The texel of the box nearest to one that may lie outside.
 fn clamped_to_box(in_box: vec2i) -> vec2i {
   return clamp(in_box, vec2i(0), vec2i(globals.toy_box_size_px) - 1);
 }
 
-// The same of the physical box.
+// The same for the physical box.
 fn physical_texel(in_region: vec2i) -> vec2i {
   return in_region - vec2i(globals.physical_box_origin_px);
 }
@@ -98,9 +101,9 @@ fn region_texel(in_box: vec2i) -> vec2i {
   return in_box + vec2i(globals.physical_box_origin_px);
 }
 
-// A point of a receiver: (x, z) in its plane, and its index, MAX_RECEIVERS where the pixel sees none.
-// A vector, since drivers of older Adreno keep structs in fragment shaders at 16 bits. Source: KhronosGroup/WebGL issue
-// 3351.
+// A point of a receiver: (x, z) in its plane, and its index, which is MAX_RECEIVERS if the pixel
+// shows none. It is a vector, since drivers of older Adreno keep structs in fragment shaders at 16
+// bits. Source: KhronosGroup/WebGL issue 3351.
 alias ReceiverPoint = vec3f;
 
 const NO_RECEIVER = vec3f(0.0, 0.0, f32(MAX_RECEIVERS));
@@ -117,7 +120,7 @@ fn is_within(rect: vec4f, in_plane: vec2f) -> bool {
   return all(in_plane >= rect.xy) && all(in_plane <= rect.zw);
 }
 
-// The nearest receiver seen at a pixel, from whichever side.
+// The nearest receiver at a pixel, seen from either side.
 fn surface_point(region_px: vec2f) -> ReceiverPoint {
   var nearest = NO_RECEIVER;
   var inverse_depth = 0.0;
@@ -133,7 +136,7 @@ fn surface_point(region_px: vec2f) -> ReceiverPoint {
   return nearest;
 }
 
-// The same, but none where that is the back of it: of the front alone it is known what light falls there.
+// The same for the front alone: the light on the back is unknown.
 fn receiver_point(region_px: vec2f) -> ReceiverPoint {
   let nearest = surface_point(region_px);
   if ((globals.seen_from_behind >> receiver_of(nearest)) & 1u) != 0u { return NO_RECEIVER; }
@@ -144,8 +147,8 @@ fn is_hit(point: ReceiverPoint) -> bool {
   return receiver_of(point) < MAX_RECEIVERS;
 }
 
-// Irradiance of light `i` at a receiver point as a multiple of that at the receiver's reference point: cos / d^2, where
-// the cosine is height over distance. None where the light is behind the receiver.
+// Irradiance of light `i` at a receiver point relative to that at the receiver's reference point:
+// cos / d^2, with height over distance as the cosine; 0 if the light is behind the receiver.
 fn falloff(i: u32, point: ReceiverPoint) -> f32 {
   let light = globals.receivers[receiver_of(point)].lights[i];
   if light.y <= 0.0 { return 0.0; }
@@ -157,7 +160,7 @@ fn falloff(i: u32, point: ReceiverPoint) -> f32 {
   return ratio * ratio * ratio;
 }
 
-// Where a receiver's point is seen; outside the region where it is behind the camera.
+// Position of a receiver's point in the region; outside the region if it is behind the camera.
 fn region_px_of(point: ReceiverPoint) -> vec2f {
   let at = globals.receivers[receiver_of(point)].clip_from_plane * vec3f(point.xy, 1.0);
   if at.z <= 0.0 { return vec2f(-1.0); }

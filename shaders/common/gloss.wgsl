@@ -1,16 +1,18 @@
 // Specular reflection of the toy: one lobe of a rough dielectric.
 //
-// What reflects is the light that the fit knows from the diffuse reflection, so nothing but roughness and strength are new.
-// Below, `specular` is bound by the shader.
-// Source: Blinn 1977 (lobe), Walter et al. 2007 (its exponent by the slope of facets), Schlick 1994 (Fresnel), Hammon 2017
-// (shadowing), Karis 2014 (reflectance of a rough dielectric under an even sky).
+// It reflects the light that the fit estimates from the diffuse reflection, so only roughness and
+// strength are new. The importing shader declares `specular`.
+// Source: Blinn 1977 (lobe), Walter et al. 2007 (its exponent from the slope of facets), Schlick
+// 1994 (Fresnel), Hammon 2017 (shadowing), Karis 2014 (reflectance of a rough dielectric under an
+// even sky).
 
 //#import common/fit
 
 struct Specular {
   // Squared roughness of each light's lobe, widened by the light's size.
   lobes: vec4f,
-  // Of each material, over that of a dielectric of refractive index 1.5; later ones share the last.
+  // Strength of each material, relative to a dielectric of refractive index 1.5; later ones share
+  // the last.
   strengths: array<vec4f, 2>,
   roughness: f32,
   _pad_0: f32,
@@ -18,11 +20,11 @@ struct Specular {
 }
 
 const N_GLOSSES: u32 = 8u;
-// Reflectance of a dielectric of refractive index 1.5 where light falls straight on it.
+// Reflectance of a dielectric of refractive index 1.5 at normal incidence.
 const STRAIGHT_REFLECTANCE: f32 = 0.04;
-// How fast what is mirrored goes over from the light below to that above as the mirrored direction rises.
+// Slope of the transition from the light below to that above as the mirrored direction rises.
 const HORIZON_SLOPE: f32 = 2.5;
-// Cosines below this are taken as this: interpolated normals turn away from a camera that sees the surface.
+// Smaller cosines are clamped: interpolated normals turn away from a camera that sees the surface.
 const LEAST_COSINE: f32 = 0.05;
 
 fn strength_of(material: u32) -> f32 {
@@ -34,7 +36,7 @@ fn direction_to_camera(in_anchor: vec3f) -> vec3f {
   return normalize(globals.camera_in_anchor - in_anchor);
 }
 
-// Radiance reflected for that of the ambient light from above and from below, at strength 1.
+// Radiance reflected from the ambient light from above and from below, at strength 1.
 fn reflected_ambient(normal: vec3f, to_camera: vec3f) -> vec2f {
   let view_cosine = max(dot(normal, to_camera), LEAST_COSINE);
   let terms = sqrt(specular.roughness) * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
@@ -44,7 +46,7 @@ fn reflected_ambient(normal: vec3f, to_camera: vec3f) -> vec2f {
   return reflectance * vec2f(above, 1.0 - above);
 }
 
-// Radiance reflected of light `i`, at strength 1, over that of a white matt surface.
+// Radiance reflected from light `i`, at strength 1, relative to a white matt surface.
 fn reflected_light(i: u32, normal: vec3f, to_camera: vec3f, in_anchor: vec3f) -> f32 {
   let light = globals.lights[i];
   let between = light.xyz - in_anchor * light.w;
@@ -59,11 +61,12 @@ fn reflected_light(i: u32, normal: vec3f, to_camera: vec3f, in_anchor: vec3f) ->
   let fresnel = STRAIGHT_REFLECTANCE + (1.0 - STRAIGHT_REFLECTANCE) * pow(1.0 - saturate(dot(to_light, half_way)), 5.0);
   let cosines = max(vec2f(dot(normal, to_light), dot(normal, to_camera)), vec2f(LEAST_COSINE));
   let masked = mix(cosines, vec2f(1.0), sqrt(lobe));
-  // Half the distribution over pi, times pi, over what masks both directions: Hammon's form of Smith's shadowing.
+  // Half the distribution over pi, times pi, divided by the masking of both directions: Hammon's
+  // form of Smith's shadowing.
   return 0.5 * distribution * fresnel / (cosines.x * masked.y + cosines.y * masked.x);
 }
 
-// Radiance over the gain that a surface of the toy reflects of all lights, at strength 1.
+// Radiance relative to the gain that a surface of the toy reflects from all lights, at strength 1.
 fn reflected_of_lights(normal: vec3f, in_anchor: vec3f, received: vec4f) -> vec3f {
   let to_camera = direction_to_camera(in_anchor);
   var sum = vec3f(0.0);
@@ -75,7 +78,7 @@ fn reflected_of_lights(normal: vec3f, in_anchor: vec3f, received: vec4f) -> vec3
   return sum;
 }
 
-// The same of the ambient light.
+// The same for the ambient light.
 fn reflected_of_ambient(normal: vec3f, in_anchor: vec3f) -> vec3f {
   let part = reflected_ambient(normal, direction_to_camera(in_anchor));
   return part.x * fit.toy[0].rgb + part.y * fit.toy[1].rgb;

@@ -4,9 +4,9 @@ struct Grid {
   // Corner of the first cell.
   origin_in_plane: vec2f,
   cell_m: f32,
-  // Index of this receiver's first cell; all levels of its pyramid follow in a row.
+  // Index of this receiver's first cell; all levels of its pyramid follow.
   first_cell: u32,
-  // Cells of the finest level, at most 64 x 64.
+  // Number of cells of the finest level, at most 64 x 64.
   size: vec2u,
   _pad: vec2u,
 }

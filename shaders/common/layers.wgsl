@@ -1,6 +1,7 @@
 // The picture in layers: clean plate, shadow ratio, toy and masks.
 //
-// Of the shader that imports it are `receiver`, `composed`, `drawing`, `visibility`, `ambient` and `linear_sampler`.
+// The importing shader declares `receiver`, `composed`, `drawing`, `visibility`, `ambient` and
+// `linear_sampler`.
 
 //#import common/drawn_toy
 //#import common/frame
@@ -9,18 +10,20 @@
 struct Layers {
   // The receiver without the shown shadow and the toy.
   @location(0) clean_plate: vec4f,
-  // The receiver with the shadow over that without it.
+  // Ratio of the receiver with the shadow to the receiver without it.
   @location(1) shadow_ratio: vec4f,
-  // Premultiplied: what over the receiver is the picture; alpha is the toy's part of the pixel.
+  // Premultiplied toy, which gives the picture over the receiver; alpha is the toy's part of the
+  // pixel.
   @location(2) toy: vec4f,
-  // The toy's part of the pixel, how much of a light it hides, and whether there is a receiver.
+  // The toy's part of the pixel, the largest hidden part of a light, and whether there is a
+  // receiver.
   @location(3) masks: vec4f,
 }
 
-// Light of a clean plate below which its ratio to anything is noise.
+// Light of a clean plate below which a ratio to it is noise.
 const DARKEST_RATIO: f32 = 1e-3;
 
-// The most that the shown toy hides of any light: of the ambient one, where no other is known.
+// The largest part of a light that the shown toy hides: of the ambient one, if no other is known.
 fn most_hidden(at: vec2f) -> f32 {
   if has_no_light() {
     return 1.0 - textureSampleLevel(ambient, linear_sampler, at / globals.region_size_px, 0.0).r;
@@ -31,7 +34,7 @@ fn most_hidden(at: vec2f) -> f32 {
   return max(max(most.x, most.y), max(most.z, most.w));
 }
 
-// The layers in their order: a matrix, since structs are no values in fragment shaders.
+// The layers in their order, as a matrix, since fragment shaders must not have structs as values.
 fn layered(position: vec4f, n_draws: u32) -> mat4x4f {
   let texel = vec2i(position.xy);
   let f = frame_at(texel);

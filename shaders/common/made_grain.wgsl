@@ -1,18 +1,19 @@
-// Grain of pixels that are made: what they lack of the camera's noise.
+// Grain of computed pixels: the part of the camera's noise that they lack.
 
 //#import common/globals
 //#import common/grain
 //#import common/spread
 
-// Whether made pixels are given the camera's noise.
+// Whether computed pixels get the camera's noise.
 override HAS_GRAIN: bool = false;
-// Part of a pixel's variance that may be missing.
+// Part of a pixel's variance that may be missing without correction.
 const ENOUGH_MISSING: f32 = 0.2;
 
-// Variance that the receiver's pixel lacks of what the camera's pixels have there.
+// Variance that the receiver's pixel lacks, compared with the camera's pixels there.
 var<private> missing: vec3f;
 
-// `own` is the weight of the frame's pixel `f`; the rest is the plate `b` times `lit`. A plate that was made soft, or estimated, has no noise.
+// Sets the missing variance. `own` is the weight of the frame's pixel `f`; the rest is the plate
+// `b` times `lit`. A softened or estimated plate has no noise.
 fn missing_beside(color: vec3f, own: f32, f: vec3f, b: vec4f, lit: vec3f) -> vec3f {
   let wanted = variance_of(drawing.frame_noise, color);
   let made = (1.0 - own) * lit;
@@ -20,7 +21,7 @@ fn missing_beside(color: vec3f, own: f32, f: vec3f, b: vec4f, lit: vec3f) -> vec
   return select(vec3f(0.0), left, left > ENOUGH_MISSING * wanted);
 }
 
-// A colour with the noise of this variance, of the same mean.
+// A colour with noise of this variance and the same mean.
 fn grained(color: vec3f, texel: vec2i, variance: vec3f) -> vec3f {
   if all(variance <= vec3f(0.0)) { return color; }
   let at = texel + vec2i(globals.region_origin_px);
@@ -29,7 +30,8 @@ fn grained(color: vec3f, texel: vec2i, variance: vec3f) -> vec3f {
   return color + clamp(noise, -room, room);
 }
 
-// A pixel of which so much is a toy that has moved: its colours are means of those beside a point, which have less noise.
+// A pixel with this part of a moved toy: its colours are means over neighbours, which have less
+// noise.
 fn grained_toy(color: vec3f, texel: vec2i, moved: f32) -> vec3f {
   if !HAS_GRAIN { return color; }
   let of_toy = (1.0 - resampled_variance(drawing.beside)) * variance_of(drawing.frame_noise, color);

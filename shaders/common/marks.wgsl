@@ -1,4 +1,5 @@
-// Marks of the validity mask, which is of the physical box: all else shows the receiver, well clear of the toy.
+// Marks of the validity mask, which covers the physical box: all other pixels show the receiver,
+// well clear of the toy.
 
 //#import common/globals
 
@@ -6,7 +7,7 @@ const FAR_MARKS = vec4f(1.0, 0.0, 1.0, 1.0);
 // Alpha of the marks of a thing, and of one before the toy: codes 204 and 153.
 const THING: f32 = 0.8;
 const BEFORE_TOY: f32 = 0.6;
-// A quarter of what tells them apart.
+// A quarter of their difference.
 const TELLS_THINGS: f32 = 0.05;
 
 fn marks_at(region_texel: vec2i) -> vec4f {

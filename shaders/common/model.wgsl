@@ -1,21 +1,21 @@
-// The model of a receiver: what a frame is, as a fraction of the plate times the gain.
+// The model of a receiver: the frame as a fraction of the plate times the gain.
 //
 //   M = A (1 - sum f) + bounce A (1 - A) + sum f intensity V
 //   f = fraction falloff / (1 - sum fraction + sum fraction falloff)
 //
-// V is the visibility of a light, A the ambient visibility, f a light's fraction of the plate's radiance there,
-// `fraction` that at the
-// reference point.
-// What hides 1 - A of the sky throws back light that came in through what is open, A: in a crevice it is dark itself.
-// Source: Casas et al. 2019, section 4, gives the ratio of one sample; this is its additive form with one fraction per
-// light, so that no sample with the same overlap is needed (compare Chuang et al. 2003, shadow matting).
-// Without any light it is M = A + bounce (1 - A): how much of the light comes from all around is not known, and the bounce is the
-// part that the toy takes from no place, of 1 all of it.
+// V is the visibility of a light, A the ambient visibility, f a light's fraction of the plate's
+// radiance there, `fraction` that at the reference point.
+// The occluder of 1 - A of the sky reflects light that enters through the open part, A: in a
+// crevice it is dark itself.
+// Source: Casas et al. 2019, section 4, gives the ratio of one sample; this is its additive form
+// with one fraction per light, so that no sample with the same overlap is needed (compare Chuang et
+// al. 2003, shadow matting). Without any light it is M = A + bounce (1 - A): the share of ambient
+// light is unknown, and the bounce is the part of it that casts no shadow, for 1 all of it.
 
 //#import common/fit
 
-// Plate's irradiance at a receiver point over that at the reference point, were the ambient light even.
-// Positive, since the direct fractions sum to less than 1.
+// Irradiance of the plate at a receiver point relative to the reference point, if the ambient light
+// were even. It is positive, since the direct fractions sum to less than 1.
 fn plate_falloff(point: ReceiverPoint) -> vec3f {
   var total = vec3f(1.0);
   for (var i = 0u; i < globals.n_lights; i++) {
@@ -24,12 +24,13 @@ fn plate_falloff(point: ReceiverPoint) -> vec3f {
   return total;
 }
 
-// How much of the toy's bounce a point sees: 0 in the open, and 0 where the toy touches it, unless no light is known.
+// Share of the toy's bounce that reaches a point: 0 in the open, and 0 at the contact with the toy,
+// unless no light is known.
 fn bounced(ambient: f32) -> f32 {
   return select(ambient, 1.0, has_no_light()) * (1.0 - ambient);
 }
 
-// What the ambient light and what the toy throws back leave of the plate, whose falloff is `total`.
+// Part of the plate, whose falloff is `total`, from the ambient light and the toy's bounce.
 fn ambient_part(point: ReceiverPoint, ambient: f32, total: vec3f) -> vec3f {
   var ambient_fraction = vec3f(1.0);
   for (var i = 0u; i < globals.n_lights; i++) {
@@ -38,13 +39,13 @@ fn ambient_part(point: ReceiverPoint, ambient: f32, total: vec3f) -> vec3f {
   return ambient * ambient_fraction / total + fit.receivers[receiver_of(point)].bounce.rgb * bounced(ambient);
 }
 
-// Light `i`'s fraction of the plate's radiance at a point, where the plate's falloff is `total`.
+// Light `i`'s fraction of the plate's radiance at a point with the plate's falloff `total`.
 fn light_part(i: u32, point: ReceiverPoint, total: vec3f) -> vec3f {
   return fit.receivers[receiver_of(point)].direct_fraction[i].rgb * falloff(i, point) / total;
 }
 
-// The model of a receiver in two states of its light at once, such as before and after: in the columns. No array is indexed
-// by a light's number, since processors keep such arrays in memory.
+// The model of a receiver in two states of its light at once, such as before and after, as columns.
+// No array is indexed by a light's number, since processors keep such arrays in memory.
 fn receiver_models(point: ReceiverPoint, ambient: vec2f, visibility_0: vec4f, visibility_1: vec4f) -> mat2x3f {
   let receiver = receiver_of(point);
   var total = vec3f(1.0);

@@ -1,25 +1,29 @@
-// A receiver where no light is known: whether the toy casts a shadow of the ambient light, and what else is fitted where it does not.
+// A receiver without known lights: whether the toy casts a shadow of the ambient light, and the
+// other unknowns of the fit if it does not.
 
 //#import common/fit
 //#import common/fit_step
 
-// Part of what the frame shows beside the plate that a shadow of the ambient light explains, where it is all that is known, below
-// which there is none. Measured: under two overcast skies .6 and more, of an office's wide light .02 to .03, under one lamp .3 to .6.
+// Part of the difference between frame and plate that a shadow of the ambient light must explain.
+// Measured: under two overcast skies .6 and more, in an office's wide light .02 to .03, under one
+// lamp .3 to .6.
 const LEAST_EXPLAINED: f32 = 0.1;
 
-// Of the plate, from sums of what is left of the ambient light and of what is taken of it.
+// Square of the plate, from sums of the remaining and of the hidden ambient light.
 fn squares_of_plate() -> f32 {
   return matrix[0] + 2.0 * matrix[1] + matrix[N_COLUMNS + 1u];
 }
 
-// Whether a shadow of the ambient light explains enough of what the frame shows beside the plate: in squares, over all channels, and
-// once the gain is fitted. A frame that is brighter below the toy tells of none.
+// Whether a shadow of the ambient light explains enough of the difference between frame and plate:
+// in squares, over all channels, and after fitting the gain. A frame that is brighter below the toy
+// excludes one.
 fn is_ambient_shadow_told() -> bool {
   var left = 0.0;
   var explained = 0.0;
   for (var channel = 0u; channel < 3u; channel++) {
     load_equations(channel, 1u);
-    // Sums of products of the plate, of what an ambient shadow of full strength takes of it, and of what is beside it.
+    // Sums of products of the plate, of the loss by an ambient shadow of full strength, and of the
+    // difference.
     let first = UNSHADED_COLUMN * N_COLUMNS;
     let plate_plate = squares_of_plate();
     if plate_plate <= 0.0 { continue; }
@@ -34,7 +38,7 @@ fn is_ambient_shadow_told() -> bool {
   return explained > LEAST_EXPLAINED * left;
 }
 
-// As bright below the toy as in the open.
+// Solution that is as bright below the toy as in the open.
 fn solve_unshadowed(channel: u32) {
   load_equations(channel, 1u);
   let plate_plate = squares_of_plate();

@@ -1,5 +1,5 @@
-// Planes of luma and chroma (Cb, Cr) of half its size, rounded up, as sRGB codes. A chroma sample lies
-// amid its four luma samples; a shader binds the samples as `chroma`.
+// Planes of luma and chroma (Cb, Cr) of half its size, rounded up, as sRGB codes. A chroma sample
+// lies between its four luma samples; the importing shader declares them as `chroma`.
 //
 // Source: ITU-R BT.601-7, 2.5; BT.709-6, 3.
 
@@ -10,8 +10,8 @@ struct Encoding {
   _pad: u32,
 }
 
-// Chroma at a pixel: three quarters of the sample that it is of, one of that on its other side. A sampler of 8 bits would
-// be off by two codes.
+// Chroma at a pixel: three quarters of its own sample, and one quarter of the sample on its other
+// side. A sampler of 8 bits would be off by two codes.
 fn chroma_at(texel: vec2i) -> vec2f {
   let last = vec2i(textureDimensions(chroma)) - 1;
   let own = texel / 2;
@@ -21,7 +21,8 @@ fn chroma_at(texel: vec2i) -> vec2f {
   return 0.75 * above + 0.25 * below;
 }
 
-// sRGB codes of luma, Cb and Cr. No struct is handed over: drivers of older Adreno keep those at 16 bits.
+// sRGB codes of luma, Cb and Cr. No struct is passed: drivers of older Adreno keep those at 16
+// bits.
 fn codes_of(ycbcr: vec3f, srgb_from_ycbcr: mat3x3f, origin: vec3f) -> vec3f {
   return saturate(srgb_from_ycbcr * (ycbcr - origin));
 }

@@ -1,7 +1,7 @@
-// What is pooled in the cells of coarse grids, and added to what was known of them.
+// Pooling in the cells of coarse grids, and accumulation with their earlier values.
 //
-// A cell takes a fixed set of points of its receiver, whichever pixels show them, so that it does not swim when the
-// camera moves.
+// A cell samples a fixed set of points of its receiver, independent of pixels, so that it does not
+// swim when the camera moves.
 
 //#import common/globals
 //#import common/grid
@@ -9,12 +9,12 @@
 
 // Cells of values times their certainty, all levels of the pyramids; pooling writes the finest.
 @group(1) @binding(1) var<storage, read_write> cells: array<vec4f>;
-// What was known before: sums of values times certainty, and of certainties. Those of the finest levels alone.
+// Earlier values: sums of values times certainty, and of certainties, for the finest levels alone.
 @group(1) @binding(2) var<storage, read_write> accumulated: array<vec4f>;
 
-// Which of a cell's points are looked at: all of them, or a quarter, in turn from picture to picture.
+// Sampled points of a cell: all of them, or a quarter, which changes from picture to picture.
 struct Taken {
-  // Along each side.
+  // Stride along each side.
   stride: u32,
   _pad: u32,
   first: vec2u,
@@ -22,12 +22,12 @@ struct Taken {
 
 @group(1) @binding(3) var<uniform> taken: Taken;
 
-// Points of a cell along each side.
+// Number of a cell's points along each side.
 const N_POINTS: u32 = 8u;
 // Fraction of a cell's points that must be valid for the cell to count in full.
 const FULL_SHARE: f32 = 0.25;
 
-// Nothing reaches a receiver whose cells have no extent.
+// A receiver whose cells have no extent is out of reach.
 fn is_cell(receiver: u32, cell: vec2u) -> bool {
   let grid = grids.grids[receiver];
   return all(cell < grid.size) && grid.cell_m > 0.0;
@@ -38,7 +38,7 @@ fn n_taken() -> u32 {
   return n_side * n_side;
 }
 
-// Of N_POINTS x N_POINTS points in a cell the one that is taken as number `k`.
+// The sampled point number `k` of a cell's N_POINTS x N_POINTS points.
 fn point_of_cell(receiver: u32, cell: vec2u, k: u32) -> ReceiverPoint {
   let grid = grids.grids[receiver];
   let n_side = N_POINTS / taken.stride;
@@ -47,7 +47,7 @@ fn point_of_cell(receiver: u32, cell: vec2u, k: u32) -> ReceiverPoint {
   return point_on(receiver, grid.origin_in_plane + (vec2f(cell) + within) * grid.cell_m);
 }
 
-// Adds a cell's value, of which `n_points` of those taken are valid, to the accumulated sums.
+// Adds a cell's value, from `n_points` valid ones of the sampled points, to the accumulated sums.
 fn accumulate(receiver: u32, cell: vec2u, value: vec3f, n_points: f32) {
   let grid = grids.grids[receiver];
   let certainty = min(1.0, n_points / (FULL_SHARE * f32(n_taken())));

@@ -1,25 +1,28 @@
-// What the receivers tell of the light on the toy: sums of coefficients times its unknowns that are 0.
+// Constraints of the receivers on the light on the toy: sums of coefficients times its unknowns
+// that are 0.
 //
-// Of what a receiver shows in the open each light's part is to the ambient part as its light on the toy times the cosine
-// to the receiver is to the ambient light on a surface that lies like the receiver. From below comes what the first
-// receiver throws back.
+// In the open, each light's part of a receiver's radiance is to the ambient part as its light on
+// the toy times the cosine to the receiver is to the ambient light on a surface parallel to the
+// receiver. The light from below is reflected by the first receiver.
 
 //#import common/fit
 //#import common/hemispheres
 
-// Part of the light from above that a receiver throws back: middle grey and somewhat less, since the toy shades it.
+// Part of the light from above that a receiver reflects: middle grey, somewhat reduced, since the
+// toy shades it.
 const PRIOR_REFLECTANCE: f32 = 0.25;
-// Share of all lights below which a light's relation has no more weight.
+// Share of all lights below which a light's relation has reduced weight.
 const LEAST_SHARE: f32 = 0.05;
 
-// From a receiver's reference point to light `i`, in its plane space: metres, or a unit direction.
+// Vector from a receiver's reference point to light `i`, in its plane space: metres, or a unit
+// direction.
 fn reference_to_light(receiver: u32, i: u32) -> vec3f {
   let light = globals.receivers[receiver].lights[i];
   let reference = globals.receivers[receiver].reference_in_plane;
   return light.xyz - light.w * vec3f(reference.x, 0.0, reference.y);
 }
 
-// Cosine of light `i` to a receiver, at its reference point; 0 where it is behind it.
+// Cosine of light `i` to a receiver, at its reference point; 0 if the light is behind it.
 fn reference_cosine(receiver: u32, i: u32) -> f32 {
   let to_light = reference_to_light(receiver, i);
   let distance_m = length(to_light);
@@ -27,7 +30,7 @@ fn reference_cosine(receiver: u32, i: u32) -> f32 {
   return max(to_light.y / distance_m, 0.0);
 }
 
-// The first receiver that light `i` shines on, or the first of all.
+// The first receiver that light `i` reaches, or the first of all.
 fn receiver_in_light(i: u32) -> u32 {
   for (var k = 0u; k < globals.n_receivers; k++) {
     if reference_cosine(k, i) > 0.0 { return k; }
@@ -45,7 +48,8 @@ fn total_direct_fraction(receiver: u32, n_lights: u32, channels: vec3f) -> f32 {
   return total;
 }
 
-// Weight of light `i`'s relation: a light that is listed twice, with half of it each, weighs as it does once.
+// Weight of light `i`'s relation: a light that is listed twice, with half the intensity each, has
+// the same weight as once.
 fn relation_weight(i: u32, n_lights: u32, channels: vec3f) -> f32 {
   let k = receiver_in_light(i);
   let total = total_direct_fraction(k, n_lights, channels);

@@ -1,15 +1,18 @@
-// What the receiver that the toy stands on reflects, over the gain: its surroundings, and in the part that the toy hides of them the toy.
+// Reflection of the receiver below the toy, relative to the gain: its surroundings, or the toy if
+// it hides them.
 //
 //   reflectance (surroundings + hidden toy)      hidden is that part of the lobe, `toy` the toy's light above that of the surroundings
-// The toy is drawn from mirror images of the eye behind the receiver, as from points of a light: a channel of the visibility.
-// CPU reference: tests/reference/src/reflection.rs. Source: Karis 2014 (reflectance of a rough dielectric in even surroundings).
+// The toy is drawn from mirror images of the eye behind the receiver, in the same way as from
+// points of a light: a channel of the visibility.
+// CPU reference: tests/reference/src/reflection.rs. Source: Karis 2014 (reflectance of a rough
+// dielectric in even surroundings).
 
 //#import common/globals
 
-// Reflectance of a dielectric that is looked at from above.
+// Reflectance of a dielectric at normal incidence.
 const FROM_ABOVE: f32 = 0.04;
 
-// Of a surface of a roughness, the square root of the lobe's width.
+// Reflectance of a rough surface; `roughness` is the square root of the lobe's width.
 fn reflectance(cosine: f32, roughness: f32) -> f32 {
   let x = 1.0 - roughness;
   let y = 0.0425 - 0.0275 * roughness;
@@ -17,7 +20,8 @@ fn reflectance(cosine: f32, roughness: f32) -> f32 {
   return FROM_ABOVE * (1.04 - 0.572 * roughness - 1.04 * grazing) + 0.022 * roughness - 0.04 + 1.04 * grazing;
 }
 
-// Seen from a camera in anchor space, the plane space of the first receiver. `part` is how much of the toy's image is shown.
+// Reflected light for a camera in anchor space, the plane space of the first receiver. `part` is
+// the visible share of the toy's image.
 fn reflected_to(camera: vec3f, point: ReceiverPoint, visibility: vec4f, part: f32) -> vec3f {
   if receiver_of(point) != 0u || all(globals.reflection_channel == vec4f(0.0)) { return vec3f(0.0); }
   let to_camera = normalize(camera - vec3f(point.x, 0.0, point.y));
@@ -26,7 +30,7 @@ fn reflected_to(camera: vec3f, point: ReceiverPoint, visibility: vec4f, part: f3
   return reflectance(to_camera.y, globals.reflected_surroundings.a) * light;
 }
 
-// At a point under these visibilities of a pose.
+// Reflected light at a point with these visibilities of a pose.
 fn reflected(point: ReceiverPoint, visibility: vec4f) -> vec3f {
   return reflected_to(globals.camera_in_anchor, point, visibility, 1.0);
 }

@@ -1,16 +1,16 @@
-// What a soft picture shows of the toy beside where it is drawn.
+// Appearance of the toy in a soft picture, beyond its drawn pixels.
 //
-// Of the shader that imports it are `drawn_toy` and `change_at`.
+// The importing shader declares `drawn_toy` and `change_at`.
 
 //#import common/globals
 //#import common/spread
 
-// Rings around a pixel on which a toy is looked for, and places on each.
+// Number of rings around a pixel in which the toy is searched, and of positions on each.
 const N_RINGS: u32 = 4u;
 const N_ON_RING: u32 = 12u;
 const TURN: f32 = 6.2831853;
-// Rings on which colours of what has moved are taken, nearest first: their radii in deviations of the picture's spread, and weights of their
-// places against that of the middle.
+// Rings for the colours of moved surfaces, nearest first: their radii in standard deviations of the
+// picture's spread, and the weights of their positions relative to the centre.
 const NEAR_RINGS = vec2f(0.6, 1.2);
 const NEAR_WEIGHTS = vec2f(0.6, 0.25);
 
@@ -19,7 +19,7 @@ fn on_ring(texel: vec2i, reach_px: f32, k: u32) -> vec2i {
   return texel + vec2i(round(reach_px * vec2f(cos(turn), sin(turn))));
 }
 
-// Sum of the toy's colours around a texel, from as near as it is drawn.
+// Sum of the toy's colours around a texel, from the nearest ring on which it is drawn.
 fn toy_color_beyond(texel: vec2i, n_draws: u32) -> vec4f {
   var sum = vec4f(0.0);
   for (var ring = 1u; ring <= N_RINGS; ring++) {
@@ -30,8 +30,8 @@ fn toy_color_beyond(texel: vec2i, n_draws: u32) -> vec4f {
   return sum;
 }
 
-// The toy's colour at a texel where it is drawn, premultiplied. What has moved is about as soft as the picture: folds between its parts, and
-// what no camera has seen, are drawn sharp.
+// The toy's colour at a drawn texel, premultiplied. A moved surface is about as soft as the
+// picture, but folds between its parts, and surfaces that no camera has seen, are drawn sharp.
 fn softened_toy(texel: vec2i, own: vec4f, n_draws: u32) -> vec4f {
   let change = change_at(texel);
   if change == 0.0 { return own; }
@@ -47,7 +47,7 @@ fn softened_toy(texel: vec2i, own: vec4f, n_draws: u32) -> vec4f {
   return mix(own / own.a, sum / sum.a, change);
 }
 
-// The most change around a texel, as far as it is spread.
+// The largest change around a texel, within its spread.
 fn change_around(texel: vec2i) -> f32 {
   var most = 0.0;
   for (var k = 0u; k < N_ON_RING; k++) {

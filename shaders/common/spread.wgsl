@@ -1,15 +1,17 @@
-// Positions that a pixel is drawn for in a picture that is softer than pixels are: spread as the picture spreads a point.
+// Positions within a pixel in a picture that is softer than its pixels: they have the picture's
+// spread of a point.
 //
-// So shadows and outlines are drawn as soft as the picture shows them, for no more than it takes to draw them sharp.
+// In this way soft shadows and outlines cost no more than sharp ones.
 
 //#import common/globals
 
-// Whether the picture is seen to be softer than pixels are.
+// Whether the picture is softer than its pixels.
 fn is_soft() -> bool {
   return globals.spread.x > 0.0;
 }
 
-// Farthest that a position lies from the pixel's centre, and what the picture shows is spread.
+// Largest distance of a position from the pixel's centre, over which the picture spreads its
+// content.
 fn soft_reach_px() -> f32 {
   return globals.spread.w;
 }
@@ -17,7 +19,8 @@ fn soft_reach_px() -> f32 {
 const PI: f32 = 3.14159265;
 const WINITZKI: f32 = 0.147;
 
-// The mean of what was drawn by spread positions in a texel and in those around it: of nine times as many positions.
+// The mean over a texel and its neighbours, which were drawn with spread positions: it has nine
+// times as many positions.
 fn soft_texel(map: texture_2d<f32>, texel: vec2i) -> vec4f {
   let side = globals.soft_side;
   if side == 0.0 { return textureLoad(map, texel, 0); }
@@ -32,7 +35,7 @@ fn soft_texel(map: texture_2d<f32>, texel: vec2i) -> vec4f {
   return sum;
 }
 
-// What a number of a normal distribution is above, by the part of all numbers that are below, to 2 parts in 1000.
+// Quantile of the normal distribution for the given part of all numbers, to 2 parts in 1000.
 // Source: Winitzki 2008 (the inverse error function).
 fn normal_quantile(part: f32) -> f32 {
   let x = 2.0 * part - 1.0;
@@ -41,13 +44,14 @@ fn normal_quantile(part: f32) -> f32 {
   return sign(x) * sqrt(2.0 * (sqrt(t * t - l / WINITZKI) - t));
 }
 
-// Offset from a pixel's centre, in pixels, of a position of an even lattice over the square from 0 to 1, both left out.
+// Offset of a position from a pixel's centre, in pixels, for a position of an even lattice over the
+// open square from 0 to 1.
 fn spread_position_px(lattice: vec2f) -> vec2f {
   let normal = vec2f(normal_quantile(lattice.x), normal_quantile(lattice.y));
   return spread_px(normal);
 }
 
-// A place in standard deviations of the spread, in pixels.
+// Converts standard deviations of the spread to pixels.
 fn spread_px(deviations: vec2f) -> vec2f {
   return vec2f(globals.spread.x * deviations.x, globals.spread.y * deviations.x + globals.spread.z * deviations.y);
 }

@@ -10,12 +10,12 @@ struct TintGrid {
   _pad_1: vec2u,
 }
 
-// The grid of a material; those beyond the last share it.
+// The grid of a material; materials beyond the last share it.
 fn tint_grid_of(material: u32) -> u32 {
   return min(material, tint_grid.n_materials - 1u);
 }
 
-// In cells of the finest level, the centre of the first at (.5, .5, .5).
+// Position in cells of the finest level, with the centre of the first at (.5, .5, .5).
 fn tint_place(in_anchor: vec3f) -> vec3f {
   return (in_anchor - tint_grid.corner_in_anchor) / tint_grid.cell_m;
 }

@@ -2,7 +2,7 @@
 
 //#import common/globals
 
-// Cosine of the normal to light `i`, 0 where the surface is turned away.
+// Cosine of the normal to light `i`, 0 if the surface is turned away.
 fn light_cosine(i: u32, normal: vec3f, in_anchor: vec3f) -> f32 {
   let light = globals.lights[i];
   let to_light = light.xyz - in_anchor * light.w;

@@ -1,12 +1,12 @@
-// The picture: plate times new shadow, real toy and real shadow gone, the animated toy laid over it.
+// The picture: plate times new shadow, without real toy and real shadow, under the animated toy.
 //
 //   out = gain plate (M' + r)         in general, r the pooled residual, fading where the shadow changed much
 //   out = frame + gain plate (M' - M) where the receiver is seen and M' is near M: r is the pixel's own, so the frame
 //                                     passes; also where the frame shows what the model cannot explain
 //   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r): no plate is read there
-// A glossy receiver's reflection is taken from the frame before, and added after as it is with the shown toy.
+// A glossy receiver's reflection is subtracted from the frame first, and that of the shown toy is added last.
 //
-// Reads: all that was captured of the receiver, visibility and ambient of the animated pose, the drawn toy.
+// Reads: all state of the receiver, visibility and ambient of the animated pose, the drawn toy.
 // Writes: linear colour, opaque. CPU reference: tests/reference/src/composite.rs.
 
 //#import common/fit
@@ -24,16 +24,16 @@
 //#import common/reflection
 
 struct Drawing {
-  // Whether a seen pixel's own residual is that of `detail`, rather than what the frame shows.
+  // Whether the own residual of visible pixels is that of `detail` and not the frame's.
   has_detail: u32,
-  // What follows is of grain: number of the picture, variance of light in frame and plate as (in the dark, for each unit of
-  // light), correlation of pixels side by side, and of a pixel's channels.
+  // The next four are for grain: number of the picture, variance of light in frame and plate as (in the dark,
+  // for each unit of light), correlation of neighbouring pixels, and of a pixel's channels.
   picture: u32,
   frame_noise: vec2f,
   plate_noise: vec2f,
   beside: f32,
   channels: f32,
-  // How strong the shown shadow is, 1 being the truth.
+  // Strength of the shown shadow; 1 is the true one.
   strength: f32,
   unused: f32,
 }
@@ -54,49 +54,48 @@ override HAS_STRENGTH: bool = false;
 @group(2) @binding(4) var<uniform> drawing: Drawing;
 
 @group(3) @binding(0) var validity: texture_2d<f32>;
-// Premultiplied radiance of the toy, alpha what the samples of a draw met, one for each draw.
+// Premultiplied radiance of the toy, with the share of hit samples in alpha, for each draw.
 @group(3) @binding(1) var toy_0: texture_2d<f32>;
 @group(3) @binding(2) var toy_1: texture_2d<f32>;
 @group(3) @binding(3) var toy_2: texture_2d<f32>;
 @group(3) @binding(4) var toy_3: texture_2d<f32>;
-// Parts of a pixel where the shown, and the real toy's surface is not in the other's place.
+// Parts of a pixel in which the shown, and the real toy's surface has moved.
 @group(3) @binding(5) var toy_moved: texture_2d<f32>;
 @group(3) @binding(6) var moved_mask: texture_2d<f32>;
 // COVERED_POSITION for each position that the shown toy covers.
 @group(3) @binding(7) var covered: texture_2d<f32>;
 
-// Change of the model, in plates, up to which a seen pixel keeps its own residual, and from which it has none of it.
+// Change of the model, in plates, up to which a visible pixel keeps its residual, and from which it has none.
 const KEEP_ALL: f32 = 0.02;
 const KEEP_NONE: f32 = 0.15;
-// Change of the model from which the pooled residual no longer holds at half its size.
+// Change of the model at which the pooled residual is halved.
 const RESIDUAL_HALF: f32 = 0.5;
-// Pooled residual, in plates, from which something unknown is seen, such as a hand or the shadow of a light that is not
-// listed, and from which nothing else counts: what the camera saw stays.
+// Pooled residual, in plates, from which it may be an unknown thing, such as a hand or an unlisted light's
+// shadow, and from which it certainly is: then the pixel stays as photographed.
 const OUTLIER_NONE: f32 = 0.15;
 const OUTLIER_ALL: f32 = 0.3;
-// Least over most of a residual's channels, from which it may be a shadow, and below which it is a thing of its own
-// colour.
+// Smallest over largest channel of a residual from which it may be a shadow, and below which it has a colour of
+// its own.
 const SHADOW_EVENNESS: f32 = 0.4;
 const OBJECT_EVENNESS: f32 = 0.2;
-// Deviation from the model, in plates, up to which a pixel beside a toy that has moved is as it should be, and from
-// which it is
-// what bled into it.
+// Deviation from the model, in plates, up to which a pixel beside a moved toy is unaffected, and from which the
+// toy has bled into it.
 const BLED_NONE: f32 = 0.03;
 const BLED_ALL: f32 = 0.1;
 
-// How far what a pixel shows is the receiver's own: less where the toy stood beside it, has moved, and left its colour.
+// Share of a pixel's colour that is the receiver's own: less if the toy stood beside it and has moved.
 fn own_share(evident: vec4f, has_moved: bool, deviation: f32) -> f32 {
   if evident.r == 0.0 { return 0.0; }
   if !has_moved { return 1.0; }
   return 1.0 - smoothstep(BLED_NONE, BLED_ALL, deviation);
 }
 
-// How far a pooled residual shows something unknown.
+// Certainty that a pooled residual shows something unknown.
 fn outlier(pooled: vec3f) -> f32 {
   return smoothstep(OUTLIER_NONE, OUTLIER_ALL, largest(abs(pooled)));
 }
 
-// Whether a residual may be a shadow: all channels are darker, and none much more than the others.
+// Likelihood that a residual is a shadow: all channels are darker, by similar amounts.
 fn shadow_likeness(residual: vec3f) -> f32 {
   let least = -largest(residual);
   let most = largest(-residual);
@@ -104,24 +103,25 @@ fn shadow_likeness(residual: vec3f) -> f32 {
   return smoothstep(OBJECT_EVENNESS, SHADOW_EVENNESS, least / most);
 }
 
-// The model, and 1 where the plate is clipped and no real shadow shows how far above white it is: there none shows.
+// The model; 1 if the plate is clipped and no real shadow shows its true brightness.
 fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
   return select(model, mix(model, vec3f(1.0), clipped), plate > vec3f(BRIGHTEST_USABLE));
 }
 
-// What a shadow to taste leaves of the light `open`, of which the true one leaves `left`. A weaker one takes its share of what the true
-// one takes; a stronger one is laid over itself, so that it keeps its hue and never takes more light than there is.
+// Remainder of the light `open` under a styled shadow, if the true one leaves `left`. A weaker shadow has a
+// share of the true loss; a stronger one is applied repeatedly, so that it keeps its hue and light stays
+// positive.
 fn strengthened(open: vec3f, left: vec3f, strength: f32) -> vec3f {
   if strength <= 1.0 { return mix(open, left, strength); }
   let part = select(vec3f(1.0), left / open, open > vec3f(0.0));
-  // Light that the toy throws onto the table is no shadow.
+  // Light that the toy reflects onto the table is not a shadow.
   return open * pow(clamp(part, vec3f(0.0), vec3f(1.0)), vec3f(strength)) * max(part, vec3f(1.0));
 }
 
-// The receiver's colour. `change` becomes that of the model since the frame, where the receiver shows; its alpha is the
-// weight of
-// the camera pixel where toy and receiver mix: 1 where the change is little. `f` is the frame there, `evident` are its marks;
-// `has_moved` is whether the real toy beside it has. `strength` is that of the shadow.
+// The receiver's colour. `change` becomes that of the model since the frame, if the receiver is visible; its
+// alpha is the weight of a camera pixel that mixes toy and receiver: 1 for a small change. `f` is the frame
+// there, `evident` are its marks; `has_moved` is whether the real toy beside it has. `strength` is that of the
+// shadow.
 fn receiver(
   position: vec4f,
   f: vec3f,
@@ -137,24 +137,24 @@ fn receiver(
   let v_after = soft_texel(visibility, vec2i(texel));
   let a_before = textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r;
   let a_after = textureSampleLevel(ambient, linear_sampler, uv, 0.0).r;
-  // Where no light changes, what follows comes to the frame: most pixels are done here.
+  // If no light changes, the other changes are added to the frame: this handles most pixels.
   let is_same = !HAS_STRENGTH && all(v_before == v_after) && a_before == a_after;
   if is_same && evident.r == 1.0 && evident.b > 0.0 && drawing.has_detail == 0u {
     *change = vec4f(0.0);
     return f;
   }
-  // No plate and no estimate: the frame stays.
+  // Without a plate and an estimate the frame stays.
   let b = textureLoad(plate, texel, 0);
   *change = vec4f(0.0, 0.0, 0.0, 1.0);
   if b.a == 0.0 { return f; }
   let lit = fit.gain.rgb * b.rgb;
   let point = receiver_point(at);
-  // A thing stays as the camera saw it.
+  // A thing stays as photographed.
   if is_thing(evident) && evident.b == 1.0 {
     *change = vec4f(0.0);
     return f;
   }
-  // Beyond the receivers nothing changes but that the real toy goes.
+  // Beyond the receivers only the real toy is removed.
   if !is_hit(point) {
     *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.r);
     let color = mix(lit, f, evident.r);
@@ -173,7 +173,7 @@ fn receiver(
   let clipped = fit.receivers[receiver_of(point)].clipped.rgb;
   let before = shown_model(b.rgb, clipped, models[0]);
   let after = shown_model(b.rgb, clipped, models[1]);
-  // How strong a shadow of the ambient light is stays open where it is all that is known.
+  // The strength of an ambient shadow is unknown if there is no other light.
   let darker = select(largest(abs(after - before)), abs(a_shown - a_before), has_no_light());
   let most = max(darker, largest(abs(shown - reflection) / max(lit, vec3f(DARKEST_USABLE))));
   let pooled = cell_at(point).rgb;
@@ -200,13 +200,13 @@ fn receiver(
   return color;
 }
 
-// How far a texel of the toy box shows what the camera did not see there, 0 to 1.
+// Difference of a texel of the toy box from the camera's picture, 0 to 1.
 fn change_at(texel: vec2i) -> f32 {
   let clamped = clamped_to_box(texel);
   return max(textureLoad(toy_moved, clamped, 0).r, textureLoad(moved_mask, clamped, 0).r);
 }
 
-// 1 where a texel of the toy box and those beside, above and below it are as the camera saw them.
+// 1 if a texel of the toy box and its four neighbours agree with the camera's picture.
 fn stillness(texel: vec2i) -> f32 {
   let beside = max(change_at(texel - vec2i(1, 0)), change_at(texel + vec2i(1, 0)));
   let above_and_below = max(change_at(texel - vec2i(0, 1)), change_at(texel + vec2i(0, 1)));
@@ -229,7 +229,7 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   var change = vec4f(0.0);
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
   let laid = (1.0 - toy.a) * receiver(position, frame_color, evident, has_moved, drawing.strength, &change) + toy.rgb;
-  // So it is wherever the receiver alone shows: of most pixels nobody asks whether the toy is still.
+  // Most pixels show the receiver alone and need no test of the toy.
   if change.a == 0.0 { return vec4f(grained_toy(laid, vec2i(texel), toy.a), 1.0); }
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
   let still = stillness(in_box);
@@ -238,13 +238,13 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   return vec4f(grained_toy(color, vec2i(texel), toy.a * (1.0 - still)), 1.0);
 }
 
-// The plate that a pixel shows under a model and the pooled residual, no brighter than white.
+// The plate of a pixel under a model and the pooled residual, no brighter than white.
 fn shown_plate(f: vec3f, model: vec3f) -> vec3f {
   let lit = fit.gain.rgb * model;
   return select(vec3f(1.0), min(f / lit, vec3f(1.0)), lit > vec3f(0.0));
 }
 
-// Clear of the toy in either pose, and of its shadows: there the ambient light alone changes.
+// Pixels clear of the toy in either pose, and of its shadows: the ambient light alone changes.
 @fragment
 fn fs_open(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let at = position.xy;
@@ -265,7 +265,7 @@ fn fs_open(@builtin(position) position: vec4f) -> @location(0) vec4f {
   return vec4f(max(mix(f, relit, inside_border(at)), vec3f(0.0)), 1.0);
 }
 
-// Clear of the toy in either pose.
+// Pixels clear of the toy in either pose.
 @fragment
 fn fs_beside(@builtin(position) position: vec4f) -> @location(0) vec4f {
   var change = vec4f(0.0);
@@ -274,8 +274,8 @@ fn fs_beside(@builtin(position) position: vec4f) -> @location(0) vec4f {
   return vec4f(grained(color, vec2i(position.xy), missing), 1.0);
 }
 
-// Near a toy, which was drawn once, or four times. An entry point for each, since some processors take all
-// branches of a shader.
+// Pixels near a toy that was drawn once, or four times: separate entry points, since some processors execute
+// all branches.
 @fragment
 fn fs_drawn_once(@builtin(position) position: vec4f) -> @location(0) vec4f {
   return composed(position, 1u);
@@ -286,7 +286,7 @@ fn fs_drawn_four_times(@builtin(position) position: vec4f) -> @location(0) vec4f
   return composed(position, 4u);
 }
 
-// The layers of a picture, whether the toy was drawn once or four times.
+// The layers of a picture, for a toy that was drawn once, or four times.
 @fragment
 fn fs_layers_once(@builtin(position) position: vec4f) -> Layers {
   let layers = layered(position, 1u);

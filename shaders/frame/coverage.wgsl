@@ -1,14 +1,17 @@
 // Fraction of each pixel that the posed toy covers, counted over many positions in one pass.
 //
-// Each instance draws the mesh moved so that the pixel's centre samples its position; blending adds up. As in
-// `occlusion` each position has a constant depth, above those before it, so that overlapping triangles do not count
-// twice; rounding of z / w is far from a step of 16 bits, in which depths are 1986 steps apart. A position counts
-// where any triangle covers it: of the scene's depths only those of the receivers are tested.
-// Where no silhouette of the toy comes near all positions show the same: there it is drawn but once, and tiles that a silhouette
-// does come near are closed meanwhile (`geometry/silhouette.rs`).
-// The positions are a lattice over the pixel, so that an edge of whatever direction meets them one after the other.
+// Each instance draws the mesh moved so that the pixel's centre samples its position; blending adds
+// them up. As in `occlusion` each position has a constant depth, above those before it, so that
+// overlapping triangles do not count twice; rounding of z / w is far below a step of 16 bits, in
+// which depths are 1986 steps apart. A position counts if any triangle covers it: of the scene's
+// depths only those of the receivers are tested.
+// All positions are equal away from the toy's silhouettes: there it is drawn only once, while tiles
+// near a silhouette are closed (`geometry/silhouette.rs`).
+// The positions are a lattice over the pixel, so that an edge of any direction meets them one after
+// the other.
 //
-// Reads: posed positions in anchor space. Writes: COVERED_POSITION for each position of the lattice that the toy covers.
+// Reads: posed positions in anchor space. Writes: COVERED_POSITION for each position of the lattice
+// that the toy covers.
 // Source: Fiume, Fournier and Rudolph 1983 (coverage masks); the lattice is that of Korobov 1959.
 
 //#import common/behind
@@ -17,7 +20,7 @@
 //#import common/tiles
 
 struct Positions {
-  // How many are drawn for, all or a part of N_POSITIONS: each stands for as many.
+  // Number of drawn positions, N_POSITIONS or a part of it: each one has the weight of several.
   n: u32,
   // Rows from one column's position to the next.
   row_step: u32,
@@ -30,14 +33,14 @@ struct Moved {
   @location(0) @interpolate(flat, either) index: u32,
 }
 
-// Offset from the pixel's centre, in a soft picture also beyond the pixel.
+// Offset from the pixel's centre, which in a soft picture may be outside the pixel.
 fn position_px(index: u32) -> vec2f {
   let lattice = (vec2f(vec2u(index, index * positions.row_step % positions.n)) + 0.5) / f32(positions.n);
   if is_soft() { return spread_position_px(lattice); }
   return lattice - 0.5;
 }
 
-// Of a corner at `clip`, drawn for a position.
+// Clip position of a corner at `clip`, drawn for a position.
 fn moved_clip(clip: vec4f, index: u32) -> vec4f {
   let moved = clip.xy - clip.w * vec2f(2.0, -2.0) * position_px(index) / globals.region_size_px;
   return vec4f(moved, clip.w * f32(index + 1u) / f32(N_POSITIONS + 1u), clip.w);
@@ -54,7 +57,7 @@ struct Plain {
   @location(0) on_receiver: vec3f,
 }
 
-// Before one receiver.
+// Vertices in front of a single receiver.
 @vertex
 fn vs_plain(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> Plain {
   let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
@@ -67,7 +70,7 @@ fn fs_cover_plain(@location(0) on_receiver: vec3f) -> @location(0) vec4f {
   return covered();
 }
 
-// Above all positions, so that none counts again.
+// A depth above all positions, so that none counts again.
 @vertex
 fn vs_once(@location(0) in_anchor: vec3f) -> @builtin(position) vec4f {
   let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
@@ -75,12 +78,12 @@ fn vs_once(@location(0) in_anchor: vec3f) -> @builtin(position) vec4f {
   return vec4f(clip.xy, clip.w * depth, clip.w);
 }
 
-// By one position.
+// The value of one position.
 fn covered() -> vec4f {
   return vec4f(f32(N_POSITIONS / positions.n) * COVERED_POSITION);
 }
 
-// All positions of a pixel that no silhouette comes near.
+// All positions of a pixel away from silhouettes.
 @fragment
 fn fs_cover_all() -> @location(0) vec4f {
   return vec4f(f32(N_POSITIONS) * COVERED_POSITION);

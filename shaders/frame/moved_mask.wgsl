@@ -1,6 +1,6 @@
-// Moved mask: where the visible surface of the real toy has moved in the shown pose.
+// Moved mask: the parts in which the visible surface of the real toy has moved in the shown pose.
 //
-// Reads: both poses. Writes: 1 where the surface has moved, as a fraction of the pixel.
+// Reads: both poses. Writes: 1 if the surface has moved, as a fraction of the pixel.
 
 //#import common/moved
 //#import common/behind
@@ -24,7 +24,8 @@ fn fs_moved(
   @location(0) shown_clip: vec4f,
   @location(1) physical_clip: vec4f,
 ) -> @location(0) vec4f {
-  // Nothing is discarded, so that depth is tested first: what is behind this surface is behind the receiver, too.
+  // Nothing is discarded, so that depth is tested first: surfaces behind this one are behind the
+  // receiver, too.
   if is_behind_receiver(at.xy + globals.toy_box_origin_px, at.w) { return vec4f(0.0); }
   return vec4f(moved(region_px(shown_clip), region_px(physical_clip)));
 }

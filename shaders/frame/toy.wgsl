@@ -1,13 +1,13 @@
 // The toy in the shown pose, textured with its camera pixels.
 //
-// Points that the camera saw in the physical pose take its pixels, scaled by the change of the fitted light on the
-// turned surface; hidden points take the model's base colour under the fitted light, times the tint. What a glossy toy
-// reflected is taken out of its pixels, and what it reflects now is added.
+// Points that the camera saw in the physical pose take its pixels, scaled by the change of the fitted
+// light on the turned surface; hidden points take the model's base colour under the fitted light, times
+// the tint. The old reflection of a glossy toy is subtracted from its pixels, and the new one is added.
 // Drawn once for each offset; with the multisample positions the offsets make a denser pattern.
 //
-// Reads: both poses, materials, frame, which of its pixels the toy's colours are from and the light these were seen
-// under, gbuffer, fit, depth maps from the lights, tints. Writes: linear radiance, premultiplied, alpha the fraction of
-// samples hit; where it differs from the camera's pixel.
+// Reads: both poses, materials, frame, the source pixels of the toy's colours and the light on them,
+// gbuffer, fit, depth maps from the lights, tints. Writes: linear radiance, premultiplied, with the
+// fraction of hit samples in alpha; difference from the camera's pixel.
 
 //#import common/fit
 //#import common/frame
@@ -33,43 +33,42 @@
 @group(1) @binding(4) var<uniform> tint_grid: TintGrid;
 @group(1) @binding(5) var<storage, read> tints: array<vec4f>;
 @group(1) @binding(6) var appearance_source: texture_2d<f32>;
-// What a soft picture mixes into the toy's colours, over the gain, and the part of a pixel that is the toy's.
+// Colour that a soft picture mixes into the toy's, relative to the gain, and the toy's part of a pixel.
 @group(1) @binding(7) var rim: texture_2d<f32>;
-// What a glossy toy reflected, over the gain; alpha how far a pixel tells the paint below.
+// Reflected radiance of a glossy toy, relative to the gain; alpha is the visibility of the paint.
 @group(1) @binding(8) var reflected: texture_2d<f32>;
 @group(1) @binding(9) var<uniform> specular: Specular;
 
-// Whether the light of the camera's pixel will do in place of the point's own, to tell what has changed.
+// Whether the light of the camera's pixel replaces the point's own in the test for changes.
 override IS_COARSE: bool = false;
-// Whether any of the toy is glossy.
+// Whether any part of the toy is glossy.
 override IS_GLOSSY: bool = false;
 
 // Maximum factor by which a camera pixel is brightened or darkened for a turned surface.
 const MAX_TURN: f32 = 4.0;
-// Surface area per pixel, shown over physical pose, above which camera pixels are used in full, and below which not
-// at all: a surface that was seen at a grazing angle and turns to the camera has too few pixels.
+// Surface area per pixel, shown relative to physical pose, above which camera pixels are used in full,
+// and below which not at all: a surface seen at a grazing angle has too few pixels.
 const STRETCH_ALL: f32 = 0.3;
 const STRETCH_NONE: f32 = 0.1;
-// The same from which lines of the texture that are thinner than a pixel are the camera's.
+// The area from which texture lines that are thinner than a pixel come from the camera.
 const STRETCH_LINES: f32 = 0.75;
-// Difference of base colours, relative to the lighter one, above which two points of the model have different
-// materials.
+// Relative difference of base colours above which two points of the model have different materials.
 const OTHER_MATERIAL: f32 = 0.25;
-// Relative step of depth within which a point is the one that the camera saw: a tenth of a millimetre a metre away.
+// Relative step of depth up to which a point is the visible one: a tenth of a millimetre at one metre.
 const SHOWN_DEPTH: f32 = 1e-4;
-// Weight of other paint around a point that the camera saw: with less of it lines are ragged, with all of it they are soft. By this one
-// the bundled toy's error fell from 3.89 to 3.75 codes.
+// Weight of other paint around a visible point: with less of it lines are ragged, with all of it they
+// are soft. It reduced the bundled toy's error from 3.89 to 3.75 codes.
 const OTHER_PAINT_WEIGHT: f32 = 0.3;
-// Relative change of the light on a surface that is invisible, and that is visible in full.
+// Relative change of the light on a surface that is invisible, and that is fully visible.
 const SAME_LIGHT: f32 = 0.02;
 const OTHER_LIGHT: f32 = 0.08;
-// Part of a pixel from which on the toy's own colour is told from what is mixed into it: below, noise would be, too.
+// Part of a pixel from which the toy's own colour is unmixed: below, noise would be amplified.
 const LEAST_PART: f32 = 0.35;
-// Weight of colours extrapolated past the outline, against those of the surface itself.
+// Weight of colours extrapolated past the outline, relative to the surface's own.
 const CARRIED_WEIGHT: f32 = 1e-3;
-// Weight of a pixel that does not tell its paint, against one that does.
+// Weight of a pixel whose paint is hidden, relative to a visible one.
 const UNTOLD_WEIGHT: f32 = 1e-3;
-// Part of a pixel's light that is its paint's at least.
+// Smallest part of the paint in a pixel's light.
 const LEAST_PAINT: f32 = 0.1;
 
 struct Vertex {
@@ -109,18 +108,18 @@ fn vs_toy(in: Vertex) -> Surface {
   );
 }
 
-// The light that the camera's colour at a texel of the physical box was seen under, as radiance over base colour.
+// The light on the camera's colour at a texel of the physical box, as radiance over base colour.
 fn seen_under(texel: vec2i) -> vec3f {
   let up = textureLoad(appearance_base, texel, 0).a;
   return toy_radiance_from(vec2f(up, 1.0 - up), textureLoad(appearance_received, texel, 0));
 }
 
-// What was reflected at a texel of the physical box.
+// Reflected radiance at a texel of the physical box.
 fn seen_reflected(texel: vec2i) -> vec3f {
   return select(vec3f(0.0), textureLoad(reflected, texel, 0).rgb, IS_GLOSSY);
 }
 
-// Whether a base colour is of another material of the model.
+// Whether a base colour belongs to another material of the model.
 fn is_other_material(other: vec3f, base: vec3f) -> bool {
   return largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
 }
@@ -140,7 +139,7 @@ fn own_color(texel: vec2i) -> vec3f {
   return max(seen - (1.0 - part) * fit.gain.rgb * mixed.rgb, vec3f(0.0)) / part;
 }
 
-// The colour of the paint at a texel of the physical box; alpha how far the pixel tells it.
+// The colour of the paint at a texel of the physical box, with its visibility in alpha.
 fn paint_color(texel: vec2i) -> vec4f {
   let color = own_color(texel);
   if !IS_GLOSSY { return vec4f(color, 1.0); }
@@ -148,7 +147,7 @@ fn paint_color(texel: vec2i) -> vec4f {
   return vec4f(max(color - fit.gain.rgb * there.rgb, LEAST_PAINT * color), there.a);
 }
 
-// What a surface in the shown pose, or with what it received in the physical one, reflects, over the gain.
+// Reflection of a surface in the shown pose, or with its light in the physical one, over the gain.
 fn reflected_at(material: u32, normal: vec3f, in_anchor: vec3f, received: vec4f) -> vec3f {
   if !IS_GLOSSY { return vec3f(0.0); }
   let strength = strength_of(material);
@@ -156,7 +155,7 @@ fn reflected_at(material: u32, normal: vec3f, in_anchor: vec3f, received: vec4f)
   return strength * (reflected_of_lights(normal, in_anchor, received) + reflected_of_ambient(normal, in_anchor));
 }
 
-// What light changes of a surface's looks: that on it, and of a glossy toy what it reflects, too.
+// Light's effect on a surface: the light on it, and a glossy toy's reflection.
 fn looks(base: vec3f, lit: vec3f, reflects: vec3f) -> vec3f {
   if IS_GLOSSY { return base * lit + reflects; }
   return lit;
@@ -167,8 +166,8 @@ fn physical_tap(low: vec2f, k: u32) -> vec2i {
   return physical_texel(vec2i(low)) + vec2i(vec2u(k & 1u, k >> 1u));
 }
 
-// Whether the camera saw the very point: its depth is between those of the four pixels around it, each of which shows one
-// surface.
+// Whether the camera saw this point: its depth is between those of the four pixels around it, each of
+// which shows one surface.
 fn is_point_shown(low: vec2f, t: vec2f, depth: f32) -> bool {
   var depths = vec4f(0.0);
   for (var k = 0u; k < 4u; k++) {
@@ -181,13 +180,13 @@ fn is_point_shown(low: vec2f, t: vec2f, depth: f32) -> bool {
   return abs(between - depth) <= SHOWN_DEPTH * depth;
 }
 
-// The camera's colour of the paint, under the light `lit`, of the point of the physical toy at `physical_px` and `depth` with the base
-// colour `base`; alpha 0 where something hides it.
+// The camera's colour of the paint, under the light `lit`, of the point of the physical toy at
+// `physical_px` and `depth` with the base colour `base`; alpha is 0 if it is hidden.
 //
-// Of the four pixels around it only those count that show its own surface and material, or that lie beyond the toy's
-// outline where `appearance` carried its colours. Their mean is relit from the mean of the light they were seen under.
-// Where the camera saw the very point, and hardly more at a slant than it is shown, pixels of other paint count, too: a line
-// of the texture may be thinner than a pixel, and beside the camera's colours the model's own would be a speck.
+// Of the four pixels around it only those count that show its surface and material, or lie beyond the
+// outline, with colours from `appearance`. Their mean is relit from their mean light. If the camera saw
+// this point at a similar angle, pixels of other paint count, too: a line of the texture may be thinner
+// than a pixel, and beside the camera's colours the model's own would be a speck.
 fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, stretch: f32) -> vec4f {
   let at = physical_px - 0.5;
   let low = floor(at);
@@ -229,18 +228,17 @@ fn facing(in_anchor: vec3f, normal: vec3f) -> f32 {
   return dot(outward, normalize(globals.camera_in_anchor - in_anchor));
 }
 
-// How far the light on a surface has visibly changed from `was_lit` to `lit`, from 0 to 1.
+// Visible change of the light on a surface from `was_lit` to `lit`, from 0 to 1.
 fn light_change(lit: vec3f, was_lit: vec3f) -> f32 {
   let brighter = max(largest(was_lit), largest(lit));
   if brighter == 0.0 { return 0.0; }
   return smoothstep(SAME_LIGHT, OTHER_LIGHT, largest(abs(lit - was_lit)) / brighter);
 }
 
-// 1 where the toy differs from what the camera saw in this place: its surface has moved, or its light has changed.
+// 1 if the toy differs from the camera's pixel: its surface has moved, or its light has changed.
 //
-// The light it was seen under is that of the same point in the physical pose: what a pixel of the frame shows in its
-// middle says little of a fold or of a shadow's edge that runs through it. Most still pixels show no change there
-// either, and are done.
+// The old light is that of the same point in the physical pose, since the centre of a pixel may not
+// represent a fold or a shadow's edge in it. Most still pixels are unchanged in both.
 fn difference(in_region: vec2i, moved: f32, shown: vec3f, base: vec3f, material: u32, normal: vec3f, in_anchor: vec3f) -> f32 {
   if moved == 1.0 { return 1.0; }
   let texel = clamped_to_physical_box(physical_texel(in_region));
@@ -259,7 +257,7 @@ fn tint(material: u32, physical_in_anchor: vec3f) -> vec3f {
 
 struct Drawn {
   @location(0) radiance: vec4f,
-  // 1 where the toy differs from what the camera saw at this pixel.
+  // 1 if the toy differs from the camera's pixel.
   @location(1) moved: vec4f,
 }
 
@@ -288,7 +286,8 @@ fn fs_toy(
   let unseen = fit.gain.rgb * base * tint(material, physical_in_anchor) * lit;
   let pixel = camera_color(physical_px, clip.z / clip.w, base, lit, stretch);
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
-  // Nothing is discarded, so that depth is tested first: what is behind this surface is behind the receiver, too.
+  // Nothing is discarded, so that depth is tested first: surfaces behind this one are behind the
+  // receiver, too.
   if is_behind_receiver(at.xy + globals.toy_box_origin_px - offset_px, at.w) { return Drawn(vec4f(0.0), vec4f(0.0)); }
   let is_moved = moved(region_px(globals.clip_from_anchor * vec4f(in_anchor, 1.0)), physical_px);
   let shown = looks(base, lit, reflects);

@@ -1,6 +1,7 @@
 // Depth maps of the posed toy from points of each light, all of them tiles of one atlas.
 //
-// Each instance draws the toy into a tile that contains all of it, so nothing is clipped between tiles.
+// Each instance draws the toy into a tile that contains it fully, so nothing is clipped between
+// tiles.
 // Reads: posed positions in anchor space. Writes: reversed depth.
 // CPU reference: tests/reference/src/self_shadow.rs.
 

@@ -1,12 +1,16 @@
-// The plate as this camera would have taken it: the place without the toy, from plates of this or other cameras.
+// The plate for this camera: the place without the toy, from plates of this or other cameras.
 //
-// Plates are brought to this view by the homographies of the receivers. Of several that saw a point the one that saw it
-// best is taken, from a similar direction and in no less detail, with soft seams; each has its exposure.
+// Plates are warped to this view by the homographies of the receivers. Each point comes from the
+// plate that shows it best, from a similar direction and in no less detail, with soft seams; each
+// plate has its exposure.
 //
-// What the first receiver reflects of its surroundings is taken out, as each camera saw it: the frame shows it whatever shadow lies there.
+// The first receiver's reflection of its surroundings is subtracted, for the view of each camera: a
+// shadow does not change it.
 //
-// Reads: plates. Writes: linear colour, alpha 1 where a plate shows the point. CPU reference: tests/reference/src/plate.rs.
-// Source: Casas et al. 2019, section 5.8, keeps one plate for a moving camera; here the seen-from-best of several.
+// Reads: plates. Writes: linear colour, alpha is 1 if a plate shows the point.
+// CPU reference: tests/reference/src/plate.rs.
+// Source: Casas et al. 2019, section 5.8, keeps one plate for a moving camera; here the best of
+// several.
 
 //#import common/globals
 //#import common/reflection
@@ -19,7 +23,7 @@ struct PlateView {
   plate_px_from_plane: array<mat3x3f, MAX_RECEIVERS>,
   // The plate's camera in each receiver's space.
   camera_in_plane: array<vec4f, MAX_RECEIVERS>,
-  // What brings the plate to the exposure of the first.
+  // Factor from the plate's exposure to that of the first one.
   gain: vec4f,
 }
 
@@ -35,28 +39,27 @@ struct PlateViews {
 @group(1) @binding(0) var<uniform> views: PlateViews;
 @group(1) @binding(1) var plates: texture_2d_array<f32>;
 
-// Distance from a plate's border over which another takes over.
+// Distance from a plate's border over which it is blended with another.
 const FEATHER_PX: f32 = 32.0;
-// Cosine of the angle from which a plate is no worse for being seen from farther round: it may be the only one.
+// Cosine below which a plate's quality no longer falls with the angle: it may be the only one.
 const LEAST_COSINE: f32 = 0.1;
-// Weight against that of the best below which a plate is not looked at.
+// Weight relative to the best below which a plate is ignored.
 const LEAST_WEIGHT: f32 = 0.02;
 
-// The fourth power: how much less a plate is worth for the cosine of its view's angle.
+// The fourth power: the quality of a plate for the cosine of its view's angle.
 fn angle_quality(cosine: f32) -> f32 {
   let square = cosine * cosine;
   return square * square;
 }
 
-// The sixth power of all that makes a plate better than another: high, since a mix of two is blurred.
+// The sixth power of the quality: high, since a mix of two plates is blurred.
 fn choice_weight(quality: f32) -> f32 {
   let square = quality * quality;
   return square * square * square;
 }
 
-// What a plate has of a point: xy is where it shows it, in pixels; z how well it saw it, positive wherever it did; w is
-// 1 well
-// inside the plate and 0 at its border.
+// A plate's view of a point: xy is its position in pixels; z the quality, positive if it is
+// visible; w is 1 well inside the plate and 0 at its border.
 alias Candidate = vec4f;
 
 const UNSEEN = vec4f(0.0);
@@ -65,7 +68,7 @@ fn direction_to(camera: vec4f, in_plane: vec2f) -> vec3f {
   return normalize(camera.xyz - vec3f(in_plane.x, 0.0, in_plane.y));
 }
 
-// Where a receiver's point is in the space of another receiver.
+// Position of a receiver's point in the space of another receiver.
 fn in_other_plane(point: ReceiverPoint, other: u32) -> vec3f {
   let own_from_anchor = globals.receivers[receiver_of(point)].plane_from_anchor;
   let rotation = mat3x3f(own_from_anchor[0].xyz, own_from_anchor[1].xyz, own_from_anchor[2].xyz);
@@ -86,8 +89,8 @@ fn is_hidden(k: u32, point: ReceiverPoint) -> bool {
   return false;
 }
 
-// How a point is seen by this camera: xyz is the direction to it; w the area on the receiver per pixel, since a homography
-// of determinant D scales areas by D / w^3.
+// This camera's view of a point: xyz is the direction to it; w the area on the receiver per pixel,
+// since a homography of determinant D scales areas by D / w^3.
 alias Sight = vec4f;
 
 fn sight_of(point: ReceiverPoint, region_px: vec2f) -> Sight {
@@ -97,12 +100,12 @@ fn sight_of(point: ReceiverPoint, region_px: vec2f) -> Sight {
   return vec4f(direction_to(own, point.xy), determinant(here) / (w * w * w));
 }
 
-// Plate pixels per pixel here, by area, of which fewer than one lose detail.
+// Number of plate pixels per pixel, by area; less than one loses detail.
 fn detail(sight: Sight, plate_px_from_plane: mat3x3f, plate_w: f32) -> f32 {
   return min(abs(sight.w * determinant(plate_px_from_plane) / (plate_w * plate_w * plate_w)), 1.0);
 }
 
-// What plate `k` has of a point.
+// Plate `k`'s view of a point.
 fn candidate(k: u32, point: ReceiverPoint, sight: Sight) -> Candidate {
   let plate_px_from_plane = views.plates[k].plate_px_from_plane[receiver_of(point)];
   let at = plate_px_from_plane * vec3f(point.xy, 1.0);
@@ -141,7 +144,8 @@ fn sharp_color(k: u32, px: vec2f) -> vec3f {
   return max(sum, vec3f(0.0)) * views.plates[k].gain.rgb;
 }
 
-// The point of a receiver's front or back at a pixel; beyond all receivers the first one's plane goes on.
+// The point of a receiver's front or back at a pixel; beyond all receivers it is on the first one's
+// plane.
 fn point_beyond(region_px: vec2f) -> ReceiverPoint {
   let point = surface_point(region_px);
   if is_hit(point) { return point; }
@@ -150,14 +154,14 @@ fn point_beyond(region_px: vec2f) -> ReceiverPoint {
   return point_on(0u, p.xy / p.z);
 }
 
-// A colour that a camera sees at a pixel, without what the receiver there reflects of its surroundings.
+// A camera's colour at a pixel, without the receiver's reflection of its surroundings.
 fn without_reflection(color: vec3f, region_px: vec2f, camera: vec3f) -> vec3f {
   let point = receiver_point(region_px);
   if !is_hit(point) { return color; }
   return max(color - reflected_to(camera, point, vec4f(1.0), 1.0), vec3f(0.0));
 }
 
-// Of a plate from this very camera.
+// The plate of this camera itself.
 @fragment
 fn fs_copy(@builtin(position) at: vec4f) -> @location(0) vec4f {
   let texel = vec2u(at.xy) + vec2u(globals.region_origin_px);
@@ -166,7 +170,8 @@ fn fs_copy(@builtin(position) at: vec4f) -> @location(0) vec4f {
   return vec4f(without_reflection(color, at.xy, globals.camera_in_anchor), 1.0);
 }
 
-// What each plate has stands in components of vectors: arrays that are indexed by a plate's number lie in memory.
+// The plates' views are components of vectors: arrays that are indexed dynamically would lie in
+// memory.
 @fragment
 fn fs_choose(@builtin(position) at: vec4f) -> @location(0) vec4f {
   let point = point_beyond(at.xy);
@@ -185,11 +190,12 @@ fn fs_choose(@builtin(position) at: vec4f) -> @location(0) vec4f {
   }
   let best_quality = max(max(quality.x, quality.y), max(quality.z, quality.w));
   if best_quality == 0.0 { return vec4f(0.0); }
-  // Against the best one, so that powers of what is poor do not underflow where there is nothing better.
+  // Weights are relative to the best, so that powers of low qualities do not underflow.
   var weights = vec4f(0.0);
   for (var k = 0u; k < views.n_plates; k++) { weights[k] = inside[k] * choice_weight(quality[k] / best_quality); }
   let best = max(max(weights.x, weights.y), max(weights.z, weights.w));
-  // Listed first: mostly one or two, and all that neighbours do not look at costs nothing.
+  // The plates in use come first: mostly one or two, and plates that neighbours do not use cost
+  // nothing.
   var looked_at = vec4u(0u);
   var n_looked_at = 0u;
   for (var k = 0u; k < views.n_plates; k++) {

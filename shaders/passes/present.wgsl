@@ -1,6 +1,6 @@
-// The camera image with the work region laid over it, code for code, or as much of it as is shown.
+// The camera image with the work region over it, code for code, or blended by the effect.
 //
-// Reads: frame_codes and region_codes, 8 bits; or both as light. Writes: the same, opaque.
+// Reads: frame_codes and region_codes, 8 bits; or both as linear light. Writes: the same, opaque.
 
 //#import common/srgb
 //#import common/fullscreen
@@ -8,7 +8,7 @@
 struct Placement {
   origin_px: vec2u,
   size_px: vec2u,
-  // Part of the region's picture, the rest being the camera image: from 0 to 1.
+  // Part of the region's picture, from 0 to 1; the rest is the camera image.
   effect: f32,
   unused: f32,
 }
@@ -20,7 +20,7 @@ struct Placement {
 @fragment
 fn fs_place(@builtin(position) at: vec4f) -> @location(0) vec4f {
   let texel = vec2u(at.xy);
-  // Wraps to a large number left of the region and above it.
+  // Left of the region and above it, this wraps to a large number.
   let in_region = texel - placement.origin_px;
   if all(in_region < placement.size_px) {
     let region = textureLoad(region_codes, in_region, 0).rgb;
@@ -32,7 +32,7 @@ fn fs_place(@builtin(position) at: vec4f) -> @location(0) vec4f {
   return vec4f(textureLoad(frame_codes, texel, 0).rgb, 1.0);
 }
 
-// The same of light.
+// The same for linear light.
 @fragment
 fn fs_light(@builtin(position) at: vec4f) -> @location(0) vec4f {
   let texel = vec2u(at.xy);

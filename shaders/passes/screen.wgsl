@@ -1,33 +1,35 @@
-// The camera image with the work region laid over it, on a screen, turned and cropped; black beside it.
+// The camera image with the work region over it, on a screen, turned and cropped; black beside it.
 //
-// Reads: beside the region the frame, decoded or as luma and chroma (Cb, Cr) of half its size; in it the region's picture, and
-// the frame as well where the region fades. Writes: sRGB codes, opaque.
-// Frame and region are each filtered by itself, planes as codes: at the region's border all show the same light.
+// Reads: beside the region the frame, decoded or as luma and chroma (Cb, Cr) of half its size; in
+// it the region's picture, and the frame as well where the region fades. Writes: sRGB codes,
+// opaque.
+// Frame and region are filtered separately, planes as codes: at the region's border they show the
+// same light.
 
 //#import common/srgb
 //#import common/fullscreen
 //#import common/planes
 
 struct ScreenMap {
-  // Columns of the map from pixels of the screen to those of the picture.
+  // Columns of the map from pixels of the screen to pixels of the picture.
   x_axis: vec2f,
   y_axis: vec2f,
   origin_px: vec2f,
   picture_px: vec2f,
-  // Of the region, counted from the picture's corner.
+  // Corner of the region, counted from the picture's corner.
   region_origin_px: vec2f,
   region_px: vec2f,
-  // Part of the region's picture, the rest being the camera image: from 0 to 1.
+  // Part of the region's picture, from 0 to 1; the rest is the camera image.
   effect: f32,
   unused: f32,
-  // Of planes alone: size of the chroma, and what their codes mean.
+  // For planes alone: size of the chroma, and the conversion of their codes.
   chroma_px: vec2f,
   encoding: Encoding,
 }
 
 @group(1) @binding(0) var<uniform> image_from_screen: ScreenMap;
 @group(1) @binding(1) var linear_sampler: sampler;
-// A picture, or luma.
+// A picture, or its luma.
 @group(2) @binding(0) var frame: texture_2d<f32>;
 @group(2) @binding(1) var chroma: texture_2d<f32>;
 @group(3) @binding(0) var region: texture_2d<f32>;
@@ -43,13 +45,13 @@ fn is_in_picture(at: vec2f) -> bool {
   return all(at >= vec2f(0.0)) && all(at <= image_from_screen.picture_px);
 }
 
-// Light of the region's picture.
+// Linear light of the region's picture.
 fn region_at(at: vec2f) -> vec3f {
   let in_region = at - image_from_screen.region_origin_px;
   return textureSampleLevel(region, linear_sampler, in_region / image_from_screen.region_px, 0.0).rgb;
 }
 
-// Light of a frame that is a picture.
+// Linear light of a frame that is a picture.
 fn picture_at(at: vec2f) -> vec3f {
   return textureSampleLevel(frame, linear_sampler, at / image_from_screen.picture_px, 0.0).rgb;
 }
