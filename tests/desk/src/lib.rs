@@ -19,6 +19,7 @@ pub mod output;
 pub mod page;
 pub mod program;
 pub mod progress;
+mod ratio;
 pub mod replay;
 mod replay_error;
 pub mod report;

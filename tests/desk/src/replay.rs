@@ -19,8 +19,7 @@ use app_pipeline::readback::Map;
 
 use crate::alignment::{Alignments, Asked, Lights, Ratio};
 use crate::doubts;
-use crate::false_color;
-use crate::false_color::{ERROR, describe};
+use crate::false_color::{self, ERROR, describe};
 use crate::files::SESSION_FILE;
 use crate::frames::Frames;
 use crate::lens::{map_through_lens, through_lens};

@@ -304,9 +304,8 @@ impl<'a> Compared<'a> {
         let mut sums = vec![[(T::default(), 0.0); 3]; self.layer.n_cells];
         for (index, point) in self.layer.points.iter().enumerate() {
             if self.excess[index].is_some() {
-                for channel in 0..3 {
-                    let (sum, total) = &mut sums[point.cell][channel];
-                    let weight = self.weights[index][channel];
+                let channels = sums[point.cell].iter_mut().zip(self.weights[index]);
+                for (channel, ((sum, total), weight)) in channels.enumerate() {
                     *sum = *sum + of(index, channel) * weight;
                     *total += weight;
                 }

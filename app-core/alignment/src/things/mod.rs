@@ -50,6 +50,9 @@ const LEAST_BESIDE: usize = 20;
 const LEAST_ALONE: usize = 60;
 /// The same for a thing that the frame alone shows.
 const LEAST_IN_FRAME: usize = 12;
+/// Minimum number of seeds of a thing in the frame alone that is not before the toy: shadows and
+/// highlights that the model does not have look like small things.
+const LEAST_IN_FRAME_ALONE: usize = 400;
 /// Share of its possible pixels before the toy that must show it.
 const PART_BEFORE: f32 = 0.04;
 /// Share of seeds among a thing's pixels that show a receiver, below which these belong to the
@@ -364,18 +367,9 @@ impl Toy {
                 hidden[thing] += 1;
             }
         }
-        if std::env::var("THINGS").is_ok() {
-            for thing in 0..grown.n_things() {
-                eprintln!(
-                    "THINGS in frame {thing}: hidden {} seeds {}",
-                    hidden[thing],
-                    grown.n_seeds(thing)
-                );
-            }
-        }
         let mark = |thing: usize| match (hidden[thing], grown.n_seeds(thing)) {
             (LEAST_IN_FRAME.., LEAST_BESIDE..) => Mark::BeforeToy,
-            (_, LEAST_ALONE..) => Mark::Thing,
+            (_, LEAST_IN_FRAME_ALONE..) => Mark::Thing,
             _ => Mark::None,
         };
         let marks: Vec<Mark> = (0..grown.n_things()).map(mark).collect();

@@ -209,11 +209,7 @@ impl fmt::Display for Warning {
                 "the real shadow does not tell the strength of {} by itself: lights are taken to be alike",
                 lights_in_words(lights)
             ),
-            Self::ShadowsUnseen { unseen } => write!(
-                f,
-                "no real shadow is seen of {}: the new one there has the shade of others",
-                listed(unseen, ", ")
-            ),
+            Self::ShadowsUnseen { unseen } => shadows_unseen(f, unseen),
             Self::MirrorLike { roughness } => mirror_like(f, *roughness),
             Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Outlier(unknown) => unknown.fmt(f),
@@ -251,6 +247,14 @@ impl Serialize for Warning {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
+}
+
+fn shadows_unseen(f: &mut fmt::Formatter<'_>, unseen: &[UnseenShadow]) -> fmt::Result {
+    write!(
+        f,
+        "no real shadow is seen of {}: the new one there has the shade of others",
+        listed(unseen, ", ")
+    )
 }
 
 fn bounce_at_limit(is_black: bool) -> &'static str {

@@ -447,8 +447,7 @@ impl Stage {
         report.warnings.extend(self.plate_warning(footprint));
         report.warnings.extend(self.light_warning());
         report.warnings.extend(self.thing_warnings());
-        report.warnings.extend(self.gloss_warning());
-        report.warnings.extend(self.reflection_warning());
+        report.warnings.extend(self.surface_warnings());
         if !self.shows_toy(&footprint.view) {
             report.warnings.push(Warning::ToyOutOfPicture);
         }

@@ -34,8 +34,13 @@ impl Stage {
         self.reflection.as_ref().filter(|_| has_channel)
     }
 
+    /// Surfaces of toy and table that reflect more than is modelled.
+    pub(super) fn surface_warnings(&self) -> impl Iterator<Item = Warning> {
+        self.gloss_warning().into_iter().chain(self.reflection_warning())
+    }
+
     /// The warning that the receiver is too smooth for one colour of the toy.
-    pub(super) fn reflection_warning(&self) -> Option<Warning> {
+    fn reflection_warning(&self) -> Option<Warning> {
         let roughness = self.reflection_in_use()?.roughness;
         (roughness < LEAST_ROUGHNESS).then_some(Warning::MirrorLike { roughness })
     }
