@@ -18,7 +18,7 @@ const FULL_PIXELS: f64 = 16.0;
 pub struct SeenPaint {
     /// The point of the physical toy, in metres.
     pub in_anchor: DVec3,
-    /// Which of the toy's materials.
+    /// Index of the toy's material.
     pub material: usize,
     /// The pixel's colour, linear.
     pub shown: DVec3,

@@ -16,7 +16,7 @@ use super::samplers::Samplers;
 use super::shader::ShaderTexts;
 use super::uniforms::Uniforms;
 
-/// Which graphics adapter to use.
+/// Choice of the graphics adapter.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum AdapterChoice {
     /// The fastest one.

@@ -100,7 +100,7 @@ pub enum Loss {
         /// End of the last intact record.
         at: u64,
     },
-    /// As [`Loss::Cut`], without a partial record.
+    /// Loss as in [`Loss::Cut`], without a partial record.
     #[error("the recording was not finished: it ends after byte {at} without its summary")]
     Unfinished {
         /// Size of the file.
