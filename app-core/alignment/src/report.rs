@@ -351,7 +351,7 @@ impl fmt::Display for RatioOutcome {
             Self::OutlineDisagrees => {
                 "another would explain the shadows, but not the outline: toy or receivers may be of another size or height"
             }
-            Self::Unseen => "there is no plate, or too little of toy and shadows is seen",
+            Self::Unseen => "there is no plate, or too little of toy and shadows is visible",
         })
     }
 }

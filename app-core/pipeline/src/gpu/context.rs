@@ -397,7 +397,7 @@ async fn find_adapter(
                 .into_iter()
                 .find(fits)
                 .ok_or_else(|| GpuError::NoAdapter {
-                    reason: format!("none is named \"{wanted}\"; available: {names:?}"),
+                    reason: format!("there is none named \"{wanted}\"; available: {names:?}"),
                 })
         }
     }

@@ -256,7 +256,7 @@ impl Findings {
     fn pose(&mut self, pose: Option<&PoseAlignment>) {
         match pose {
             None => self.wrong.push(
-                "frames[0]: too little of the toy's outline is seen to align it: check toy.world_from_object and world_from_camera"
+                "frames[0]: too little of the toy's outline is visible to align it: check toy.world_from_object and world_from_camera"
                     .to_owned(),
             ),
             Some(pose) => {
