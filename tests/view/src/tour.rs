@@ -28,6 +28,8 @@ const N_VIDEO: usize = 15;
 const N_SEARCHED: usize = 150;
 /// Number of drags after which a button that is still out of sight is touched at its place.
 const N_SCROLLS: usize = 6;
+/// A shorter drag counts as a touch, in points.
+const LEAST_DRAG_POINTS: f64 = 16.0;
 /// Free margin of a sheet below its controls, in points.
 const SHEET_MARGIN_POINTS: f64 = 28.0;
 
@@ -387,12 +389,13 @@ impl<'a> Tour<'a> {
             let [left, top, right, bottom] = self.button(label)?;
             let height = f64::from(self.screen.size_px[1]);
             let margin_px = SHEET_MARGIN_POINTS * self.screen.pixels_per_point;
+            let least_px = LEAST_DRAG_POINTS * self.screen.pixels_per_point;
             let below_px = bottom - (height - margin_px);
             let above_px = margin_px - top;
             let by_px = if below_px > 0.0 {
-                below_px.min(0.4 * height)
+                below_px.max(least_px).min(0.4 * height)
             } else if above_px > 0.0 {
-                -above_px.min(0.25 * height)
+                -above_px.max(least_px).min(0.25 * height)
             } else {
                 break;
             };
