@@ -3,7 +3,7 @@
 //   out = gain plate (M' + r)         in general, r the pooled residual, fading with large changes
 //   out = frame + gain plate (M' - M) if the receiver is visible and M' is near M: r is the pixel's
 //                                     own, so the frame passes; also for unexplained things
-//   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r), without a plate
+//   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r), not a plate
 // A glossy receiver's reflection is subtracted from the frame first, and that of the shown toy is
 // added last.
 //
@@ -66,7 +66,7 @@ override HAS_STRENGTH: bool = false;
 // COVERED_POSITION for each position that the shown toy covers.
 @group(3) @binding(7) var covered: texture_2d<f32>;
 
-// Change of the model, in plates, up to which a visible pixel keeps its residual, and the upper end.
+// Change of the model, in plates, up to which a visible pixel keeps its residual, and its end.
 const KEEP_ALL: f32 = 0.02;
 const KEEP_NONE: f32 = 0.15;
 // Change of the model at which the pooled residual is halved.
@@ -84,7 +84,7 @@ const OBJECT_EVENNESS: f32 = 0.2;
 const BLED_NONE: f32 = 0.03;
 const BLED_ALL: f32 = 0.1;
 
-// Share of a pixel's colour that is the receiver's own: less if the toy stood beside it and has moved.
+// Share of a pixel's colour that is the receiver's own: less beside a toy that has moved.
 fn own_share(evident: vec4f, has_moved: bool, deviation: f32) -> f32 {
   if evident.r == 0.0 { return 0.0; }
   if !has_moved { return 1.0; }

@@ -372,7 +372,7 @@ impl Alignments {
         found.map_or(self.lights.listed(given).len(), |lights| lights.len())
     }
 
-    /// The receivers, if they differ from the session's: fitted under the toy, or with found planes.
+    /// The receivers, if they differ from the session's: fitted under the toy, or found planes.
     #[must_use]
     pub fn receivers(&self) -> Option<&[Receiver]> {
         self.receivers.as_deref()

@@ -313,7 +313,7 @@ fn within(coverage: &Coverage) -> Vec<IVec2> {
 pub(crate) struct Surfel {
     /// By the photograph.
     pub(crate) shown: Color,
-    /// Of the model's paint.
+    /// Colour of the model's paint.
     pub(crate) base: Color,
     /// Unit vector in camera space, as is the place.
     pub(crate) normal: DVec3,

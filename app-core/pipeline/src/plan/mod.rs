@@ -104,7 +104,7 @@ impl Change {
     pub const ALL: [Self; 4] = [Self::Pose, Self::Picture, Self::View, Self::Scene];
 }
 
-/// What changed since the previous frame; selects the passes to run.
+/// Changes since the previous frame, which select the passes to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FrameDelta {
     pub(crate) change: Change,

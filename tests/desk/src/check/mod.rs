@@ -36,7 +36,7 @@ const DRAWING: &str = "check.png";
 /// The result of a check.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
-    /// How toy, lights and camera stand to one another.
+    /// Relations between the poses of toy, lights and camera.
     pub facts: Vec<String>,
     /// Mistakes; empty for a good session.
     pub wrong: Vec<String>,

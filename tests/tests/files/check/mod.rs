@@ -81,7 +81,7 @@ fn a_toy_that_lies_on_its_back_is_offered_the_turn() {
     let lying = changed("lying", |index| {
         let object = &mut index["toy"]["world_from_object"];
         *given.borrow_mut() = object.clone();
-        // As if the file had Z up.
+        // This corresponds to a file with Z up.
         *object =
             json!((matrix(object) * DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2)).to_cols_array());
     });
