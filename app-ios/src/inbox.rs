@@ -8,7 +8,7 @@ use app_core::interface::Touch;
 
 /// A message of a callback.
 #[derive(Debug)]
-pub enum Told {
+pub enum CallbackMessage {
     /// An event for the app.
     Event(ShellEvent),
     /// A touch for its interface.
@@ -17,7 +17,7 @@ pub enum Told {
 
 /// Unread messages, in their order.
 #[derive(Debug, Default)]
-pub struct Inbox(RefCell<Vec<Told>>);
+pub struct Inbox(RefCell<Vec<CallbackMessage>>);
 
 impl Inbox {
     /// Leaves an event. A camera frame replaces one that still waits, since late frames are
@@ -25,19 +25,19 @@ impl Inbox {
     pub fn tell(&self, event: ShellEvent) {
         let mut waiting = self.0.borrow_mut();
         if matches!(event, ShellEvent::Frame(_)) {
-            waiting.retain(|told| !matches!(told, Told::Event(ShellEvent::Frame(_))));
+            waiting.retain(|message| !matches!(message, CallbackMessage::Event(ShellEvent::Frame(_))));
         }
-        waiting.push(Told::Event(event));
+        waiting.push(CallbackMessage::Event(event));
     }
 
     /// Leaves a touch.
     pub fn touch(&self, touch: Touch) {
-        self.0.borrow_mut().push(Told::Touch(touch));
+        self.0.borrow_mut().push(CallbackMessage::Touch(touch));
     }
 
     /// Returns all messages; those that arrive meanwhile wait for the next call.
     #[must_use]
-    pub fn take(&self) -> Vec<Told> {
+    pub fn take(&self) -> Vec<CallbackMessage> {
         self.0.take()
     }
 }

@@ -26,7 +26,7 @@ use objc2_ui_kit::{UIApplication, UIApplicationOpenSettingsURLString, UIView};
 
 use crate::convert;
 use crate::hand_on::{self, into_photos};
-use crate::inbox::{Inbox, Told};
+use crate::inbox::{CallbackMessage, Inbox};
 use crate::person;
 use crate::stage::{Fitted, Stage, StageError};
 
@@ -234,11 +234,11 @@ impl Shell {
             for told in told {
                 let Some(live) = self.stage.live() else { return };
                 match told {
-                    Told::Event(event) => {
+                    CallbackMessage::Event(event) => {
                         let commands = live.event(event);
                         self.obey(commands);
                     }
-                    Told::Touch(touch) => live.touch(touch),
+                    CallbackMessage::Touch(touch) => live.touch(touch),
                 }
             }
         }

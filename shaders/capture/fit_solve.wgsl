@@ -251,14 +251,14 @@ fn solve_toy(channel: u32) {
 }
 
 // Without a valid pixel the start values stay.
-fn solve_channel(channel: u32, energy: f32, is_shadow_told: bool) {
+fn solve_channel(channel: u32, energy: f32, is_shadow_known: bool) {
   if step.subject == SUBJECT_INTENSITIES { solution.gain[channel] *= step.exposure_ratio; }
   if step.subject == SUBJECT_TOY {
     if energy > 0.0 { solve_toy(channel); }
   } else if sums[channel * N_SUMS] > 0.0 {
     if step.subject == SUBJECT_INTENSITIES {
       solve_intensities(channel);
-    } else if has_no_light() && !is_shadow_told {
+    } else if has_no_light() && !is_shadow_known {
       solve_unshadowed(channel);
     } else {
       solve_receiver(channel);
@@ -295,6 +295,6 @@ fn cs_solve(@builtin(local_invocation_index) lane: u32) {
   // One invocation processes all channels: a store to one component of a vector in memory may touch the others.
   if lane > 0u { return; }
   // This is decided in the last step: until then the weights follow the shadow.
-  let is_shadow_told = !has_no_light() || step.is_last == 0u || is_ambient_shadow_told();
-  for (var channel = 0u; channel < 3u; channel++) { solve_channel(channel, energy, is_shadow_told); }
+  let is_shadow_known = !has_no_light() || step.is_last == 0u || is_ambient_shadow_known();
+  for (var channel = 0u; channel < 3u; channel++) { solve_channel(channel, energy, is_shadow_known); }
 }

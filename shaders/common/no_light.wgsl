@@ -17,7 +17,7 @@ fn squares_of_plate() -> f32 {
 // Whether a shadow of the ambient light explains enough of the difference between frame and plate:
 // in squares, over all channels, and after fitting the gain. A frame that is brighter below the toy
 // excludes one.
-fn is_ambient_shadow_told() -> bool {
+fn is_ambient_shadow_known() -> bool {
   var left = 0.0;
   var explained = 0.0;
   for (var channel = 0u; channel < 3u; channel++) {

@@ -78,7 +78,7 @@ impl Session {
             let get = self.api.ArImageMetadata_getConstEntry;
             get(self.raw(), metadata.as_ptr(), tag, &raw mut entry)
         };
-        let is_told = status == 0 && entry.kind == kind && entry.count > 0 && !entry.data.is_null();
-        is_told.then_some(entry.data)
+        let is_reported = status == 0 && entry.kind == kind && entry.count > 0 && !entry.data.is_null();
+        is_reported.then_some(entry.data)
     }
 }

@@ -7,7 +7,7 @@ use glam::DMat4;
 
 use super::ffi::Functions;
 use super::frame::FrameError;
-use super::status::{Failure, told};
+use super::status::{Failure, event_of};
 use super::tracker::{Geometry, Run, Step, Tracker, Wait};
 use crate::java::JavaHost;
 
@@ -245,7 +245,7 @@ impl Feed {
 
     fn fail(&mut self, failure: Failure) -> ShellEvent {
         eprintln!("arcore: no frames: {failure}");
-        let event = told(failure);
+        let event = event_of(failure);
         let is_interrupted = matches!(event, ShellEvent::ArTrouble(ArSession::Interrupted, _));
         self.interrupted = is_interrupted.then_some(None);
         event

@@ -187,7 +187,7 @@ pub fn tracking_without_pose(reason: ArTrackingFailureReason) -> Tracking {
 
 /// The app's event for a failure that ends tracking.
 #[must_use]
-pub fn told(failure: Failure) -> ShellEvent {
+pub fn event_of(failure: Failure) -> ShellEvent {
     match (failure, failure.remedy()) {
         (Failure(PERMISSION_NOT_GRANTED), _) => ShellEvent::Permission(Permission::Denied),
         (Failure(CAMERA_NOT_AVAILABLE), _) => {

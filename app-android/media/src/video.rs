@@ -99,7 +99,7 @@ struct Encoder {
 impl Encoder {
     /// Submits a picture, or the end.
     fn put(&mut self, picture: Option<&Image>, since_s: f64) -> io::Result<()> {
-        let waiting = self.codec.dequeue_input_buffer(PATIENCE).map_err(told)?;
+        let waiting = self.codec.dequeue_input_buffer(PATIENCE).map_err(io_error)?;
         let DequeuedInputBufferResult::Buffer(mut buffer) = waiting else {
             return Err(io::ErrorKind::TimedOut.into());
         };
@@ -123,13 +123,13 @@ impl Encoder {
         let time_us = (1e6 * since_s).round() as u64;
         self.codec
             .queue_input_buffer(buffer, 0, n_bytes, time_us, flags)
-            .map_err(told)
+            .map_err(io_error)
     }
 
     /// Writes the encoder's output; returns true at its end.
     fn take(&mut self, wait: Duration) -> io::Result<bool> {
         loop {
-            match self.codec.dequeue_output_buffer(wait).map_err(told)? {
+            match self.codec.dequeue_output_buffer(wait).map_err(io_error)? {
                 DequeuedOutputBufferInfoResult::TryAgainLater => return Ok(false),
                 DequeuedOutputBufferInfoResult::OutputBuffersChanged => {}
                 DequeuedOutputBufferInfoResult::OutputFormatChanged => {
@@ -147,7 +147,9 @@ impl Encoder {
                     if info.size > 0 && !has(AMEDIACODEC_BUFFER_FLAG_CODEC_CONFIG) {
                         self.muxer.write(buffer.buffer(), &info)?;
                     }
-                    self.codec.release_output_buffer(buffer, false).map_err(told)?;
+                    self.codec
+                        .release_output_buffer(buffer, false)
+                        .map_err(io_error)?;
                     if has(AMEDIACODEC_BUFFER_FLAG_END_OF_STREAM) {
                         return Ok(true);
                     }
@@ -169,7 +171,7 @@ impl VideoEncoder for Encoder {
         if !self.take(PATIENCE)? {
             return Err(io::ErrorKind::TimedOut.into());
         }
-        self.codec.stop().map_err(told)?;
+        self.codec.stop().map_err(io_error)?;
         self.muxer.finish()
     }
 }
@@ -233,6 +235,6 @@ fn checked(status: media_status_t) -> io::Result<()> {
     Err(io::Error::other(format!("{status:?}")))
 }
 
-fn told(error: MediaError) -> io::Error {
+fn io_error(error: MediaError) -> io::Error {
     io::Error::other(error)
 }

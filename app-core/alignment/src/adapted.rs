@@ -13,7 +13,7 @@ use app_scene::scene::Scene;
 use app_scene::toy::{Toy, ToyError};
 
 /// Displacements below this fraction of the largest count as zero.
-const TOLD: f64 = 0.01;
+const SIGNIFICANT: f64 = 0.01;
 
 /// Largest distance, in pixels, between the outlines of toy and model for which the model is
 /// adapted; beyond, the toy is at another place or another one. Models displaced by 1 mm, or with a
@@ -111,11 +111,11 @@ impl ModelAlignment {
             .iter()
             .fold(0.0, |most: f64, one| most.max(one.length()));
         // Points that the outline does not constrain are not displaced.
-        let told = found
+        let significant = found
             .displacements_m
             .iter()
-            .filter(|one| one.length() > TOLD * most_m);
-        let squares: Vec<f64> = told.map(|one| one.length_squared()).collect();
+            .filter(|one| one.length() > SIGNIFICANT * most_m);
+        let squares: Vec<f64> = significant.map(|one| one.length_squared()).collect();
         Self {
             displaced_m: (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt(),
             most_displaced_m: most_m,

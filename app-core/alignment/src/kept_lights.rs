@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::lights::Watched;
-use super::photograph::{Discovered, FoundLights};
+use super::photograph::{EstimatedLights, FoundLights};
 use super::report::{AssumedLight, LightAlignment};
 use crate::probe::TrackedLight;
 use app_scene::scene::Light;
@@ -40,7 +40,7 @@ pub(super) struct KeptLights {
     pub(super) report: Vec<LightAlignment>,
     pub(super) errors: Option<[f64; 2]>,
     /// `None` if lights were given.
-    pub(super) discovered: Option<Discovered>,
+    pub(super) discovered: Option<EstimatedLights>,
     /// The assumed light, if none was found.
     pub(super) assumed: Option<AssumedLight>,
     /// Whether one light is applied as a line of round ones.
@@ -75,13 +75,13 @@ impl KeptLights {
     }
 
     /// Lights without a list; a probe's estimate stays if no shadow shows the light.
-    pub(super) fn discovered(given: Arc<[Light]>, found: Discovered, told: &[TrackedLight]) -> Self {
+    pub(super) fn discovered(given: Arc<[Light]>, found: EstimatedLights, by_probe: &[TrackedLight]) -> Self {
         let lights: Arc<[Light]> = match &found {
             Ok(found) => found.iter().map(|found| found.light).collect(),
-            Err(_) => told.iter().map(|told| told.light).collect(),
+            Err(_) => by_probe.iter().map(|by_probe| by_probe.light).collect(),
         };
         Self {
-            applied: (found.is_ok() || !told.is_empty()).then_some(lights),
+            applied: (found.is_ok() || !by_probe.is_empty()).then_some(lights),
             discovered: Some(found),
             ..Self::listed(given, None)
         }

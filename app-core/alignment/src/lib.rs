@@ -46,7 +46,6 @@ mod gloss;
 mod hand;
 mod kept_lights;
 mod kept_reflection;
-mod laid;
 mod light_search;
 mod lights;
 mod median;
@@ -55,6 +54,7 @@ mod observer;
 mod outlines;
 mod photograph;
 mod picture;
+mod placed_receivers;
 pub mod plate_taker;
 mod pose;
 pub mod pose_filter;
@@ -99,12 +99,12 @@ pub use no_light::NoLight;
 pub use observer::Observer;
 pub use outlines::Outlines;
 pub use report::{
-    AlignmentReport, AssumedLight, CameraAlignment, DiscoveredLight, LensAlignment, LightAlignment,
+    AlignmentReport, AssumedLight, CameraAlignment, EstimatedLight, LensAlignment, LightAlignment,
     LightDeviation, ModelAlignment, PlaneAlignment, PoseAlignment, PoseDeviation, RatioAlignment,
     RatioOutcome, Stand,
 };
 pub use silhouette::Silhouette;
-pub use standing_search::{Newcomer, StandingPose, StandingSearch};
+pub use standing_search::{NewObject, StandingPose, StandingSearch};
 pub use toy_search::{FoundToy, ToySearch, ViewDirection, find_toy};
 pub use warning::AlignmentWarning;
 
@@ -131,7 +131,7 @@ const POSE_GROWN: f64 = 0.01;
 pub struct Aligner {
     scene: Arc<Scene>,
     /// The scene that the latest alignment reported.
-    told_scene: Arc<Scene>,
+    reported_scene: Arc<Scene>,
     /// The ratio to estimate, on request.
     ratio: Ratio,
     are_plates_aligned: bool,
@@ -165,7 +165,7 @@ impl Aligner {
     pub fn new(scene: impl Into<Arc<Scene>>) -> Self {
         let scene = scene.into();
         Self {
-            told_scene: Arc::clone(&scene),
+            reported_scene: Arc::clone(&scene),
             scene,
             ratio: Ratio::default(),
             are_plates_aligned: false,
@@ -244,7 +244,7 @@ impl Aligner {
             None => self.see(input, kept.as_ref())?,
         };
         let seen = self.with_adapted_model(seen)?;
-        let seen = self.on_laid_receivers(seen, input)?;
+        let seen = self.on_placed_receivers(seen, input)?;
         self.lights = Some(match kept {
             Some(kept) if self.are_shadows_withheld => kept,
             kept => self.look_at_lights(kept, given, &seen)?,
@@ -282,11 +282,12 @@ impl Aligner {
     }
 
     /// The view with receivers fitted under the toy, if their place is a guess and the picture shows the toy.
-    fn on_laid_receivers(&mut self, seen: Seen, input: &FrameInput) -> Result<Seen, ToyError> {
+    fn on_placed_receivers(&mut self, seen: Seen, input: &FrameInput) -> Result<Seen, ToyError> {
         if !self.scene.uncertainty.are_receivers_guessed || !seen.view.is_trusted(MOST_OUTLINE_PX) {
             return Ok(seen);
         }
-        let Some(receivers) = laid::laid(&self.scene, &seen.view.world_from_object)? else {
+        let Some(receivers) = placed_receivers::placed_receivers(&self.scene, &seen.view.world_from_object)?
+        else {
             return Ok(seen);
         };
         let scene = Arc::make_mut(&mut self.scene);
@@ -391,7 +392,7 @@ impl Aligner {
     }
 
     fn aligned(&mut self, input: &FrameInput) -> Alignment {
-        let told = std::mem::replace(&mut self.told_scene, Arc::clone(&self.scene));
+        let reported = std::mem::replace(&mut self.reported_scene, Arc::clone(&self.scene));
         let (view, lights) = (self.view.as_ref(), self.lights.as_ref());
         let discovered = lights.and_then(|lights| lights.discovered.as_ref());
         let report = AlignmentReport {
@@ -444,7 +445,7 @@ impl Aligner {
             camera: view.map_or(input.camera, |view| view.camera),
             world_from_object: view.map_or(input.world_from_object, |view| view.world_from_object),
             lights: applied,
-            scene: (!Arc::ptr_eq(&told, &self.scene)).then(|| Arc::clone(&self.scene)),
+            scene: (!Arc::ptr_eq(&reported, &self.scene)).then(|| Arc::clone(&self.scene)),
             things: self.things.clone(),
             sharpness: view.map_or(input.sharpness, |view| view.sharpness),
             gloss: self.gloss.unwrap_or(input.gloss),

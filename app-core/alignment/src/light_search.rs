@@ -31,7 +31,7 @@ impl Aligner {
     /// The lights in a view, as far as it constrains them.
     pub(super) fn find_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
         if given.is_empty() {
-            return self.discover_lights(given, seen);
+            return self.estimate_lights(given, seen);
         }
         let found = if self.can_tell_lights(&given) && seen.view.is_trusted(MOST_OUTLINE_PX) {
             seen.photograph
@@ -91,7 +91,7 @@ impl Aligner {
     }
 
     /// Unlisted lights of a view, or lights that are not at their listed place.
-    fn discover_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
+    fn estimate_lights(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
         let lights = self.find_anywhere(given, seen)?;
         let has_none = matches!(lights.discovered, Some(Err(NoLight::NoneDominant)));
         let lights = if has_none && lights.in_use().is_empty() {
@@ -111,15 +111,15 @@ impl Aligner {
 
     /// Lights all over the hemisphere, or around a probe's estimates.
     fn find_anywhere(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
-        let told = self.probe.as_ref().map_or(&[][..], |probe| &probe.lights);
+        let by_probe = self.probe.as_ref().map_or(&[][..], |probe| &probe.lights);
         let found = match &seen.view.report {
             Some(pose) if seen.view.is_trusted(DISCOVERY_OUTLINE_PX) => {
                 seen.photograph
-                    .discover(&self.scene, &seen.input, &pose.deviation, told)?
+                    .search_lights(&self.scene, &seen.input, &pose.deviation, by_probe)?
             }
             _ => Err(NoLight::PoseUnknown),
         };
-        Ok(KeptLights::discovered(given, found, told))
+        Ok(KeptLights::discovered(given, found, by_probe))
     }
 
     /// Lights of an earlier view, or new ones if a lamp was moved or switched on.
@@ -165,12 +165,12 @@ impl Aligner {
             .map_or(Arc::clone(&given), |kept| kept.in_use().into());
         // If the toy's pose is wrong, the picture shows the place behind it, as if a thing stood in
         // front of the toy.
-        let are_told = !self.are_shadows_withheld && seen.view.is_trusted(MOST_OUTLINE_PX);
+        let are_trusted = !self.are_shadows_withheld && seen.view.is_trusted(MOST_OUTLINE_PX);
         let as_it_is = seen;
         let is_searched = !self.are_shadows_withheld && self.reflection.search(&self.scene, seen, &known)?;
         let freed = self.reflection.removed_from(&self.scene, seen)?;
         let seen = freed.as_ref().unwrap_or(seen);
-        let things = if !are_told {
+        let things = if !are_trusted {
             None
         } else {
             match self.look_for_things(&known, seen)? {
@@ -190,7 +190,7 @@ impl Aligner {
             self.reflection
                 .search_again(&self.scene, as_it_is, lights.in_use())?;
         }
-        let things = if !are_told || lights.in_use() == &*known {
+        let things = if !are_trusted || lights.in_use() == &*known {
             things
         } else {
             // Plates may have been relit.
@@ -205,7 +205,7 @@ impl Aligner {
                 }
             }
         };
-        if are_told && self.gloss.is_none() {
+        if are_trusted && self.gloss.is_none() {
             let toy = &seen.input.world_from_object;
             self.gloss = Some(looked_at.photograph.gloss(&self.scene, toy, lights.in_use())?);
         }
@@ -242,7 +242,7 @@ impl Aligner {
         };
         let relit = Self::new(Scene::clone(&self.scene).with_plates(plates));
         let seen = Seen::again(&relit.scene, seen.view.clone(), &seen.input);
-        let others = relit.discover_lights(Arc::clone(&kept.given), &seen)?;
+        let others = relit.estimate_lights(Arc::clone(&kept.given), &seen)?;
         let now = relit
             .watch(&others, &seen)?
             .filter(|now| kept.are_replaced_by(*now));

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::lights::{FoundLight, Guess, Hints, Relight, Watched};
+use super::lights::{FoundLight, Hints, InitialLight, Relight, Watched};
 use super::picture::{Mask, Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
-use super::report::{AssumedLight, DiscoveredLight, LightAlignment, PoseAlignment, PoseDeviation};
+use super::report::{AssumedLight, EstimatedLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::shape::Shape;
 use super::{lights, pose};
 use crate::no_light::NoLight;
@@ -301,26 +301,27 @@ impl Photograph {
 
     /// Unlisted lights, with the toy in its place of uncertainty `pose`; around a probe's
     /// estimates, if there are any.
-    pub(super) fn discover(
+    pub(super) fn search_lights(
         &self,
         scene: &Scene,
         input: &FrameInput,
         pose: &PoseDeviation,
-        told: &[TrackedLight],
-    ) -> Result<Discovered, ToyError> {
+        by_probe: &[TrackedLight],
+    ) -> Result<EstimatedLights, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let world_from_camera = &input.camera.world_from_camera;
         let bounds = scene.toy.bounds_of_pose(&scene.physical_pose)?;
         let middle = 0.5 * (bounds.min + bounds.max).as_dvec3();
         let middle_in_world = input.world_from_object.transform_point3(middle);
-        let guesses = told.iter();
-        let guesses = guesses.filter_map(|light| Guess::new(light, &self.camera_from_world));
+        let initial_lights = by_probe.iter();
+        let initial_lights =
+            initial_lights.filter_map(|light| InitialLight::new(light, &self.camera_from_world));
         let estimated = input.light_estimate.and_then(|light| light.direction_in_world());
         let hints = Hints {
-            guesses: guesses.collect(),
+            initial_lights: initial_lights.collect(),
             estimated: estimated.map(|direction| self.camera_from_world.transform_vector3(direction)),
         };
-        let found = lights::discover(
+        let found = lights::search_lights(
             &shape,
             &self.receivers,
             &self.pyramid,
@@ -332,7 +333,7 @@ impl Photograph {
             for found in &mut found {
                 found.seen_from(middle_in_world);
             }
-            let can_be = |found: &DiscoveredLight| found.light.check("lights").is_ok();
+            let can_be = |found: &EstimatedLight| found.light.check("lights").is_ok();
             if found.iter().all(can_be) {
                 Ok(found)
             } else {
@@ -395,7 +396,7 @@ fn apart(a: &DMat4, b: &DMat4, point: DVec3) -> (f64, f64) {
 }
 
 /// Unlisted lights, or the reason why there are none.
-pub(super) type Discovered = Result<Vec<DiscoveredLight>, NoLight>;
+pub(super) type EstimatedLights = Result<Vec<EstimatedLight>, NoLight>;
 
 /// A pose: given, kept or corrected.
 pub(super) struct FoundPose {
@@ -435,7 +436,7 @@ pub(super) struct FoundLights {
     pub(super) errors: [f64; 2],
 }
 
-impl DiscoveredLight {
+impl EstimatedLight {
     /// Adds their direction, distance and size as seen from a place.
     fn seen_from(&mut self, place_in_world: DVec3) {
         let direction = self.light.direction_from(place_in_world);

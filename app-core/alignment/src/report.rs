@@ -38,7 +38,7 @@ pub struct AlignmentReport {
     pub probe: Option<ProbeReport>,
     /// Lights that were found without a list, or far from a list that does not explain the shadow,
     /// strongest first; empty if a list stays, or none was found.
-    pub discovered: Vec<DiscoveredLight>,
+    pub discovered: Vec<EstimatedLight>,
     /// The reason why no light was found by a shadow; `None` if lights are listed or were found. A
     /// probe's estimates are then used directly.
     pub no_light: Option<NoLight>,
@@ -234,7 +234,7 @@ pub struct LightAlignment {
 
 /// An unlisted light, found by its shadow.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct DiscoveredLight {
+pub struct EstimatedLight {
     /// The light as a scene lists it.
     pub light: Light,
     /// Unit vector from the centre of the toy's box.
@@ -334,7 +334,7 @@ pub enum RatioOutcome {
     /// The given value explains the picture as well, within noise.
     AsGiven,
     /// Other values explain the shadows as well, or no value near the given one does.
-    NotTold,
+    Unconstrained,
     /// The shadows fit another value better, with which the outline of the toy fits worse:
     /// something else is wrong, for example the size of the toy or the height of a receiver.
     OutlineDisagrees,
@@ -347,7 +347,7 @@ impl fmt::Display for RatioOutcome {
         f.write_str(match self {
             Self::Corrected => "corrected",
             Self::AsGiven => "the given value explains the shadows as well",
-            Self::NotTold => "the shadows do not constrain it",
+            Self::Unconstrained => "the shadows do not constrain it",
             Self::OutlineDisagrees => {
                 "another would explain the shadows, but not the outline: toy or receivers may be of another size or height"
             }

@@ -81,8 +81,8 @@ fn over_plate(level: &Level, coverage: &Coverage) -> Option<Spread> {
     let plate = plate.spread(Spread::round(SMOOTHED_PX));
     let mut spread = Spread::NONE;
     for _ in 0..N_STEPS {
-        let told = told(&frame, &plate.spread(spread), &is_used);
-        let step_px2 = step(&told, spread)?;
+        let measurements = measurements(&frame, &plate.spread(spread), &is_used);
+        let step_px2 = step(&measurements, spread)?;
         let most_px2 = step_px2.amax();
         let step_px2 = step_px2 * (MOST_STEP_PX2 / most_px2.max(MOST_STEP_PX2));
         spread = steadied(spread.and(Spread {
@@ -94,15 +94,15 @@ fn over_plate(level: &Level, coverage: &Coverage) -> Option<Spread> {
             break;
         }
     }
-    let told = told(&frame, &plate.spread(spread), &is_used);
-    let is_met = told
+    let measurements = measurements(&frame, &plate.spread(spread), &is_used);
+    let is_met = measurements
         .iter()
         .all(|one| one.correlation < LEAST_CORRELATION || one.correlation >= CORRELATION);
     is_met.then_some(spread)
 }
 
 /// The measurement in one direction.
-struct Told {
+struct Measurement {
     /// Logarithm of the photograph's energy over the plate's.
     excess: f64,
     /// Derivative of the plate's energy by each of (xx, xy, yy).
@@ -111,7 +111,7 @@ struct Told {
     correlation: f64,
 }
 
-fn told(frame: &Grey, plate: &Grey, is_used: &[bool]) -> [Told; DIRECTIONS.len()] {
+fn measurements(frame: &Grey, plate: &Grey, is_used: &[bool]) -> [Measurement; DIRECTIONS.len()] {
     DIRECTIONS.map(|direction| {
         let (frame, plate) = (frame.difference(direction), plate.difference(direction));
         let [across, down] = [IVec2::X, IVec2::Y].map(|axis| plate.difference(axis));
@@ -127,7 +127,7 @@ fn told(frame: &Grey, plate: &Grey, is_used: &[bool]) -> [Told; DIRECTIONS.len()
         let [ff, bb, fb, xx, xy, yy] = sums;
         // A picture without any texture has no energy and no information.
         let (frame_energy, plate_energy) = (ff.max(f64::MIN_POSITIVE), bb.max(f64::MIN_POSITIVE));
-        Told {
+        Measurement {
             excess: (frame_energy / plate_energy).ln(),
             falls: Vector3::new(xx, 2.0 * xy, yy) / plate_energy,
             correlation: (fb / frame_energy) * (fb / plate_energy),
@@ -137,16 +137,16 @@ fn told(frame: &Grey, plate: &Grey, is_used: &[bool]) -> [Told; DIRECTIONS.len()
 
 /// Change of (xx, xy, yy) that makes the plate's energies equal to the photograph's; `None` if no
 /// direction has information.
-fn step(told: &[Told], spread: Spread) -> Option<Vector3<f64>> {
-    let is_heard = |one: &&Told| one.correlation >= LEAST_CORRELATION;
-    told.iter().find(is_heard)?;
+fn step(measurements: &[Measurement], spread: Spread) -> Option<Vector3<f64>> {
+    let is_heard = |one: &&Measurement| one.correlation >= LEAST_CORRELATION;
+    measurements.iter().find(is_heard)?;
     let mut normal = Matrix3::identity() * f64::EPSILON;
     let mut right = Vector3::zeros();
     let mut add = |row: Vector3<f64>, value: f64| {
         normal += row * row.transpose();
         right += row * value;
     };
-    for one in told.iter().filter(is_heard) {
+    for one in measurements.iter().filter(is_heard) {
         add(one.falls, -one.excess);
     }
     add(
@@ -191,8 +191,9 @@ fn textures(level: &Level, coverage: &Coverage) -> Option<(Grey, Grey, Mask)> {
     let mut unlike = Mask::new(size_px);
     let mut toy = Mask::new(size_px);
     for (index, at) in places(size_px).enumerate() {
-        let is_told = |value: Option<f32>| value.is_some_and(|value| (DARKEST..=BRIGHTEST).contains(&value));
-        if !is_told(frame[index]) || !is_told(plate[index]) || is_at_border(at, size_px) {
+        let is_usable =
+            |value: Option<f32>| value.is_some_and(|value| (DARKEST..=BRIGHTEST).contains(&value));
+        if !is_usable(frame[index]) || !is_usable(plate[index]) || is_at_border(at, size_px) {
             unlike.mark(at);
         }
         if coverage.at(origin_px + at) > 0.0 {
@@ -207,8 +208,8 @@ fn textures(level: &Level, coverage: &Coverage) -> Option<(Grey, Grey, Mask)> {
     let [of_frame, of_plate] = [&frame, &plate].map(|grey| grey.spread(Spread::round(RATIO_PX)));
     let ratios = of_frame.values.iter().zip(&of_plate.values);
     let ratios: Vec<f32> = ratios.map(|(f, b)| f / b.max(DARKEST)).collect();
-    let told = places(size_px).zip(&ratios).filter(|(at, _)| !unlike.has(*at));
-    let exposure = median(told.map(|(_, ratio)| *ratio), f32::total_cmp)?.max(f32::MIN_POSITIVE);
+    let measurements = places(size_px).zip(&ratios).filter(|(at, _)| !unlike.has(*at));
+    let exposure = median(measurements.map(|(_, ratio)| *ratio), f32::total_cmp)?.max(f32::MIN_POSITIVE);
     for (at, ratio) in places(size_px).zip(&ratios) {
         if (ratio / exposure - 1.0).abs() > SAME_LIGHT {
             unlike.mark(at);

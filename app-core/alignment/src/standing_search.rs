@@ -17,7 +17,7 @@ use crate::photograph::Photograph;
 use crate::picture::{Level, places};
 use crate::pose::{self, Standing};
 use crate::shape::Shape;
-use crate::toy_search::{Followed, Search, told_apart};
+use crate::toy_search::{Followed, Search, distinguished};
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 
@@ -39,14 +39,14 @@ const LEAST_SHARE: f64 = 0.002;
 
 /// Something in a picture that its plate does not show.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Newcomer {
+pub struct NewObject {
     /// Its centre on the first receiver, in the world.
     pub at: DVec3,
     /// Share of the picture that it covers, with its shadow.
     pub share: f64,
 }
 
-impl Newcomer {
+impl NewObject {
     /// The largest new region of a picture that does not reach the picture's border, as an arm
     /// does; `None` without a plate.
     ///
@@ -329,7 +329,7 @@ impl StandingSearch {
             return Ok(Stage::Done);
         };
         self.found.extend(search.refine(&pose.world_from_object)?);
-        if let Some(best) = told_apart(self.found.clone()).first() {
+        if let Some(best) = distinguished(self.found.clone()).first() {
             self.best = Some(StandingPose {
                 world_from_object: best.world_from_object,
                 outline_px: Some(best.outline_px),

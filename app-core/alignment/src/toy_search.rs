@@ -12,9 +12,9 @@ use glam::{DMat4, DVec3, IVec2};
 use crate::camera::{Finder, corrected};
 use crate::error::{AlignError, check};
 use crate::hand::photograph_from_plate;
-use crate::laid::planes_under;
 use crate::photograph::{MOST_OUTLINE_PX, Photograph};
 use crate::picture::{Level, Picture, Pyramid};
+use crate::placed_receivers::planes_under;
 use crate::pose::{self, Paint, Start};
 use crate::report::PoseDeviation;
 use crate::shape::Shape;
@@ -107,7 +107,7 @@ pub fn find_toy(
     let search = Search::new(Arc::new(scene.clone()), input.clone())?;
     let followed = search.followed(directions)?;
     let nearest_px = followed.first().map(|pose| pose.outline_px);
-    let mut found = told_apart(search.refined(&followed)?);
+    let mut found = distinguished(search.refined(&followed)?);
     if let [one] = &mut found[..] {
         // The plates were registered by a guess of the table's plane, which is now known from the
         // toy.
@@ -373,7 +373,7 @@ impl Search {
 
 /// The possible poses among those sorted by their outlines: the best one by its colours among
 /// similar outlines, and those that are ambiguous with it.
-pub(crate) fn told_apart(found: Vec<FoundToy>) -> Vec<FoundToy> {
+pub(crate) fn distinguished(found: Vec<FoundToy>) -> Vec<FoundToy> {
     let Some(most_px) = found.first().map(|best| RIVAL * best.outline_px + RIVAL_PX) else {
         return found;
     };

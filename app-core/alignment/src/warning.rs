@@ -53,9 +53,9 @@ pub enum AlignmentWarning {
         unexplained: f64,
     },
     /// The focal length was requested, and toy and shadows do not determine it.
-    FocalLengthNotTold,
+    FocalLengthUnconstrained,
     /// The scale of the world was requested, and toy and shadows do not determine it.
-    WorldScaleNotTold,
+    WorldScaleUnconstrained,
 }
 
 impl fmt::Display for AlignmentWarning {
@@ -104,10 +104,10 @@ impl fmt::Display for AlignmentWarning {
                     None => f.write_str("the model is not quite this toy, and its rim will show it"),
                 }
             }
-            Self::FocalLengthNotTold => f.write_str(
+            Self::FocalLengthUnconstrained => f.write_str(
                 "the focal length was requested, but toy and shadow do not constrain it: the given one is used",
             ),
-            Self::WorldScaleNotTold => f.write_str(
+            Self::WorldScaleUnconstrained => f.write_str(
                 "the scale of the world was requested, but toy and shadow do not constrain it: the given one is used",
             ),
         }

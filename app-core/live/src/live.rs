@@ -397,7 +397,7 @@ impl Live {
             self.app.note_lowered(exhausted);
         }
         if turned.is_some() {
-            self.core.set_quality_reductions(governor.turned_down())?;
+            self.core.set_quality_reductions(governor.quality_reductions())?;
         }
         Ok(())
     }
@@ -431,7 +431,7 @@ impl Live {
                     self.core.set_scene(Arc::clone(scene), self.preset)?;
                     self.scene = Some(Arc::clone(scene));
                     if let Some(governor) = &self.governor {
-                        self.core.set_quality_reductions(governor.turned_down())?;
+                        self.core.set_quality_reductions(governor.quality_reductions())?;
                     }
                 }
                 let (preset, app) = (self.preset, &self.app);
@@ -463,7 +463,7 @@ impl Live {
             lines.push('\n');
             lines.push_str(&words);
         }
-        for step in self.governor.iter().flat_map(Governor::turned_down) {
+        for step in self.governor.iter().flat_map(Governor::quality_reductions) {
             lines.push('\n');
             lines.push_str(step.what);
         }

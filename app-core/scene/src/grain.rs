@@ -47,7 +47,7 @@ pub struct Grain {
 
 /// Statistics of a block's channel, in linear light.
 #[derive(Clone, Copy, Default)]
-struct Told {
+struct Statistics {
     light: f64,
     plate_light: f64,
     frame: f64,
@@ -81,17 +81,18 @@ impl Grain {
         if !(frame.is_of_size(size_px) && plate.is_of_size(size_px)) {
             return None;
         }
-        let (told, common) = told(frame, plate);
+        let (statistics, common) = statistics(frame, plate);
         // The median over blocks: shadows, things and edges that the plate lacks are no noise.
         let typical_codes2 = median(
-            told.iter()
+            statistics
+                .iter()
                 .map(|block| block.frame / light_per_code(block.light).powi(2)),
         );
         if typical_codes2 <= MIN_CODES * MIN_CODES {
             return None;
         }
-        let classes = classes(told);
-        let of = |value: fn(&Told) -> f64, light: fn(&Told) -> f64| {
+        let classes = classes(statistics);
+        let of = |value: fn(&Statistics) -> f64, light: fn(&Statistics) -> f64| {
             fitted(classes.iter().map(|class| (light(class), value(class))))
         };
         let grain = Self {
@@ -153,11 +154,11 @@ impl Noise {
 
 /// Statistics of blocks all over the picture, channel by channel, and the correlation between
 /// channels.
-fn told(frame: &Image, plate: &Image) -> (Vec<Told>, f64) {
+fn statistics(frame: &Image, plate: &Image) -> (Vec<Statistics>, f64) {
     let light_of = linear_of_codes();
     let [columns, rows] = [frame.width_px, frame.height_px].map(|side| side / BLOCK_PX);
     let step = (columns * rows).div_ceil(MAX_BLOCKS).max(1) as usize;
-    let (mut told, mut common) = (Vec::new(), Vec::new());
+    let (mut statistics, mut common) = (Vec::new(), Vec::new());
     for block in (0..columns * rows).step_by(step) {
         let corner = [block % columns, block / columns].map(|at| at * BLOCK_PX);
         let channels = [0, 1, 2].map(|channel| Channel::new([frame, plate], corner, channel, &light_of));
@@ -170,9 +171,9 @@ fn told(frame: &Image, plate: &Image) -> (Vec<Told>, f64) {
         {
             common.push(both / (red * green).sqrt());
         }
-        told.extend(channels.iter().flatten().map(Channel::told));
+        statistics.extend(channels.iter().flatten().map(Channel::statistics));
     }
-    (told, median(common.into_iter()))
+    (statistics, median(common.into_iter()))
 }
 
 impl Channel {
@@ -214,7 +215,7 @@ impl Channel {
         sum / (N - 1.0)
     }
 
-    fn told(&self) -> Told {
+    fn statistics(&self) -> Statistics {
         let shared = self
             .frame
             .iter()
@@ -223,7 +224,7 @@ impl Channel {
             .sum::<f64>()
             / (N - 1.0);
         let plate = self.plate.iter().map(|b| b * b).sum::<f64>() / (N - 1.0);
-        Told {
+        Statistics {
             light: self.light,
             plate_light: self.light / self.scale,
             frame: self.covariance(self),
@@ -252,26 +253,26 @@ impl Channel {
 
 /// Medians of the classes of brightness that have enough blocks: things in only one picture are
 /// outvoted.
-fn classes(told: Vec<Told>) -> Vec<Told> {
+fn classes(statistics: Vec<Statistics>) -> Vec<Statistics> {
     let mut classes = vec![Vec::new(); N_CLASSES];
-    for told in told {
+    for statistics in statistics {
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "light is from 0 to 1"
         )]
-        let class = (told.light.sqrt() * N_CLASSES as f64) as usize;
-        classes[class.min(N_CLASSES - 1)].push(told);
+        let class = (statistics.light.sqrt() * N_CLASSES as f64) as usize;
+        classes[class.min(N_CLASSES - 1)].push(statistics);
     }
     let many = classes.into_iter().filter(|class| class.len() >= MIN_BLOCKS);
     many.map(|class| {
-        let of = |value: fn(&Told) -> f64| median(class.iter().map(value));
-        Told {
-            light: of(|told| told.light),
-            plate_light: of(|told| told.plate_light),
-            frame: of(|told| told.frame),
-            plate: of(|told| told.plate),
-            beside: of(|told| told.beside),
+        let of = |value: fn(&Statistics) -> f64| median(class.iter().map(value));
+        Statistics {
+            light: of(|statistics| statistics.light),
+            plate_light: of(|statistics| statistics.plate_light),
+            frame: of(|statistics| statistics.frame),
+            plate: of(|statistics| statistics.plate),
+            beside: of(|statistics| statistics.beside),
         }
     })
     .filter(|class| class.frame > 0.0)

@@ -58,7 +58,7 @@ fn begin(path: &Path, size_px: [u32; 2]) -> io::Result<Box<dyn VideoEncoder>> {
         };
         let settings = settings(size_px).ok_or(io::ErrorKind::Unsupported)?;
         let writer =
-            AVAssetWriter::assetWriterWithURL_fileType_error(&url, mp4).map_err(|error| told(&error))?;
+            AVAssetWriter::assetWriterWithURL_fileType_error(&url, mp4).map_err(|error| io_error(&error))?;
         if !writer.canApplyOutputSettings_forMediaType(Some(&settings), video) {
             return Err(io::ErrorKind::Unsupported.into());
         }
@@ -193,10 +193,10 @@ fn at(since_s: f64) -> CMTime {
 fn failure(writer: &AVAssetWriter) -> io::Error {
     // SAFETY: a property that any thread may read.
     let error = unsafe { writer.error() };
-    error.map_or_else(|| io::ErrorKind::Other.into(), |error| told(&error))
+    error.map_or_else(|| io::ErrorKind::Other.into(), |error| io_error(&error))
 }
 
-fn told(error: &NSError) -> io::Error {
+fn io_error(error: &NSError) -> io::Error {
     /// `AVErrorDiskFull`.
     const DISK_FULL: isize = -11_823;
     if error.code() == DISK_FULL {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use app_core::alignment::{
-    Aligner, Alignment, AlignmentReport, DiscoveredLight, LensAlignment, Observer, RatioAlignment,
+    Aligner, Alignment, AlignmentReport, EstimatedLight, LensAlignment, Observer, RatioAlignment,
 };
 use app_core::frame::FrameInput;
 use app_core::gloss::Gloss;
@@ -182,7 +182,7 @@ impl LightError {
 impl SeenLight {
     /// A light that was found by its shadow, seen from the toy's centre.
     #[must_use]
-    pub fn found(light: &DiscoveredLight) -> Self {
+    pub fn found(light: &EstimatedLight) -> Self {
         Self {
             direction_in_world: light.direction_in_world,
             distance_m: light.distance_m,
@@ -434,14 +434,14 @@ impl Alignments {
 impl Aligned {
     /// The error of a probe's light against the ignored list; `None` if that is empty.
     #[must_use]
-    pub fn error_of_told(&self, light: &TrackedLight) -> Option<LightError> {
+    pub fn error_of_probe_light(&self, light: &TrackedLight) -> Option<LightError> {
         let place = light.seen.origin_in_world;
         LightError::nearest(&SeenLight::from(place, &light.light), self.put_aside_from(place))
     }
 
     /// The same for a light that was found by its shadow.
     #[must_use]
-    pub fn error_of_discovered(&self, light: &DiscoveredLight) -> Option<LightError> {
+    pub fn error_of_estimated(&self, light: &EstimatedLight) -> Option<LightError> {
         LightError::nearest(&SeenLight::found(light), self.put_aside_from(self.middle))
     }
 

@@ -45,7 +45,7 @@ pub struct Options {
     /// The presets: each makes all frames, and no two are the same.
     pub presets: Vec<Preset>,
     /// Quality steps taken off the presets, as by the governor.
-    pub turned_down: &'static [QualityStep],
+    pub quality_reductions: &'static [QualityStep],
     /// The frames to replay.
     pub frames: Frames,
     /// Folder for pictures, report and page, made if it is missing; without it nothing is written.
@@ -66,7 +66,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             presets: vec![Preset::default()],
-            turned_down: &[],
+            quality_reductions: &[],
             frames: Frames::ALL,
             out: None,
             is_aligned: true,
@@ -311,7 +311,7 @@ impl Out {
 struct Run<'a> {
     preset: Preset,
     core: &'a mut Core,
-    turned_down: &'static [QualityStep],
+    quality_reductions: &'static [QualityStep],
     out: Option<Out>,
     follower: Follower,
     frames: Vec<FrameEntry>,
@@ -329,7 +329,7 @@ impl<'a> Run<'a> {
         Ok(Self {
             preset,
             core,
-            turned_down: options.turned_down,
+            quality_reductions: options.quality_reductions,
             out: output.map(|output| Out::new(output, prefix)),
             follower: Follower::default(),
             frames: Vec::new(),
@@ -338,7 +338,7 @@ impl<'a> Run<'a> {
 
     fn set_scene(&mut self, scene: Scene) -> Result<(), CoreError> {
         self.core.set_scene(scene, self.preset)?;
-        self.core.set_quality_reductions(self.turned_down)
+        self.core.set_quality_reductions(self.quality_reductions)
     }
 
     fn frame(&mut self, shot: &Shot<'_>) -> Result<FrameEntry, ReplayError> {

@@ -224,9 +224,9 @@ impl From<&Aligned> for AlignmentEntry {
             cpu_ms: aligned.cpu_ms,
             warnings: aligned.alignment.warnings.clone(),
             n_listed: aligned.put_aside.len(),
-            probe_against_listed: told.map(|light| aligned.error_of_told(light)).collect(),
+            probe_against_listed: told.map(|light| aligned.error_of_probe_light(light)).collect(),
             discovered_against_listed: discovered
-                .map(|light| aligned.error_of_discovered(light))
+                .map(|light| aligned.error_of_estimated(light))
                 .collect(),
             report: report.clone(),
         }

@@ -30,7 +30,7 @@ use desk::replay;
 use desk::replay::{ReplayError, replay_aligned};
 use desk::report::Report;
 
-pub use basin::{Draw, Off, basin, basin_csv, basin_drawing, basin_table};
+pub use basin::{Draw, PoseAndLightErrors, basin, basin_csv, basin_drawing, basin_table};
 pub use front::{Point, front, front_drawing, points};
 pub use kinds::{FRAME_KINDS, FrameKind, KindTimes, with_new};
 pub use pull::Pull;
@@ -103,7 +103,7 @@ pub fn bench(session: &Capture, core: &mut Core, options: &Options) -> Result<Ve
     for &preset in &options.presets {
         rows.push(measure(session, core, (preset, &[]), (options, &mut alignments))?);
     }
-    for steps in front::turned_down().filter(|_| options.with_front) {
+    for steps in front::quality_reductions().filter(|_| options.with_front) {
         let setting = (Preset::Balanced, steps);
         rows.push(measure(session, core, setting, (options, &mut alignments))?);
     }
@@ -136,12 +136,12 @@ fn compare_with_paper(rows: &mut [Row]) {
 fn measure(
     session: &Capture,
     core: &mut Core,
-    (preset, turned_down): (Preset, &'static [QualityStep]),
+    (preset, quality_reductions): (Preset, &'static [QualityStep]),
     (options, alignments): (&Options, &mut Alignments),
 ) -> Result<Row, ReplayError> {
     let asked = replay::Options {
         presets: vec![preset],
-        turned_down,
+        quality_reductions,
         ..replay_options(options)
     };
     // Scores do not vary between runs. Pipelines compiled here stay compiled for the timings.
@@ -151,14 +151,14 @@ fn measure(
     let inputs = inputs(session, (&report, preset), alignments)?;
     Ok(Row {
         session: report.session,
-        preset: front::named(preset, turned_down),
+        preset: front::named(preset, quality_reductions),
         n_frames: report.frames.len(),
         scores: report.mean.scores,
         flicker: report.mean.flicker,
         align_ms: report.mean.align_ms,
         n_taps: mean_taps(core, &inputs)?,
         size_px: options.size_px.unwrap_or(own_px(session)),
-        times: times(session, core, (preset, turned_down), (options, &inputs))?,
+        times: times(session, core, (preset, quality_reductions), (options, &inputs))?,
     })
 }
 
@@ -166,7 +166,7 @@ fn measure(
 fn times(
     session: &Capture,
     core: &mut Core,
-    (preset, turned_down): (Preset, &[QualityStep]),
+    (preset, quality_reductions): (Preset, &[QualityStep]),
     (options, inputs): (&Options, &[FrameInput]),
 ) -> Result<Vec<KindTimes>, ReplayError> {
     let (scene, inputs): (_, Vec<FrameInput>) = match options.size_px {
@@ -174,7 +174,7 @@ fn times(
             let inputs = inputs.iter().take(kinds::MOST_INPUTS);
             let scene = sized_scene(session.scene(), size_px);
             core.set_scene(scene.clone(), preset)?;
-            core.set_quality_reductions(turned_down)?;
+            core.set_quality_reductions(quality_reductions)?;
             (scene, inputs.map(|input| sized_input(input, size_px)).collect())
         }
         None => (session.scene().clone(), inputs.to_vec()),
@@ -186,7 +186,10 @@ fn times(
     };
     let mut times = kinds::measure(core, &inputs, options.n_repeats)?;
     if let Some(first) = inputs.first() {
-        for (times, counted) in times.iter_mut().zip(count(&scene, (preset, turned_down), first)?) {
+        for (times, counted) in times
+            .iter_mut()
+            .zip(count(&scene, (preset, quality_reductions), first)?)
+        {
             times.counted = Some(counted);
         }
     }
@@ -209,7 +212,7 @@ fn own_px(session: &Capture) -> SizePx {
 fn replay_options(options: &Options) -> replay::Options {
     replay::Options {
         presets: options.presets.clone(),
-        turned_down: &[],
+        quality_reductions: &[],
         frames: options.frames,
         out: None,
         is_aligned: options.is_aligned,

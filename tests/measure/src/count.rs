@@ -36,13 +36,13 @@ impl Counted {
 /// When the core refuses the scene or a frame.
 pub fn count(
     scene: &Scene,
-    (preset, turned_down): (Preset, &[QualityStep]),
+    (preset, quality_reductions): (Preset, &[QualityStep]),
     input: &FrameInput,
 ) -> Result<Vec<Counted>, CoreError> {
     let of_kind = |kind: FrameKind| {
         let mut core = Core::counting();
         core.set_scene(scene.clone(), preset)?;
-        core.set_quality_reductions(turned_down)?;
+        core.set_quality_reductions(quality_reductions)?;
         core.draw_every_pose()?;
         let others = [input.clone(), with_new(input, kind)];
         for known in &others {

@@ -19,7 +19,7 @@ const LIT: f64 = 0.98;
 
 /// The evidence of a receiver pixel clear of the toy, with a photographed plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Told {
+pub struct Evidence {
     /// Index of the receiver.
     pub receiver: usize,
     /// The model's remaining light, in plates.
@@ -32,21 +32,21 @@ pub struct Told {
 
 /// The evidence of each pixel; `photographed` is 1 where the plate was.
 #[must_use]
-pub fn told(
+pub fn evidence(
     region: &Region,
     pictures: &Pictures,
     photographed: &Raster<f64>,
     solution: &Solution,
-) -> Raster<Option<Told>> {
+) -> Raster<Option<Evidence>> {
     Raster::from_fn(region.size_px, |texel| {
         let at = centre_px(texel);
-        let is_told = pictures.seen.at(texel) > 0.0 && photographed.at(texel) == 1.0;
-        let point = region.receiver_point(at).filter(|_| is_told)?;
+        let has_evidence = pictures.seen.at(texel) > 0.0 && photographed.at(texel) == 1.0;
+        let point = region.receiver_point(at).filter(|_| has_evidence)?;
         let ambient = coarse_at(&pictures.ambient, region, at);
         let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
         let plate = pictures.plate.at(texel);
         let is_dark = plate.cmplt(DVec3::splat(DARKEST_USABLE));
-        Some(Told {
+        Some(Evidence {
             receiver: point.receiver,
             model,
             unexplained: pictures.frame.at(texel) / solution.gain - plate * model,
@@ -60,8 +60,8 @@ pub fn told(
 /// Unshadowed, it is the pixel's own. In shadow it is a least squares fit to the surrounding pixels
 /// of the same receiver against the plate, plus the part of the own difference that exceeds noise.
 #[must_use]
-pub fn separate(told: &Raster<Option<Told>>, (texel, receiver): (UVec2, usize)) -> DVec3 {
-    let own = told.at(texel);
+pub fn separate(evidence: &Raster<Option<Evidence>>, (texel, receiver): (UVec2, usize)) -> DVec3 {
+    let own = evidence.at(texel);
     let exact = least_squares(own.as_slice());
     // A pixel without evidence counts as unshadowed.
     let left = own.map_or(1.0, |own| own.model.max_element());
@@ -70,11 +70,11 @@ pub fn separate(told: &Raster<Option<Told>>, (texel, receiver): (UVec2, usize)) 
     let offsets = reach
         .clone()
         .flat_map(|y| reach.clone().map(move |x| IVec2::new(x, y)));
-    let around: Vec<Told> = offsets
+    let around: Vec<Evidence> = offsets
         .filter_map(|offset| {
             let other = texel.as_ivec2() + offset;
-            let is_within = other.cmpge(IVec2::ZERO).all() && other.cmplt(told.size().as_ivec2()).all();
-            is_within.then(|| told.at(other.as_uvec2())).flatten()
+            let is_within = other.cmpge(IVec2::ZERO).all() && other.cmplt(evidence.size().as_ivec2()).all();
+            is_within.then(|| evidence.at(other.as_uvec2())).flatten()
         })
         .filter(|other| other.receiver == receiver)
         .collect();
@@ -86,8 +86,14 @@ pub fn separate(told: &Raster<Option<Told>>, (texel, receiver): (UVec2, usize)) 
 
 /// The residual r for which plate times r is the unexplained light, over all pixels together; 0
 /// without evidence.
-fn least_squares(pixels: &[Told]) -> DVec3 {
-    let product: DVec3 = pixels.iter().map(|told| told.plate * told.unexplained).sum();
-    let energy: DVec3 = pixels.iter().map(|told| told.plate * told.plate).sum();
+fn least_squares(pixels: &[Evidence]) -> DVec3 {
+    let product: DVec3 = pixels
+        .iter()
+        .map(|evidence| evidence.plate * evidence.unexplained)
+        .sum();
+    let energy: DVec3 = pixels
+        .iter()
+        .map(|evidence| evidence.plate * evidence.plate)
+        .sum();
     DVec3::select(energy.cmpgt(DVec3::ZERO), product / energy, DVec3::ZERO)
 }

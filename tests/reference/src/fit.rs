@@ -134,7 +134,7 @@ pub fn fit_receiver(
         let is_last = step + 1 == n_steps;
         let has_no_shadow = region.lights.is_empty()
             && is_last
-            && !is_ambient_shadow_told(&of_channels.each_ref().map(|(e, _)| e));
+            && !is_ambient_shadow_known(&of_channels.each_ref().map(|(e, _)| e));
         for (channel, (equations, clipped)) in of_channels.into_iter().enumerate() {
             if has_no_shadow {
                 take_unshadowed(&equations, receiver, constants, channel, &mut solution);
@@ -236,7 +236,7 @@ fn receiver_priors(region: &Region, receiver: usize, before: &Solution, channel:
 
 /// Whether an ambient shadow explains enough of the difference between frame and plate, without
 /// lights.
-fn is_ambient_shadow_told(channels: &[&NormalEquations; 3]) -> bool {
+fn is_ambient_shadow_known(channels: &[&NormalEquations; 3]) -> bool {
     let (mut beside, mut explained) = (0.0, 0.0);
     for equations in channels.iter().filter(|equations| equations.energy(0) > 0.0) {
         // Remaining and blocked ambient light add up to the plate.

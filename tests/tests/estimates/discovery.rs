@@ -6,7 +6,7 @@
 
 use std::sync::{Arc, LazyLock};
 
-use app_core::alignment::{Aligner, Alignment, AlignmentWarning, DiscoveredLight, NoLight};
+use app_core::alignment::{Aligner, Alignment, AlignmentWarning, EstimatedLight, NoLight};
 use app_core::frame::FrameInput;
 use app_core::scene::{Light, LightEstimate, N_HARMONICS, Scene};
 use app_core::session::{Capture, Session};
@@ -46,7 +46,7 @@ fn photographed(lamps: Vec<Lamp>) -> Shot {
 }
 
 /// The lights that are found for the lamps, nearest first; as many as there are lamps.
-fn matched(lamps: &[Lamp]) -> Vec<(DiscoveredLight, SeenLight)> {
+fn matched(lamps: &[Lamp]) -> Vec<(EstimatedLight, SeenLight)> {
     let (shot, found) = discover(lamps.to_vec());
     let mut lights = found.report.discovered.clone();
     assert_eq!(lights.len(), lamps.len(), "{:#?}", found.report);
@@ -58,14 +58,14 @@ fn matched(lamps: &[Lamp]) -> Vec<(DiscoveredLight, SeenLight)> {
         .transform_point3(0.5 * (bounds.min + bounds.max).as_dvec3());
     let pairs = lamps.iter().map(|lamp| {
         let listed = SeenLight::from(middle, &lamp.light);
-        let off = |light: &DiscoveredLight| light.direction_in_world.angle_between(listed.direction_in_world);
+        let off = |light: &EstimatedLight| light.direction_in_world.angle_between(listed.direction_in_world);
         lights.sort_by(|a, b| off(b).total_cmp(&off(a)));
         (lights.pop().unwrap(), listed)
     });
     pairs.collect()
 }
 
-fn assert_near((found, listed): &(DiscoveredLight, SeenLight), deg: f64, distance: f64, size: f64) {
+fn assert_near((found, listed): &(EstimatedLight, SeenLight), deg: f64, distance: f64, size: f64) {
     let off_deg = found
         .direction_in_world
         .angle_between(listed.direction_in_world)

@@ -169,7 +169,7 @@ fn an_aligned_session_has_the_lens_that_was_found() {
         &Stored::open(&folder).unwrap(),
         &out,
         &alignments,
-        Assumed::LeftOut,
+        Assumed::Omitted,
     )
     .unwrap();
     let index: Value = serde_json::from_slice(&fs::read(out.join(SESSION_FILE)).unwrap()).unwrap();

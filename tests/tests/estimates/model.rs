@@ -75,8 +75,8 @@ fn a_model_that_is_off_has_the_toys_outline() {
         model.displaced_m < WAVE_M && model.most_displaced_m < 3.0 * WAVE_M,
         "{model:?}"
     );
-    let is_told = |warning: &AlignmentWarning| matches!(warning, AlignmentWarning::ModelDiffers { displaced_m, .. } if *displaced_m == Some(model.displaced_m));
-    assert!(found.warnings.iter().any(is_told), "{:?}", found.warnings);
+    let is_reported = |warning: &AlignmentWarning| matches!(warning, AlignmentWarning::ModelDiffers { displaced_m, .. } if *displaced_m == Some(model.displaced_m));
+    assert!(found.warnings.iter().any(is_reported), "{:?}", found.warnings);
 
     // The displaced surface is nearer to the toy's own, along the displacement.
     let adapted = &found.scene.unwrap().toy;

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 
-use app_core::alignment::{Aligner, DiscoveredLight};
+use app_core::alignment::{Aligner, EstimatedLight};
 use app_core::preset::Preset;
 use app_core::scene::{Light, Probe};
 use app_core::session::{Capture, Session};
@@ -125,7 +125,7 @@ fn one_view_is_enough_for_the_shadow() {
             .lights
             .iter()
             .map(|light| off_deg(light.seen.direction_in_world));
-        let refined = |light: &DiscoveredLight| off_deg(light.direction_in_world);
+        let refined = |light: &EstimatedLight| off_deg(light.direction_in_world);
         let refined = found.report.discovered.iter().map(refined);
         let [told, refined] = [told.fold(180.0, f64::min), refined.fold(180.0, f64::min)];
         assert!(told > 5.0 && refined < 0.1, "{told} and {refined} degrees off");

@@ -156,7 +156,11 @@ fn what_cannot_tell_it_is_said() {
         .unwrap();
     let report = found.report.world_scale.unwrap();
     assert_eq!(report.outcome, RatioOutcome::Unseen);
-    assert!(found.warnings.contains(&AlignmentWarning::WorldScaleNotTold));
+    assert!(
+        found
+            .warnings
+            .contains(&AlignmentWarning::WorldScaleUnconstrained)
+    );
     let (scale, ..) = found.world_from_object.to_scale_rotation_translation();
     let (given, ..) = input.world_from_object.to_scale_rotation_translation();
     let size_ratio = found.report.pose.unwrap().size_ratio;

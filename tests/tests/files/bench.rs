@@ -4,8 +4,8 @@ use app_core::preset::Preset;
 use desk::alignment::{Lights, Ratio};
 use harness::{bundled_session, open_core};
 use measure::bench::{
-    Draw, FrameKind, Off, Options, Point, Pull, Row, basin, basin_csv, basin_drawing, basin_table, bench,
-    csv, front, front_drawing, json, points,
+    Draw, FrameKind, Options, Point, PoseAndLightErrors, Pull, Row, basin, basin_csv, basin_drawing,
+    basin_table, bench, csv, front, front_drawing, json, points,
 };
 use serde_json::Value;
 
@@ -125,9 +125,9 @@ fn assert_same(rows: &[Row], header: &[&str], lines: &[Vec<&str>]) {
 
 /// The presets of the rows; the reduced settings come after them.
 fn named_presets() -> Vec<String> {
-    let turned_down = (1..=N_TURNED_DOWN).map(|n| format!("balanced-{n}"));
+    let quality_reductions = (1..=N_TURNED_DOWN).map(|n| format!("balanced-{n}"));
     let presets = ["balanced", "paper"].map(str::to_owned);
-    presets.into_iter().chain(turned_down).collect()
+    presets.into_iter().chain(quality_reductions).collect()
 }
 
 /// Medians of stages need not add up to the median of their sum, but nearly do.
@@ -209,7 +209,7 @@ fn starts_of_the_basin_are_as_far_off_as_they_say_and_drawn_from_their_seed() {
 
 #[test]
 fn claims_that_are_too_small_show_in_the_table_of_the_basin() {
-    let off = Off {
+    let off = PoseAndLightErrors {
         pose_mm: 1.0,
         pose_deg: 1.0,
         light_deg: None,

@@ -2,7 +2,7 @@
 
 use app_core::wgpu;
 use glam::{DVec3, DVec4};
-use reference::detail::{separate, told};
+use reference::detail::{evidence, separate};
 use reference::model::{Pictures, centre_px};
 use reference::raster::Raster;
 
@@ -25,7 +25,7 @@ fn scene() -> Scrambled {
         seen: everywhere.clone(),
         ..pictures
     };
-    let modelled = told(region, &seen, &everywhere, &scene.solution);
+    let modelled = evidence(region, &seen, &everywhere, &scene.solution);
     let image = Raster::from_fn(scene.image.size(), |texel| {
         modelled.at(texel).map_or(scene.image.at(texel), |here| {
             let residual = DVec3::from([130, 131, 132].map(|seed| 0.2 * number(texel, seed) - 0.1));
@@ -55,11 +55,11 @@ fn errors(source: &str) -> Errors {
     let actual = device.draw(draw, [&scene.seen(device).bindings(), &own]);
 
     let photographed = scene.plate.map(|texel| texel.w);
-    let told = told(&scene.region, &scene.pictures(0), &photographed, &scene.solution);
+    let evidence = evidence(&scene.region, &scene.pictures(0), &photographed, &scene.solution);
     let expected = Raster::from_fn(size, |texel| {
         let point = scene.region.receiver_point(centre_px(texel));
         point.map_or(DVec4::ZERO, |point| {
-            separate(&told, (texel, point.receiver)).extend(1.0)
+            separate(&evidence, (texel, point.receiver)).extend(1.0)
         })
     });
     Errors::between(pairs_of(&actual, &expected))

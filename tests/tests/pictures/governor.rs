@@ -58,7 +58,7 @@ impl Phone {
 
     /// A frame's time on the device, from the steps taken, noise and spikes.
     fn time_ms(&mut self) -> f64 {
-        let taken = self.governor.turned_down().iter();
+        let taken = self.governor.quality_reductions().iter();
         let cost = taken.filter(|step| step.setting != QualitySetting::FramesPerSecond);
         let gain: f64 = cost.map(|step| step.gain.powf(self.truth)).product();
         let normal: f64 = (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0;
@@ -91,7 +91,7 @@ impl Phone {
     }
 
     fn level(&self) -> usize {
-        self.governor.turned_down().len()
+        self.governor.quality_reductions().len()
     }
 
     /// Share of the latest frames that took longer than permitted.
@@ -148,7 +148,7 @@ fn a_step_of_the_load_is_answered_within_half_a_second_and_taken_back_when_it_is
             "{truth}: {:?}",
             phone.turns
         );
-        assert!(!phone.governor.turned_down()[0].what.is_empty());
+        assert!(!phone.governor.quality_reductions()[0].what.is_empty());
         // Each step up waits for its time and a window.
         phone.full_ms = 0.5 * SCREEN_MS;
         let wait = UP_FRAMES as usize + WINDOW + SETTLE_FRAMES as usize + N_DELAY;
@@ -258,7 +258,7 @@ fn thirty_frames_a_second_are_the_last_resort_and_a_frame_then_has_twice_the_tim
     phone.run(MINUTE);
     assert_eq!(phone.governor.frames_per_second(), 30);
     assert_eq!(
-        phone.governor.turned_down().last().unwrap().setting,
+        phone.governor.quality_reductions().last().unwrap().setting,
         QualitySetting::FramesPerSecond
     );
     assert!(phone.late_share(MINUTE / 2) < 0.05);

@@ -13,7 +13,7 @@ use super::fake::{FUNCTIONS, alive, world};
 use super::ffi::{Functions, SIGNATURES};
 use super::frame::FrameError;
 use super::modes::{CameraMode, order_of};
-use super::status::{Failure, Remedy, STATUSES, told};
+use super::status::{Failure, Remedy, STATUSES, event_of};
 use super::tracker::{Geometry, Run, Step, Tracker, Wait};
 use crate::java::{Java, JavaHost};
 
@@ -326,13 +326,13 @@ fn what_ends_tracking_is_told_by_what_helps() {
         ),
         (-2, ArSession::Failed, "ARCore failed and cannot go on."),
     ] {
-        let ShellEvent::ArTrouble(told, said) = told(Failure(number)) else {
+        let ShellEvent::ArTrouble(told, said) = event_of(Failure(number)) else {
             panic!("{number}");
         };
         assert_eq!(told, expected, "{number}");
         assert!(said.contains(words), "{said}");
     }
-    let denied = told(Failure(-9));
+    let denied = event_of(Failure(-9));
     assert!(
         matches!(denied, ShellEvent::Permission(Permission::Denied)),
         "{denied:?}"

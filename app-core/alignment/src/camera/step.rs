@@ -34,7 +34,7 @@ pub(super) struct Search<'a> {
 }
 
 /// A point with its matching pixel.
-struct Met {
+struct PointMatch {
     template: usize,
     /// Brightness of point and pixel.
     brightness: [f64; 2],
@@ -152,13 +152,13 @@ impl<'a> Search<'a> {
         if n > 0.0 { f64::sqrt(sum / n) } else { 0.0 }
     }
 
-    fn met(&self, motion: &RigidMotion, stride: usize) -> Vec<Met> {
+    fn met(&self, motion: &RigidMotion, stride: usize) -> Vec<PointMatch> {
         let templates = self.templates.iter().enumerate();
         let points = templates.flat_map(|(index, points)| points.iter().map(move |point| (index, point)));
         let met = points.step_by(stride).filter_map(|(template, point)| {
             let moved = motion.apply(point.in_camera);
             let (value, gradient) = self.photograph.sample(self.intrinsics.pixel_of(moved)?)?;
-            Some(Met {
+            Some(PointMatch {
                 template,
                 brightness: [point.brightness, value],
                 row: motion.row(moved, self.per_m(moved, gradient)),
@@ -177,7 +177,7 @@ impl<'a> Search<'a> {
 
     /// Exposure of the photograph over that of each plate, in square roots: the median over the
     /// points.
-    fn gains(&self, met: &[Met]) -> Vec<f64> {
+    fn gains(&self, met: &[PointMatch]) -> Vec<f64> {
         let gain = |template: usize| {
             let of_template = met
                 .iter()
@@ -191,7 +191,7 @@ impl<'a> Search<'a> {
         (0..self.templates.len()).map(gain).collect()
     }
 
-    fn error(&self, met: &Met, gains: &[f64]) -> f64 {
+    fn error(&self, met: &PointMatch, gains: &[f64]) -> f64 {
         met.brightness[1] - gains[met.template] * met.brightness[0]
     }
 

@@ -116,10 +116,10 @@ fn tint(look: &Look, parts: &[[Part; 3]], tints: &mut Tints) {
     for channel in 0..3 {
         let told = |(sample, part): (&Sample, &[Part; 3])| {
             let part = part[channel];
-            let is_told = sample.is_usable[channel]
+            let is_known = sample.is_usable[channel]
                 && part.paint > 0.0
                 && part.reflected < LITTLE_REFLECTED * part.paint;
-            is_told.then(|| (sample.shown[channel] - part.reflected) / part.paint)
+            is_known.then(|| (sample.shown[channel] - part.reflected) / part.paint)
         };
         for (material, tint) in tints.iter_mut().take(look.n_materials).enumerate() {
             let all = look.samples.iter().zip(parts);

@@ -2,8 +2,8 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4, IVec2};
 
-use super::floor::FloorPixel;
 use super::lamp::{Lamp, disc};
+use super::receiver_pixels::ReceiverPixel;
 use crate::raster::{Coverage, Rasterizer, project};
 use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
@@ -62,7 +62,7 @@ impl<'a> Caster<'a> {
     pub(super) fn lamp(
         &self,
         raster: &mut Rasterizer,
-        pixels: &[FloorPixel],
+        pixels: &[ReceiverPixel],
         lamp: &Lamp,
         disc: &[DVec2],
     ) -> Vec<f32> {
@@ -78,7 +78,12 @@ impl<'a> Caster<'a> {
     }
 
     /// The part of a lobe that the toy hides from each pixel of the first receiver; of eyes behind it in its space, homogeneous.
-    pub(super) fn image(&self, raster: &mut Rasterizer, pixels: &[FloorPixel], eyes: &[DVec4]) -> Vec<f32> {
+    pub(super) fn image(
+        &self,
+        raster: &mut Rasterizer,
+        pixels: &[ReceiverPixel],
+        eyes: &[DVec4],
+    ) -> Vec<f32> {
         let mut hidden = vec![[0.0]; pixels.len()];
         if !self.receivers.is_empty() {
             let eyes = eyes.iter().map(|eye| (*eye, [1.0]));
@@ -88,7 +93,7 @@ impl<'a> Caster<'a> {
     }
 
     /// Irradiance of each pixel's receiver from a lamp, relative to the foot of the toy there.
-    pub(super) fn lit(&self, pixels: &[FloorPixel], lamp: &Lamp) -> Vec<f32> {
+    pub(super) fn lit(&self, pixels: &[ReceiverPixel], lamp: &Lamp) -> Vec<f32> {
         let seen = self.receivers.iter().map(|receiver| {
             let plane_from_camera = receiver.plane_from_camera;
             let foot = plane_from_camera.transform_point3(self.shape.centre) * DVec3::new(1.0, 0.0, 1.0);
@@ -130,7 +135,7 @@ impl<'a> Caster<'a> {
     pub(super) fn ambient(
         &self,
         raster: &mut Rasterizer,
-        pixels: &[FloorPixel],
+        pixels: &[ReceiverPixel],
         n_directions: usize,
     ) -> Vec<Ambient> {
         // Malley's method: points on a disc lifted to the hemisphere are cosine-weighted.
@@ -150,7 +155,7 @@ impl<'a> Caster<'a> {
     fn add<const N: usize>(
         &self,
         raster: &mut Rasterizer,
-        pixels: &[FloorPixel],
+        pixels: &[ReceiverPixel],
         receiver: usize,
         points: Vec<(DVec4, [f64; N])>,
         taken: &mut [[f32; N]],

@@ -10,7 +10,7 @@
 
 use glam::{DMat4, DVec2, IVec2};
 
-use super::backdrop::QUADRATIC;
+use super::background::QUADRATIC;
 use super::lamp::Lamp;
 use super::shading::{FIRST_LAMP, Factors, Shading};
 use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
@@ -155,7 +155,7 @@ fn open_gain(shadows: &Shadows<'_>, taken: &[Vec<f32>]) -> Option<Color> {
         .pixels
         .iter()
         .enumerate()
-        .filter(|(index, pixel)| taken.iter().all(|taken| taken[*index] < OPEN) && pixel.is_told());
+        .filter(|(index, pixel)| taken.iter().all(|taken| taken[*index] < OPEN) && pixel.has_evidence());
     let ratios: Vec<Color> = open.map(|(_, pixel)| ratio(pixel.frame, pixel.plate)).collect();
     medians(&ratios)
 }
@@ -199,7 +199,7 @@ fn share(shadows: &Shadows<'_>, taken: &[Vec<f32>], lamp: usize, gain: &Color) -
         taken[lamp][index] > HIDDEN && others.map(|(_, taken)| taken[index]).all(|taken| taken < OPEN)
     };
     let votes: Vec<Color> = (0..shadows.pixels.len())
-        .filter(|index| is_hidden(*index) && shadows.pixels[*index].is_told())
+        .filter(|index| is_hidden(*index) && shadows.pixels[*index].has_evidence())
         .filter_map(|index| implied(shadows, index, taken[lamp][index], gain))
         .collect();
     let mean = |vote: &Color| vote.iter().sum::<f32>() / 3.0;

@@ -81,7 +81,7 @@ pub(super) fn doubtful(lamps: &[Lamp], shading: &Shading, shadows: &Shadows) -> 
         let is_last = index + 1 == lamps.len();
         shading.share(0, index) >= bounds.least
             && outshines(lamps, index, shading, up)
-            && lamp.nearness * radius_m * NEAREST < 1.0
+            && lamp.inverse_distance * radius_m * NEAREST < 1.0
             && !lamps[..index].iter().any(overlaps)
             && !(is_last && shares > bounds.most)
     };

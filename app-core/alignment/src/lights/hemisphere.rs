@@ -29,7 +29,7 @@ fn spacing_rad() -> f64 {
 pub(super) fn lamp_from(caster: &Caster<'_>, direction: DVec3) -> Lamp {
     Lamp {
         direction,
-        nearness: 1.0 / (USUAL_DISTANCE * caster.shape.radius_m),
+        inverse_distance: 1.0 / (USUAL_DISTANCE * caster.shape.radius_m),
         spread: 0.0,
     }
 }

@@ -8,7 +8,7 @@ use app_scene::scene::Light;
 /// Number of a lamp's parameters: two angles, its inverse distance, and its spread.
 pub(super) const N_PARTS: usize = 4;
 /// Index of the inverse distance among them.
-pub(super) const NEARNESS: usize = 2;
+pub(super) const INVERSE_DISTANCE: usize = 2;
 /// Index of the spread.
 pub(super) const SPREAD: usize = 3;
 
@@ -18,7 +18,7 @@ pub(super) struct Lamp {
     /// Unit vector from the toy.
     pub(super) direction: DVec3,
     /// Inverse distance in 1/m; 0 for a light at infinity.
-    pub(super) nearness: f64,
+    pub(super) inverse_distance: f64,
     /// Tangent of the angular radius.
     pub(super) spread: f64,
 }
@@ -29,7 +29,7 @@ impl Lamp {
         let in_camera = light.moved(camera_from_world);
         Some(Self {
             direction: in_camera.vector_from(toy).try_normalize()?,
-            nearness: in_camera.distance_m_from(toy).map_or(0.0, f64::recip),
+            inverse_distance: in_camera.distance_m_from(toy).map_or(0.0, f64::recip),
             spread: in_camera.slope_from(toy)?,
         })
     }
@@ -41,7 +41,7 @@ impl Lamp {
             let direction = world_from_camera.transform_vector3(self.direction).normalize();
             Light::directional(direction, angular_radius_rad)
         } else {
-            let distance_m = self.nearness.recip();
+            let distance_m = self.inverse_distance.recip();
             let position = world_from_camera.transform_point3(toy + distance_m * self.direction);
             Light::sphere(position, angular_radius_rad.sin() * distance_m)
         }
@@ -49,7 +49,7 @@ impl Lamp {
 
     /// Whether it is at infinity.
     pub(super) fn is_far(&self) -> bool {
-        self.nearness <= 0.0
+        self.inverse_distance <= 0.0
     }
 
     /// Turned by two angles in radians about axes across its direction, with the third number added
@@ -59,7 +59,7 @@ impl Lamp {
         let turn = DQuat::from_scaled_axis(step[0] * across + step[1] * along);
         Self {
             direction: (turn * self.direction).normalize(),
-            nearness: (self.nearness + step[NEARNESS]).max(0.0),
+            inverse_distance: (self.inverse_distance + step[INVERSE_DISTANCE]).max(0.0),
             spread: (self.spread + step[SPREAD]).max(0.0),
         }
     }
@@ -72,7 +72,7 @@ impl Lamp {
             if self.is_far() {
                 space_from_camera.transform_vector3(to).extend(0.0)
             } else {
-                let place = toy + to / self.nearness;
+                let place = toy + to / self.inverse_distance;
                 space_from_camera.transform_point3(place).extend(1.0)
             }
         };

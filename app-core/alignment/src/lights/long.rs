@@ -7,7 +7,7 @@
 
 use glam::DVec2;
 
-use super::lamp::{Lamp, N_PARTS, NEARNESS, SPREAD, disc};
+use super::lamp::{INVERSE_DISTANCE, Lamp, N_PARTS, SPREAD, disc};
 use super::shadows::{LEAST_PIXELS, ROBUST_NEAR, Shadows};
 use crate::picture::Pyramid;
 use crate::raster::Rasterizer;
@@ -78,7 +78,7 @@ impl Line {
             2 => out.turn_rad += step,
             3 => out.half_length *= step.exp(),
             4 => parts[SPREAD] = self.middle.spread * (step.exp() - 1.0),
-            _ => parts[NEARNESS] = step / radius_m,
+            _ => parts[INVERSE_DISTANCE] = step / radius_m,
         }
         if number == 5 && self.middle.is_far() {
             return out;

@@ -4,31 +4,31 @@
 //! it fits frame over plate. The lights' intensities are linear and fitted along (`shading`):
 //! variable projection. For listed lights, directions around the given one are tried first, on a
 //! small picture, then Gauss-Newton steps follow on larger ones (`step`). If none are listed, or
-//! none near a list explains the shadow, they are searched all over the hemisphere (`discover`), or
-//! around a probe's estimates (`guess`). A long light is a line of round ones (`long`); if there is
+//! none near a list explains the shadow, they are searched all over the hemisphere (`search`), or
+//! around a probe's estimates (`initial_light`). A long light is a line of round ones (`long`); if there is
 //! no lamp at all, one wide light may be assumed (`wide`).
 
-mod backdrop;
+mod background;
 mod cast;
 mod classes;
-mod discover;
 mod evidence;
-mod floor;
 mod follow;
-mod guess;
 mod hemisphere;
+mod initial_light;
 mod lamp;
-mod leftover;
 mod long;
 mod on_plane;
 mod prior;
+mod receiver_pixels;
 mod refine;
 mod reflection;
 mod relight;
+mod search;
 mod shading;
 mod shadows;
 mod step;
 mod uncertainty;
+mod unexplained;
 mod watch;
 mod wide;
 
@@ -37,20 +37,20 @@ use glam::{DMat4, DVec2, DVec3, IVec2};
 use super::picture::Pyramid;
 use super::raster::Rasterizer;
 use super::receivers::SeenReceiver;
-use super::report::{AssumedLight, DiscoveredLight, LightAlignment, LightDeviation, PoseDeviation};
+use super::report::{AssumedLight, EstimatedLight, LightAlignment, LightDeviation, PoseDeviation};
 use super::shape::Shape;
 use crate::no_light::NoLight;
 use app_scene::scene::{Light, LightUncertainty};
 use cast::flattened;
 pub(crate) use classes::{Compared, Comparison, compare};
-pub(super) use discover::scores;
 pub(super) use follow::{Around, Followed, View};
-pub(super) use guess::{Guess, Hints};
+pub(super) use initial_light::{Hints, InitialLight};
 use lamp::{Lamp, N_PARTS, disc};
 pub(crate) use on_plane::OnPlane;
 use prior::Prior;
 pub(super) use reflection::{FoundReflection, reflected, reflection};
 pub(super) use relight::Relight;
+pub(super) use search::scores;
 pub(super) use watch::{Watched, watch};
 
 use shadows::{LEAST_PIXELS, ROBUST_FAR, ROBUST_NEAR, Shadows, WIDE_PENUMBRA_PX};
@@ -73,7 +73,7 @@ const LEAST_TURN_RAD: f64 = 0.0015;
 const LEAST_GROWTH: f64 = 0.15;
 const LEAST_DISTANCE: f64 = 0.1;
 /// Number of standard deviations of a significant turn.
-const TOLD: f64 = 3.0;
+const SIGNIFICANT: f64 = 3.0;
 
 /// Estimated lights, and their scores.
 pub(super) struct Found {
@@ -104,7 +104,7 @@ impl FoundLight {
     pub(super) fn is_moved(&self) -> bool {
         let least_rad = (LEAST_TURN * self.given_spread)
             .max(LEAST_TURN_RAD)
-            .max(TOLD * self.deviation_rad);
+            .max(SIGNIFICANT * self.deviation_rad);
         let growth = (self.spread - self.given_spread).abs();
         self.turned_rad > least_rad
             || growth > (LEAST_GROWTH * self.given_spread).max(LEAST_TURN_RAD)
@@ -219,7 +219,7 @@ fn ratio(found: &Lamp, given: &Lamp) -> f64 {
     if found.is_far() || given.is_far() {
         1.0
     } else {
-        given.nearness / found.nearness
+        given.inverse_distance / found.inverse_distance
     }
 }
 
@@ -303,23 +303,23 @@ pub(super) fn line_of(
 
 /// Estimates unlisted lights, strongest first; `pose` is the uncertainty of the toy's. With a
 /// probe, its estimates that cast a shadow, refined by it.
-pub(super) fn discover(
+pub(super) fn search_lights(
     shape: &Shape,
     receivers: &[SeenReceiver],
     pyramid: &Pyramid,
     world_from_camera: &DMat4,
     pose: &PoseDeviation,
     hints: &Hints,
-) -> Result<Vec<DiscoveredLight>, NoLight> {
-    let mut found = discover::discover(shape, receivers, pyramid, pose, hints)?;
+) -> Result<Vec<EstimatedLight>, NoLight> {
+    let mut found = search::search_lights(shape, receivers, pyramid, pose, hints)?;
     found.sort_by(|a, b| b.share.total_cmp(&a.share));
     let lights = found.iter().map(|found| {
         let lamp = &found.lamp;
         let [across, along, nearness_per_m, spread] = found.deviations;
-        DiscoveredLight {
+        EstimatedLight {
             light: lamp.light(world_from_camera, shape.centre),
             direction_in_world: world_from_camera.transform_vector3(lamp.direction).normalize(),
-            distance_m: (!lamp.is_far()).then(|| lamp.nearness.recip()),
+            distance_m: (!lamp.is_far()).then(|| lamp.inverse_distance.recip()),
             angular_radius_rad: lamp.spread.atan(),
             share: found.share,
             deviation: LightDeviation {

@@ -2,11 +2,11 @@
 
 use glam::{DVec2, DVec3, IVec2};
 
-use super::backdrop::QUADRATIC;
+use super::background::QUADRATIC;
 use super::cast::{Caster, irradiance};
 use super::classes::Comparison;
-use super::floor::FloorPixel;
 use super::lamp::{Lamp, disc};
+use super::receiver_pixels::ReceiverPixel;
 use super::shading::{FIRST_LAMP, Factors, PRIOR};
 use crate::picture::{Color, Level};
 use crate::raster::Rasterizer;
@@ -71,18 +71,18 @@ impl<'a> OnPlane<'a> {
             .iter()
             .map(|at| plane.point_at(&self.intrinsics, *at))
             .collect();
-        let floor: Vec<FloorPixel> = pixels
+        let pixels_of_receiver: Vec<ReceiverPixel> = pixels
             .iter()
             .zip(&points)
-            .map(|(at, point)| FloorPixel::bare(*at, point.unwrap_or(DVec3::ZERO)))
+            .map(|(at, point)| ReceiverPixel::bare(*at, point.unwrap_or(DVec3::ZERO)))
             .collect();
         let points_of_lamp: Vec<DVec2> = disc(N_POINTS);
         let taken: Vec<Vec<f32>> = self
             .lamps
             .iter()
-            .map(|lamp| caster.lamp(raster, &floor, lamp, &points_of_lamp))
+            .map(|lamp| caster.lamp(raster, &pixels_of_receiver, lamp, &points_of_lamp))
             .collect();
-        let ambient = caster.ambient(raster, &floor, N_DIRECTIONS);
+        let ambient = caster.ambient(raster, &pixels_of_receiver, N_DIRECTIONS);
         let lit: Vec<Vec<f64>> = self
             .lamps
             .iter()

@@ -2,20 +2,20 @@
 
 use glam::DQuat;
 
-use super::lamp::{Lamp, N_PARTS, NEARNESS, SPREAD};
+use super::lamp::{INVERSE_DISTANCE, Lamp, N_PARTS, SPREAD};
 use app_scene::scene::LightUncertainty;
 
 /// Standard deviations of a given lamp: direction in radians, inverse distance and spread relative
 /// to the given ones.
 const GIVEN_RAD: f64 = 0.2;
-const GIVEN_NEARNESS: f64 = 0.3;
+const GIVEN_INVERSE_DISTANCE: f64 = 0.3;
 const GIVEN_SPREAD: f64 = 0.7;
 /// Smallest standard deviation of a spread; a point light stays one.
 const GIVEN_POINT: f64 = 0.003;
 /// Standard deviations of an unknown lamp: direction in radians, inverse distance over the toy's
 /// radius, spread.
 const FREE_RAD: f64 = 1.0;
-const FREE_NEARNESS: f64 = 0.3;
+const FREE_INVERSE_DISTANCE: f64 = 0.3;
 const FREE_SPREAD: f64 = 0.5;
 
 /// The mean of each parameter and its standard deviation; a parameter without one is fixed.
@@ -36,12 +36,17 @@ impl Prior {
             Some(ratio) => (ratio - 1.0) * lamp.spread + GIVEN_POINT,
             None => GIVEN_SPREAD * lamp.spread + GIVEN_POINT,
         };
-        let nearness = uncertainty
+        let inverse_distance = uncertainty
             .distance_ratio
-            .map_or(GIVEN_NEARNESS, |ratio| ratio - 1.0);
+            .map_or(GIVEN_INVERSE_DISTANCE, |ratio| ratio - 1.0);
         Self {
             lamp: *lamp,
-            deviations: [GIVEN_RAD, GIVEN_RAD, nearness * lamp.nearness, spread],
+            deviations: [
+                GIVEN_RAD,
+                GIVEN_RAD,
+                inverse_distance * lamp.inverse_distance,
+                spread,
+            ],
             uncertainty: *uncertainty,
         }
     }
@@ -49,13 +54,13 @@ impl Prior {
     /// The prior of an unknown lamp, beside a toy of the given radius.
     pub(super) fn free(lamp: &Lamp, radius_m: f64) -> Self {
         let far_point = Lamp {
-            nearness: 0.0,
+            inverse_distance: 0.0,
             spread: 0.0,
             ..*lamp
         };
         Self {
             lamp: far_point,
-            deviations: [FREE_RAD, FREE_RAD, FREE_NEARNESS / radius_m, FREE_SPREAD],
+            deviations: [FREE_RAD, FREE_RAD, FREE_INVERSE_DISTANCE / radius_m, FREE_SPREAD],
             uncertainty: LightUncertainty::default(),
         }
     }
@@ -63,7 +68,7 @@ impl Prior {
     /// The same for a lamp at infinity.
     pub(super) fn far(lamp: &Lamp) -> Self {
         let mut prior = Self::free(lamp, 1.0);
-        prior.deviations[NEARNESS] = 0.0;
+        prior.deviations[INVERSE_DISTANCE] = 0.0;
         prior
     }
 
@@ -97,7 +102,7 @@ impl Prior {
         };
         Lamp {
             direction,
-            nearness: within_ratio(lamp.nearness, self.lamp.nearness, distance_ratio),
+            inverse_distance: within_ratio(lamp.inverse_distance, self.lamp.inverse_distance, distance_ratio),
             // A point has no size that a ratio could bound.
             spread: if self.lamp.spread > 0.0 {
                 within_ratio(lamp.spread, self.lamp.spread, size_ratio)
@@ -109,7 +114,7 @@ impl Prior {
 
     /// Whether the lamp was given at a finite distance.
     pub(super) fn is_near(&self) -> bool {
-        self.lamp.nearness > 0.0
+        self.lamp.inverse_distance > 0.0
     }
 
     /// Whether a parameter is fixed.
@@ -119,9 +124,9 @@ impl Prior {
 
     /// The difference of each parameter from the prior, and its information.
     pub(super) fn pull(&self, lamp: &Lamp) -> [(f64, f64); N_PARTS] {
-        [0, 1, NEARNESS, SPREAD].map(|part| {
+        [0, 1, INVERSE_DISTANCE, SPREAD].map(|part| {
             let away = match part {
-                NEARNESS => lamp.nearness - self.lamp.nearness,
+                INVERSE_DISTANCE => lamp.inverse_distance - self.lamp.inverse_distance,
                 SPREAD => lamp.spread - self.lamp.spread,
                 _ => 0.0,
             };

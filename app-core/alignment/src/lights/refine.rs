@@ -1,7 +1,7 @@
 //! Refines counted lamps in a larger picture.
 
 use super::evidence::doubtful;
-use super::lamp::{Lamp, N_PARTS, NEARNESS};
+use super::lamp::{INVERSE_DISTANCE, Lamp, N_PARTS};
 use super::prior::Prior;
 use super::shading::Shading;
 use super::shadows::{ROBUST_NEAR, Shadows, WIDE_PENUMBRA_PX};
@@ -14,12 +14,12 @@ const N_ROUNDS: usize = 3;
 /// colours resemble the falloff of a lamp's light.
 ///
 /// Measured without: the sun at 3.5 in a real room, bulbs at 9 and more.
-const TOLD: f64 = 3.0;
-const TOLD_WITHOUT_PLATE: f64 = 6.0;
+const SIGNIFICANT: f64 = 3.0;
+const SIGNIFICANT_WITHOUT_PLATE: f64 = 6.0;
 
 /// An estimated lamp.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Discovered {
+pub(super) struct MeasuredLight {
     pub(super) lamp: Lamp,
     /// Share of the light on the receiver nearest to the toy.
     pub(super) share: f64,
@@ -64,22 +64,22 @@ impl Refined<'_> {
     }
 
     /// The lamps with their uncertainty. Lamps of unconstrained distance are moved to infinity.
-    pub(super) fn measured(mut self, raster: &mut Rasterizer, pose: &PoseDeviation) -> Vec<Discovered> {
+    pub(super) fn measured(mut self, raster: &mut Rasterizer, pose: &PoseDeviation) -> Vec<MeasuredLight> {
         let radius_m = self.shadows.caster.shape.radius_m;
-        let told = if self.shadows.has_plate {
-            TOLD
+        let significance = if self.shadows.has_plate {
+            SIGNIFICANT
         } else {
-            TOLD_WITHOUT_PLATE
+            SIGNIFICANT_WITHOUT_PLATE
         };
         let deviations = self.deviations(raster, pose);
         let far: Vec<bool> = self
             .lamps
             .iter()
             .zip(&deviations)
-            .map(|(lamp, deviations)| lamp.nearness < told * deviations[NEARNESS])
+            .map(|(lamp, deviations)| lamp.inverse_distance < significance * deviations[INVERSE_DISTANCE])
             .collect();
         for (lamp, _) in self.lamps.iter_mut().zip(&far).filter(|(_, far)| **far) {
-            lamp.nearness = 0.0;
+            lamp.inverse_distance = 0.0;
         }
         if far.contains(&true) {
             let priors = self.lamps.iter().map(|lamp| {
@@ -97,7 +97,7 @@ impl Refined<'_> {
         let shading = self.shading(raster);
         let found = self.lamps.iter().zip(deviations).enumerate();
         found
-            .map(|(index, (lamp, deviations))| Discovered {
+            .map(|(index, (lamp, deviations))| MeasuredLight {
                 lamp: *lamp,
                 share: shading.share(0, index),
                 deviations,

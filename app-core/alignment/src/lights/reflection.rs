@@ -10,8 +10,8 @@ use glam::{DMat4, DVec3, DVec4, IVec2};
 use nalgebra::{SMatrix, SVector};
 
 use super::cast::{Caster, N_AMBIENT};
-use super::floor::{FloorPixel, floor_pixels};
 use super::lamp::Lamp;
+use super::receiver_pixels::{ReceiverPixel, receiver_pixels};
 use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
 use crate::picture::{Level, Pyramid};
 use crate::raster::{Rasterizer, project};
@@ -144,13 +144,13 @@ impl Trial {
         let factors = &self.fit.factors;
         let gain = [0, 1, 2].map(|channel: usize| factors[channel][0]);
         let toy_light = [0, 1, 2].map(|channel: usize| (factors[channel][TOY] / gain[channel]).abs());
-        let is_told = hidden.len() >= LEAST_HIDDEN
+        let is_constrained = hidden.len() >= LEAST_HIDDEN
             && left(&self.fit) <= (1.0 - LEAST_EXPLAINED) * left(without)
             && toy_light.iter().sum::<f64>() >= 3.0 * LEAST_LIGHT;
         #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
         let light =
             |column: usize| [0, 1, 2].map(|channel: usize| (factors[channel][column] / gain[channel]) as f32);
-        (is_told && gain.iter().all(|gain| *gain > 0.0)).then(|| FoundReflection {
+        (is_constrained && gain.iter().all(|gain| *gain > 0.0)).then(|| FoundReflection {
             reflection: Reflection {
                 roughness: self.roughness,
                 surroundings: light(SURROUNDINGS),
@@ -193,7 +193,7 @@ pub(crate) fn reflected(
     let mut raster = Rasterizer::default();
     let corners = project(shape.points.iter().copied(), &level.intrinsics);
     let coverage = raster.coverage(&corners, &shape.faces, level.frame.size_px);
-    let pixels = floor_pixels(
+    let pixels = receiver_pixels(
         level,
         (&coverage, None),
         receivers,
@@ -223,7 +223,7 @@ struct Image {
 }
 
 impl Image {
-    fn of(raster: &mut Rasterizer, caster: &Caster<'_>, pixels: &[FloorPixel], roughness: f64) -> Self {
+    fn of(raster: &mut Rasterizer, caster: &Caster<'_>, pixels: &[ReceiverPixel], roughness: f64) -> Self {
         let lobe = Reflection {
             roughness,
             surroundings: [0.0; 3],
@@ -241,7 +241,7 @@ impl Image {
             .transform_point3(caster.shape.centre)
             .with_y(0.0);
         let eyes: Vec<DVec4> = lobe.mirrored_eyes(eye, foot);
-        let reflectance = |pixel: &FloorPixel| {
+        let reflectance = |pixel: &ReceiverPixel| {
             let to_eye: DVec3 = eye - plane_from_camera.transform_point3(pixel.point);
             lobe.reflectance(to_eye.normalize_or(DVec3::Y).y)
         };
@@ -256,7 +256,7 @@ impl Image {
 struct Evidence {
     /// Their indices among all pixels.
     places: Vec<usize>,
-    pixels: Vec<FloorPixel>,
+    pixels: Vec<ReceiverPixel>,
     /// Rows relative to the plate; the last two columns are 0.
     rows: Vec<Row>,
     n_columns: usize,

@@ -5,7 +5,7 @@
 
 use glam::{DMat4, DVec3};
 
-use super::backdrop::{Backdrop, QUARTIC};
+use super::background::{Background, QUARTIC};
 use crate::picture::{Level, Picture, Pyramid, UNKNOWN, places};
 use crate::raster::{Rasterizer, project};
 use crate::receivers::{SeenReceiver, receiver_at};
@@ -23,7 +23,7 @@ const MOST: f32 = 50.0;
 
 /// Light on the receivers in a picture, over that in its plate.
 pub(crate) struct Relight {
-    ratio: Backdrop<QUARTIC>,
+    ratio: Background<QUARTIC>,
     receivers: Vec<SeenReceiver>,
     camera_from_world: DMat4,
 }
@@ -45,7 +45,7 @@ impl Relight {
         let corners = project(shape.points.iter().copied(), &level.intrinsics);
         let coverage = Rasterizer::default().coverage(&corners, &shape.faces, level.frame.size_px);
         Some(Self {
-            ratio: Backdrop::of(
+            ratio: Background::of(
                 &ratio,
                 &coverage,
                 receivers,
@@ -118,8 +118,8 @@ impl Relight {
 fn over(frame: &Picture, plate: &Picture) -> Picture {
     let ratio = |at| {
         let (frame, plate) = (frame.get(at)?, plate.get(at)?);
-        let is_told = plate.iter().all(|plate| *plate > DARKEST);
-        is_told.then(|| [0, 1, 2].map(|channel| frame[channel] / plate[channel]))
+        let is_known = plate.iter().all(|plate| *plate > DARKEST);
+        is_known.then(|| [0, 1, 2].map(|channel| frame[channel] / plate[channel]))
     };
     let pixels = places(frame.size_px).map(|at| ratio(at).unwrap_or(UNKNOWN));
     Picture::of(frame.size_px, pixels.collect())

@@ -13,9 +13,9 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::backdrop::QUADRATIC;
+use super::background::QUADRATIC;
 use super::cast::{Ambient, N_AMBIENT};
-use super::floor::FloorPixel;
+use super::receiver_pixels::ReceiverPixel;
 use app_scene::scene::MAX_LIGHTS;
 
 /// Number of factors: those of the gain, ambient factors, and one factor per lamp.
@@ -33,7 +33,7 @@ const N_ROUNDS: usize = 3;
 
 /// The pixels of a shading, with the light that the toy blocks there.
 pub(super) struct Shaded<'a> {
-    pub(super) pixels: &'a [FloorPixel],
+    pub(super) pixels: &'a [ReceiverPixel],
     pub(super) ambient: &'a [Ambient],
     pub(super) lamps: &'a [Vec<f32>],
 }

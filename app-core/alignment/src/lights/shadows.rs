@@ -2,11 +2,11 @@
 
 use glam::{DVec2, IVec2};
 
-use super::backdrop::{Backdrop, REACH};
+use super::background::{Background, REACH};
 use super::cast::{Ambient, Caster};
-use super::floor::{FloorPixel, floor_pixels};
 use super::lamp::{Lamp, disc};
 use super::prior::Prior;
+use super::receiver_pixels::{ReceiverPixel, receiver_pixels};
 use super::shading::{Shaded, Shading};
 use crate::picture::Level;
 use crate::raster::{Rasterizer, project};
@@ -40,7 +40,7 @@ const GROWN: f64 = 1.5;
 /// The shadows in one level.
 pub(super) struct Shadows<'a> {
     pub(super) caster: Caster<'a>,
-    pub(super) pixels: Vec<FloorPixel>,
+    pub(super) pixels: Vec<ReceiverPixel>,
     ambient: Vec<Ambient>,
     /// Light on the place without a toy, relative to that at the toy's foot.
     unshadowed: Vec<f32>,
@@ -91,10 +91,10 @@ impl<'a> Shadows<'a> {
             |at: IVec2| rect.is_none_or(|[low, high]| at.cmpge(low).all() && at.cmple(high).all());
         let around = (shape.centre, REACH * shape.radius_m);
         let has_plate = level.plate.is_some();
-        let backdrop = (!has_plate).then(|| Backdrop::of(level, &coverage, receivers, around));
-        let pixels = floor_pixels(
+        let background = (!has_plate).then(|| Background::of(level, &coverage, receivers, around));
+        let pixels = receiver_pixels(
             level,
-            (&coverage, backdrop.as_ref()),
+            (&coverage, background.as_ref()),
             receivers,
             around,
             is_wanted,
@@ -132,7 +132,8 @@ impl<'a> Shadows<'a> {
             self.step(raster, lamps, priors, robust)?;
             self.widen(lamps);
             let moved_px = before.iter().zip(&*lamps).map(|(before, lamp)| {
-                let nearing = (lamp.nearness - before.nearness).abs() * self.caster.shape.radius_m;
+                let nearing =
+                    (lamp.inverse_distance - before.inverse_distance).abs() * self.caster.shape.radius_m;
                 let turned_rad = lamp.direction.angle_between(before.direction);
                 (turned_rad + nearing + (lamp.spread - before.spread).abs()) * self.px_per_rad
             });

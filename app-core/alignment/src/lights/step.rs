@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::lamp::{Lamp, N_PARTS, NEARNESS, SPREAD};
+use super::lamp::{INVERSE_DISTANCE, Lamp, N_PARTS, SPREAD};
 use super::prior::Prior;
 use super::shading::{FIRST_LAMP, Factors, N_FACTORS, Normal, PRIOR, Shaded, Shading, add_outer};
 use super::shadows::{LEAST_PENUMBRA_PX, Shadows};
@@ -20,7 +20,7 @@ const LONGEST_RAD: f64 = 0.06;
 /// The longest step of an inverse distance, as a fraction of the larger of itself and this, over
 /// the toy's radius.
 const LONGEST_NEARING: f64 = 0.2;
-const USUAL_NEARNESS: f64 = 0.1;
+const USUAL_INVERSE_DISTANCE: f64 = 0.1;
 const LONGEST_GROWTH: f64 = 1.0;
 const LONGEST_SHRINKING: f64 = 0.5;
 /// Smallest step of a spread.
@@ -90,14 +90,14 @@ impl Shadows<'_> {
         let disc = self.disc(lamp);
         let penumbra_px = self.penumbra_px(lamp);
         let turn_rad = (OF_PENUMBRA * 0.5 * penumbra_px).max(LEAST_PX) / self.px_per_rad;
-        [0, 1, NEARNESS, SPREAD].map(|part| {
-            let is_told = part != SPREAD || penumbra_px >= 0.999 * LEAST_PENUMBRA_PX;
-            if !is_told || prior.holds(part) {
+        [0, 1, INVERSE_DISTANCE, SPREAD].map(|part| {
+            let is_constrained = part != SPREAD || penumbra_px >= 0.999 * LEAST_PENUMBRA_PX;
+            if !is_constrained || prior.holds(part) {
                 return None;
             }
             // A lamp that comes nearer turns as seen from the toy's rim.
             let by = match part {
-                NEARNESS => turn_rad / self.caster.shape.radius_m,
+                INVERSE_DISTANCE => turn_rad / self.caster.shape.radius_m,
                 _ => turn_rad,
             };
             let moved = |by: f64| {
@@ -108,7 +108,7 @@ impl Shadows<'_> {
             let (more, less) = (moved(by), if here.is_some() { *lamp } else { moved(-by) });
             let span = match part {
                 SPREAD => more.spread - less.spread,
-                NEARNESS => more.nearness - less.nearness,
+                INVERSE_DISTANCE => more.inverse_distance - less.inverse_distance,
                 _ if here.is_some() => by,
                 _ => 2.0 * by,
             };
@@ -219,16 +219,16 @@ impl System {
 /// A step within the range in which the model is nearly linear; a near lamp stays near.
 fn bounded(lamp: &Lamp, prior: &Prior, step: [f64; N_PARTS], radius_m: f64) -> [f64; N_PARTS] {
     let growth = (LONGEST_GROWTH * lamp.spread).max(LEAST_GROWTH);
-    let nearing = LONGEST_NEARING * lamp.nearness.max(USUAL_NEARNESS / radius_m);
+    let nearing = LONGEST_NEARING * lamp.inverse_distance.max(USUAL_INVERSE_DISTANCE / radius_m);
     let receding = if prior.is_near() {
-        0.5 * lamp.nearness
+        0.5 * lamp.inverse_distance
     } else {
         nearing
     };
     [
         step[0].clamp(-LONGEST_RAD, LONGEST_RAD),
         step[1].clamp(-LONGEST_RAD, LONGEST_RAD),
-        step[NEARNESS].clamp(-receding.min(nearing), nearing),
+        step[INVERSE_DISTANCE].clamp(-receding.min(nearing), nearing),
         step[SPREAD].clamp(-LONGEST_SHRINKING * lamp.spread, growth),
     ]
 }

@@ -229,10 +229,10 @@ fn sandwich<'a>(
 ) -> Option<DMatrix<f64>> {
     let mut of_lamps = normal.view((0, 0), (n_parts, n_parts)).into_owned();
     // An unconstrained parameter has no slope.
-    let untold: Vec<usize> = (0..n_parts)
+    let unconstrained: Vec<usize> = (0..n_parts)
         .filter(|part| of_lamps[(*part, *part)] <= 0.0)
         .collect();
-    for part in &untold {
+    for part in &unconstrained {
         of_lamps[(*part, *part)] = 1.0;
     }
     let inverse = of_lamps.cholesky()?.inverse();
@@ -246,7 +246,7 @@ fn sandwich<'a>(
         let by_pose = &inverse * normal.view((0, place), (n_parts, 1));
         covariance += &by_pose * by_pose.transpose();
     }
-    for part in untold {
+    for part in unconstrained {
         covariance[(part, part)] = f64::INFINITY;
     }
     Some(covariance)

@@ -10,9 +10,9 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use nalgebra::{Matrix3, Vector3};
 
-use super::floor::FloorPixel;
 use super::hemisphere::climb;
 use super::lamp::{Lamp, disc};
+use super::receiver_pixels::ReceiverPixel;
 use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
 use crate::picture::Pyramid;
 use crate::raster::Rasterizer;
@@ -24,7 +24,7 @@ use crate::shape::Shape;
 /// and 70 degrees). A direction of so wide a light is not constrained any better.
 const N_AROUND: usize = 12;
 const ELEVATIONS_RAD: [f64; 3] = [0.436, 0.785, 1.222];
-/// Tangents of the angular radii to try: of 20 and 35 degrees. `discover` finds narrower lights as
+/// Tangents of the angular radii to try: of 20 and 35 degrees. `search` finds narrower lights as
 /// lamps, and wider ones hardly differ from ambient light.
 const SPREADS: [f64; 2] = [0.36, 0.7];
 /// Number of points over such a light.
@@ -102,7 +102,7 @@ fn lamps(receivers: &[SeenReceiver]) -> impl Iterator<Item = Lamp> + use<> {
             let direction = camera_from_plane.transform_vector3(direction).normalize();
             SPREADS.map(|spread| Lamp {
                 direction,
-                nearness: 0.0,
+                inverse_distance: 0.0,
                 spread,
             })
         })
@@ -117,7 +117,7 @@ struct WithLamp {
 
 /// The pixels, and the fit of ambient light to them.
 struct Evidence<'a> {
-    pixels: &'a [FloorPixel],
+    pixels: &'a [ReceiverPixel],
     /// The fraction of ambient light that the toy blocks at each pixel.
     taken: Vec<f64>,
     /// One over a variance of each channel of each pixel, less for outliers of ambient light.

@@ -7,6 +7,7 @@
 
 use glam::DVec3;
 
+use super::contour_segments::{ContourSegment, cell_px};
 use super::decide::COMPARED_PX;
 use super::edge::{self, Optics};
 use super::field::{Camera, Field, Skin};
@@ -14,7 +15,6 @@ use super::motion::Measured;
 use super::paint::{Light, Lit, Paint};
 use super::placement::Placement;
 use super::settle::{LEAST_EVIDENCE, Misfit};
-use super::sightings::{Sighting, cell_px};
 use super::{Search, enough};
 use crate::picture::Pyramid;
 use crate::report::{PoseAlignment, most_model_px};
@@ -70,11 +70,11 @@ pub(crate) fn adapt(
     let mut displacements_m = as_given.clone();
     let mut now = displaced(&as_given)?;
     for round in 0..N_ROUNDS {
-        let eye = match round {
-            0 => Eye::sharp(&now, pyramid),
-            _ => Eye::new(&now, pyramid),
+        let viewpoint = match round {
+            0 => Viewpoint::sharp(&now, pyramid),
+            _ => Viewpoint::new(&now, pyramid),
         };
-        let Some(field) = eye.field(skin, (&now, &displacements_m)) else {
+        let Some(field) = viewpoint.field(skin, (&now, &displacements_m)) else {
             return Ok(None);
         };
         if round > 0 && field.evidence < 0.0 {
@@ -84,9 +84,9 @@ pub(crate) fn adapt(
         now = displaced(&displacements_m)?;
     }
     // The camera's edge response is known best at a matching outline.
-    let eye = Eye::new(&now, pyramid);
-    let field = eye.field(skin, (given, &as_given));
-    let measured = [given, &now].map(|surface| eye.measured(surface));
+    let viewpoint = Viewpoint::new(&now, pyramid);
+    let field = viewpoint.field(skin, (given, &as_given));
+    let measured = [given, &now].map(|surface| viewpoint.measured(surface));
     let (Some(field), [Some(before), Some(after)]) = (field, measured) else {
         return Ok(None);
     };
@@ -101,13 +101,13 @@ pub(crate) fn adapt(
 }
 
 /// The observer of an outline.
-struct Eye<'a> {
+struct Viewpoint<'a> {
     pyramid: &'a Pyramid,
     optics: Optics,
     light: Option<Light>,
 }
 
-impl<'a> Eye<'a> {
+impl<'a> Viewpoint<'a> {
     /// With the optics and the light that explain a surface best.
     fn new(surface: &Surface, pyramid: &'a Pyramid) -> Self {
         let sharp = Self::sharp(surface, pyramid);
@@ -147,13 +147,13 @@ impl<'a> Eye<'a> {
     fn field(&self, skin: Skin<'_>, (surface, displacements_m): (&Surface, &[DVec3])) -> Option<Field> {
         let k = &self.pyramid.level(0).intrinsics;
         let measured = self.measured(surface)?;
-        let sightings = Sighting::all(&measured, (&surface.0, displacements_m), k);
+        let segments = ContourSegment::all(&measured, (&surface.0, displacements_m), k);
         let camera = Camera {
             alike_px: AS_A_RULE * most_model_px(0.0) + OF_SPREAD * self.optics.spread_px,
             cell_px: cell_px(measured.len()),
             pixel_m: skin.shape.centre.length() / k.fx_px,
         };
-        Field::found(skin, &sightings, camera)
+        Field::found(skin, &segments, camera)
     }
 }
 

@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use nalgebra::{DMatrix, DVector};
 
+use super::contour_segments::ContourSegment;
 use super::settle::{ALIKE, OFFSET_PX};
-use super::sightings::Sighting;
 use crate::median::median;
 use crate::robust;
 use crate::shape::Shape;
@@ -83,11 +83,11 @@ struct Prior {
 
 impl Field {
     /// The field of largest likelihood; `None` if nothing of the outline is visible.
-    pub(super) fn found(skin: Skin<'_>, sightings: &[Sighting], camera: Camera) -> Option<Self> {
-        if sightings.is_empty() {
+    pub(super) fn found(skin: Skin<'_>, segments: &[ContourSegment], camera: Camera) -> Option<Self> {
+        if segments.is_empty() {
             return None;
         }
-        let process = Process::new(skin, sightings, camera);
+        let process = Process::new(skin, segments, camera);
         let far_px = FAR * median_size(process.offsets.iter()).max(LEAST_MEDIAN_PX);
         let near: Vec<f64> = weights(&process.offsets, far_px);
         let mut robust = near.clone();
@@ -113,7 +113,7 @@ impl Field {
 /// The outline, and the covariance of its pieces.
 struct Process<'a> {
     skin: Skin<'a>,
-    sightings: &'a [Sighting],
+    segments: &'a [ContourSegment],
     offsets: DVector<f64>,
     /// Covariance of the camera's displacements, in square pixels.
     common: DMatrix<f64>,
@@ -125,17 +125,17 @@ struct Process<'a> {
 }
 
 impl<'a> Process<'a> {
-    fn new(skin: Skin<'a>, sightings: &'a [Sighting], camera: Camera) -> Self {
+    fn new(skin: Skin<'a>, segments: &'a [ContourSegment], camera: Camera) -> Self {
         let lengths_m =
             LENGTHS.map(|length| (length * skin.shape.radius_m).max(LEAST_LENGTH_PX * camera.pixel_m));
         Self {
-            offsets: DVector::from_iterator(sightings.len(), sightings.iter().map(|one| one.offset_px)),
-            common: common(sightings, camera.alike_px),
-            unit: lengths_m.map(|length_m| unit(skin, sightings, length_m)),
+            offsets: DVector::from_iterator(segments.len(), segments.iter().map(|one| one.offset_px)),
+            common: common(segments, camera.alike_px),
+            unit: lengths_m.map(|length_m| unit(skin, segments, length_m)),
             cell_px: camera.cell_px,
             lengths_m,
             skin,
-            sightings,
+            segments,
         }
     }
 
@@ -146,7 +146,7 @@ impl<'a> Process<'a> {
     /// Covariance of the noise, if neighbouring pieces are correlated over `alike` sightings.
     fn noise(&self, robust: &[f64], alike: f64) -> DMatrix<f64> {
         let mut noise = self.common.clone();
-        for (index, (one, weight)) in self.sightings.iter().zip(robust).enumerate() {
+        for (index, (one, weight)) in self.segments.iter().zip(robust).enumerate() {
             noise[(index, index)] += alike * one.variance_px2 / weight;
         }
         noise
@@ -179,8 +179,8 @@ impl<'a> Process<'a> {
     /// The mean of the field at each point.
     fn displacements(&self, pulls: &DVector<f64>, prior: Prior) -> Vec<DVec3> {
         let mut pulled: BTreeMap<usize, DVec3> = BTreeMap::new();
-        for (sighting, pull) in self.sightings.iter().zip(pulls.iter()) {
-            for (point, px_per_m) in &sighting.row {
+        for (segment, pull) in self.segments.iter().zip(pulls.iter()) {
+            for (point, px_per_m) in &segment.row {
                 *pulled.entry(*point).or_default() += *pull * *px_per_m;
             }
         }
@@ -234,20 +234,20 @@ fn explained(covariance: DMatrix<f64>, offsets: &DVector<f64>) -> Option<(f64, D
 
 /// Halos, textures and the blocks of a compressed picture displace an outline along some pixels,
 /// and partly all around.
-fn common(sightings: &[Sighting], alike_px: f64) -> DMatrix<f64> {
-    symmetric(sightings.len(), |a, b| {
-        let (one, other) = (&sightings[a], &sightings[b]);
+fn common(segments: &[ContourSegment], alike_px: f64) -> DMatrix<f64> {
+    symmetric(segments.len(), |a, b| {
+        let (one, other) = (&segments[a], &segments[b]);
         let square = (one.at_px - other.at_px).length_squared() / (ALIKE_PX * ALIKE_PX);
         let same_rim = one.normal.dot(other.normal).max(0.0);
         OFFSET_PX * OFFSET_PX + alike_px * alike_px * same_rim * (-0.5 * square).exp()
     })
 }
 
-fn unit(skin: Skin<'_>, sightings: &[Sighting], length_m: f64) -> DMatrix<f64> {
-    symmetric(sightings.len(), |a, b| {
+fn unit(skin: Skin<'_>, segments: &[ContourSegment], length_m: f64) -> DMatrix<f64> {
+    symmetric(segments.len(), |a, b| {
         let mut sum = 0.0;
-        for (one, px_per_m) in &sightings[a].row {
-            for (other, pull) in &sightings[b].row {
+        for (one, px_per_m) in &segments[a].row {
+            for (other, pull) in &segments[b].row {
                 sum += px_per_m.dot(skin.carried(*one, *other, *pull, length_m));
             }
         }

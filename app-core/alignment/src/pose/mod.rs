@@ -12,6 +12,7 @@
 
 pub(super) mod adapt;
 mod contour;
+mod contour_segments;
 mod decide;
 mod edge;
 mod field;
@@ -26,7 +27,6 @@ mod regions;
 mod resting;
 mod settle;
 mod sides;
-mod sightings;
 mod standing;
 mod texels;
 mod texture;

@@ -2,20 +2,20 @@
 
 use glam::{DVec2, DVec3};
 
-use super::eye::Eye;
 use super::reflection::Reflection;
+use super::viewpoint::Viewpoint;
 
 /// A ball around the origin of its space.
 #[derive(Clone, Debug)]
 pub(super) struct Ball {
-    pub(super) eye: Eye,
+    pub(super) viewpoint: Viewpoint,
     pub(super) radius_m: f64,
 }
 
 impl Ball {
     /// The reflection of a pixel's line of sight; `None` beside the ball, or inside it.
     pub(super) fn reflect(&self, at_px: DVec2) -> Option<Reflection> {
-        let (from, along) = (self.eye.place(), self.eye.sight(at_px));
+        let (from, along) = (self.viewpoint.place(), self.viewpoint.sight(at_px));
         let nearest = -from.dot(along);
         // From the foot of the perpendicular: the difference of squares would lose a far camera's
         // digits.
@@ -31,11 +31,11 @@ impl Ball {
 
     /// Normal at a pixel for a viewer at infinity, and the direction to that viewer.
     pub(super) fn normal_for_far_viewer(&self, at_px: DVec2) -> Option<(DVec3, DVec3)> {
-        let viewer = self.eye.place().try_normalize()?;
-        let along = self.eye.sight(at_px);
+        let viewer = self.viewpoint.place().try_normalize()?;
+        let along = self.viewpoint.sight(at_px);
         // Intersection of the line of sight with the plane through the centre that faces the
         // viewer.
-        let from = self.eye.place();
+        let from = self.viewpoint.place();
         let steep = along.dot(viewer);
         if steep >= 0.0 {
             return None;

@@ -4,8 +4,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::{DVec2, DVec3};
 
-use super::eye::Eye;
 use super::reflection::Reflection;
+use super::viewpoint::Viewpoint;
 use app_scene::scene::{Facet, FacetSlope};
 
 /// Distance from the axis, over the radius, below which a facet has no direction to lean to.
@@ -14,7 +14,7 @@ const MIDDLE: f64 = 1e-3;
 /// A lens in its own space: a disc in y = 0 with its front along +Y.
 #[derive(Clone, Debug)]
 pub(super) struct Lens<'a> {
-    pub(super) eye: Eye,
+    pub(super) viewpoint: Viewpoint,
     pub(super) radius_m: f64,
     pub(super) slope: &'a FacetSlope,
 }
@@ -22,7 +22,7 @@ pub(super) struct Lens<'a> {
 impl Lens<'_> {
     /// The point of the disc at a pixel, and the direction from there to the viewer.
     fn point(&self, at_px: DVec2) -> Option<(DVec3, DVec3)> {
-        let (from, along) = (self.eye.place(), self.eye.sight(at_px));
+        let (from, along) = (self.viewpoint.place(), self.viewpoint.sight(at_px));
         if from.y <= 0.0 || along.y >= 0.0 {
             return None;
         }

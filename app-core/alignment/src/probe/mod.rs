@@ -40,7 +40,6 @@
 
 mod ball;
 mod error;
-mod eye;
 mod highlights;
 mod lens;
 mod look;
@@ -50,6 +49,7 @@ mod reading;
 mod reflection;
 mod surface;
 mod track;
+mod viewpoint;
 
 use glam::{DVec2, DVec3};
 use serde::{Serialize, Serializer};

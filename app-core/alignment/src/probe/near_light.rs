@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 /// Largest distance of agreeing rays, in standard deviations.
 const MISSED: f64 = 3.0;
 /// Significance of a distance, in standard deviations.
-const TOLD: f64 = 3.0;
+const SIGNIFICANT: f64 = 3.0;
 /// Number of rounds in which weights are updated by the distances.
 const N_ROUNDS: usize = 3;
 /// Determinant of the normal equations of numerically parallel rays, over that of evenly spread
@@ -34,8 +34,8 @@ pub(super) struct Meeting {
 
 impl Meeting {
     /// Whether it is significantly nearer than infinity.
-    pub(super) fn is_told(&self) -> bool {
-        TOLD * self.nearness_deviation_per_m * self.distance_m < 1.0
+    pub(super) fn is_significant(&self) -> bool {
+        SIGNIFICANT * self.nearness_deviation_per_m * self.distance_m < 1.0
     }
 }
 

@@ -4,9 +4,9 @@ use glam::{DVec2, DVec3};
 
 use super::ProbeView;
 use super::ball::Ball;
-use super::eye::Eye;
 use super::lens::Lens;
 use super::reflection::Reflection;
+use super::viewpoint::Viewpoint;
 use app_scene::scene::ProbeShape;
 
 /// A mirror, in the probe's space.
@@ -18,15 +18,15 @@ pub(super) enum Surface<'a> {
 
 impl<'a> Surface<'a> {
     pub(super) fn new(view: &ProbeView<'a>) -> Self {
-        let eye = Eye::new(&view.picture.camera, &view.picture.world_from_probe);
+        let viewpoint = Viewpoint::new(&view.picture.camera, &view.picture.world_from_probe);
         match view.shape {
             ProbeShape::FresnelLens { radius_m, slope } => Self::Lens(Lens {
-                eye,
+                viewpoint,
                 radius_m: *radius_m,
                 slope,
             }),
             ProbeShape::MirrorBall { radius_m } => Self::Ball(Ball {
-                eye,
+                viewpoint,
                 radius_m: *radius_m,
             }),
         }
@@ -50,14 +50,14 @@ impl<'a> Surface<'a> {
 
     /// Corners of a box around it in front of the camera; `None` if one is behind it.
     pub(super) fn corners_px(&self) -> Option<[DVec2; 8]> {
-        let (eye, radius_m, height) = match self {
-            Self::Lens(lens) => (&lens.eye, lens.radius_m, 0.0),
-            Self::Ball(ball) => (&ball.eye, ball.radius_m, 1.0),
+        let (viewpoint, radius_m, height) = match self {
+            Self::Lens(lens) => (&lens.viewpoint, lens.radius_m, 0.0),
+            Self::Ball(ball) => (&ball.viewpoint, ball.radius_m, 1.0),
         };
         let mut corners = [DVec2::ZERO; 8];
         for (index, corner) in corners.iter_mut().enumerate() {
             let side = |bit: usize| if index & bit == 0 { -radius_m } else { radius_m };
-            *corner = eye.pixel(DVec3::new(side(1), height * side(2), side(4)))?;
+            *corner = viewpoint.pixel(DVec3::new(side(1), height * side(2), side(4)))?;
         }
         Some(corners)
     }

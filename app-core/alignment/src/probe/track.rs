@@ -112,7 +112,7 @@ impl Track {
         let meeting = meet(&rays);
         let angular_radius_rad = seen.angular_radius_rad.min(WIDEST_RAD);
         let near = meeting
-            .filter(Meeting::is_told)
+            .filter(Meeting::is_significant)
             .map(|meeting| Light::sphere(meeting.position, meeting.distance_m * angular_radius_rad.sin()));
         let near = near.filter(|light| light.check("light").is_ok());
         TrackedLight {

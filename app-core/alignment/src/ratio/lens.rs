@@ -67,7 +67,7 @@ fn along(bend: Bend, (scene, input, lights): (&Scene, &FrameInput, &[Light])) ->
     match searched(Unknown::Lens(bend), MOST, (scene, input, lights)) {
         Ok(found) => {
             let Some(found) = found else {
-                return none(RatioOutcome::NotTold);
+                return none(RatioOutcome::Unconstrained);
             };
             LensAlignment {
                 outcome: found.outcome,

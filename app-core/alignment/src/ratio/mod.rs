@@ -69,10 +69,10 @@ impl Ratio {
     /// The warning that it was requested and is unconstrained.
     pub(super) fn warning(&self) -> Option<AlignmentWarning> {
         let found = self.found?;
-        let is_told = matches!(found.outcome, RatioOutcome::Corrected | RatioOutcome::AsGiven);
-        (!is_told).then_some(match self.unknown? {
-            Unknown::FocalLength => AlignmentWarning::FocalLengthNotTold,
-            Unknown::WorldScale => AlignmentWarning::WorldScaleNotTold,
+        let is_constrained = matches!(found.outcome, RatioOutcome::Corrected | RatioOutcome::AsGiven);
+        (!is_constrained).then_some(match self.unknown? {
+            Unknown::FocalLength => AlignmentWarning::FocalLengthUnconstrained,
+            Unknown::WorldScale => AlignmentWarning::WorldScaleUnconstrained,
             // Estimated before all else, and reported separately.
             Unknown::Lens(_) => return None,
         })
@@ -118,13 +118,13 @@ impl Ratio {
 fn find(unknown: Unknown, scene: &Scene, input: &FrameInput, lights: &[Light]) -> RatioAlignment {
     let found = match searched(unknown, MOST, (scene, input, lights)) {
         Ok(Some(found)) => found,
-        Ok(None) => return none(RatioOutcome::NotTold),
+        Ok(None) => return none(RatioOutcome::Unconstrained),
         Err(Unseen) => return none(RatioOutcome::Unseen),
     };
     let ratio = found.at.exp();
     let camera = input.camera.with_focal_length(ratio);
     if unknown == Unknown::FocalLength && check::camera("camera", &camera).is_err() {
-        return none(RatioOutcome::NotTold);
+        return none(RatioOutcome::Unconstrained);
     }
     RatioAlignment {
         outcome: found.outcome,

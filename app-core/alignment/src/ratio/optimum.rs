@@ -31,7 +31,7 @@ const MOST_LENS_DEVIATION: f64 = 0.02;
 /// Smallest visible change: a sixth of a millimetre along the view at arm's length.
 const LEAST: f64 = 5e-4;
 /// Significance of a change, in standard deviations.
-const TOLD: f64 = 2.0;
+const SIGNIFICANT: f64 = 2.0;
 /// Largest rise of the outline's distance, over that with the given value.
 const WORSE_OUTLINE: f64 = 1.015;
 
@@ -76,9 +76,9 @@ pub(super) fn searched(
 
 fn outcome(found: &Parabola, given: &Trial, (outline_px, most_deviation): (f64, f64)) -> RatioOutcome {
     let deviation = deviation(found);
-    let is_as_given = found.at.abs() < LEAST.max(TOLD * deviation) || found.loss > GAIN * given.loss;
+    let is_as_given = found.at.abs() < LEAST.max(SIGNIFICANT * deviation) || found.loss > GAIN * given.loss;
     if deviation > most_deviation {
-        RatioOutcome::NotTold
+        RatioOutcome::Unconstrained
     } else if is_as_given {
         RatioOutcome::AsGiven
     } else if outline_px > WORSE_OUTLINE * given.outline_px {

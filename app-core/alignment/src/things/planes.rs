@@ -138,7 +138,7 @@ fn found(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     let heights = first.heights;
     let level = [(first.loss, [heights[0], 0.0, 0.0])];
     let plane = search.refined(raster, &level, &[(first.loss, heights)])?;
-    let losses = search.told(raster, &plane)?;
+    let losses = search.significant_losses(raster, &plane)?;
     let endless = search.plane(&plane.heights).plane_from_camera;
     let extent = Extent::of(outline, &endless, plane.is_level)?;
     Some(FoundPlane {
@@ -278,15 +278,15 @@ impl<'a> Search<'a> {
     }
 
     /// Losses of the known receivers and of the plane; `None` if the plane is no clear improvement.
-    fn told(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Option<[f64; 2]> {
+    fn significant_losses(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Option<[f64; 2]> {
         let of_receiver = self.loss_of(&self.expected);
         let of_light = self.loss_of(&vec![Some([1.0; 3]); self.seen.len()]);
         let loss = candidate.loss;
         let of_others = of_receiver.min(of_light);
-        let is_told = of_others > LEAST_LEFT && loss < OF_PLANE.min(OF_OTHERS * of_others);
+        let is_significant = of_others > LEAST_LEFT && loss < OF_PLANE.min(OF_OTHERS * of_others);
         let n_shadowed = self.n_shadowed(raster, &candidate.heights);
         let least = LEAST_SHADOWED[usize::from(!candidate.is_level)];
-        (is_told && n_shadowed >= least).then_some([of_receiver, loss])
+        (is_significant && n_shadowed >= least).then_some([of_receiver, loss])
     }
 
     /// The best of some tries, with their losses.

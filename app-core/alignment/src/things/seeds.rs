@@ -37,8 +37,8 @@ const OF_PLACE: f32 = 1.0;
 const OF_FRAME: [f32; 2] = [2.0, 1.5];
 /// Median log likelihood ratio at which a group's colours in the plate are a thing's, with the
 /// minimum number of pixels; and the limit for large groups.
-const TOLD: (f32, usize) = (3.0, 8);
-const TOLD_LARGE: (f32, usize) = (1.0, 200);
+const SIGNIFICANT: (f32, usize) = (3.0, 8);
+const SIGNIFICANT_LARGE: (f32, usize) = (1.0, 200);
 
 /// Content of a pixel, as far as it is certain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,7 +140,7 @@ impl Seeds {
                 .iter()
                 .map(|index| from_shaded(frame.pixels[*index], plate.pixels[*index]));
             let differs = median(differs, f32::total_cmp).unwrap_or(0.0);
-            let seed = told([by_frame, by_plate], differs, group.len());
+            let seed = classified([by_frame, by_plate], differs, group.len());
             for index in group {
                 self.seeds[*index] = seed;
             }
@@ -247,14 +247,14 @@ fn lit(compared: &[Compared], (frame, plate): (&Codes, &Codes)) -> Codes {
 
 /// Kind of a group of seeds, from the log likelihood ratios of its colours in frame and plate, and
 /// from the difference in codes between the frame and the plate in less light.
-fn told([by_frame, by_plate]: [f32; 2], differs: f32, n_seeds: usize) -> Seed {
+fn classified([by_frame, by_plate]: [f32; 2], differs: f32, n_seeds: usize) -> Seed {
     let passes = |(least, n): (f32, usize)| by_plate > least && n_seeds >= n;
     let is_of_one = differs > UNLIKE_CODES;
     let is_of_frame =
         differs > 0.5 * UNLIKE_CODES && by_plate < OF_FRAME[0] && by_frame > by_plate + OF_FRAME[1];
     if is_of_frame {
         Seed::InFrame
-    } else if !(passes(TOLD) || passes(TOLD_LARGE)) {
+    } else if !(passes(SIGNIFICANT) || passes(SIGNIFICANT_LARGE)) {
         Seed::None
     } else if is_of_one && by_frame < OF_PLACE {
         Seed::WrongPlate

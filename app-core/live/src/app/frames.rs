@@ -8,7 +8,7 @@ use super::event::{PlatformCommand, ShellCommand, Thermal, WorkCommand};
 use super::ghost::Ghost;
 use super::notice::Notice;
 use super::step::{Cause, Step};
-use super::table::{as_told_now, beside};
+use super::table::{as_reported_now, beside};
 use app_scene::camera_frame::{Arrival, CameraFrame, FoundPlane, Tracking};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Receiver, Scene, Surface};
@@ -101,7 +101,7 @@ impl App {
     /// Adopts the tracker's corrections of the table until something is placed on it.
     fn follow_table(&mut self, frame: &CameraFrame) {
         let Some(table) = &mut self.table else { return };
-        let same = as_told_now(table, frame);
+        let same = as_reported_now(table, frame);
         if let Some(plane) = same.filter(|_| self.place.is_none() && self.plates.is_empty()) {
             if let Some(ghost) = &mut self.ghost {
                 ghost.follow(&plane);

@@ -26,7 +26,7 @@ pub(super) struct Recorder {
     has_ticked: bool,
     tracking: Option<Tracking>,
     planes: Option<Arc<[FoundPlane]>>,
-    has_told_drops: bool,
+    has_reported_drops: bool,
 }
 
 impl Recorder {
@@ -41,7 +41,7 @@ impl Recorder {
             has_ticked: false,
             tracking: None,
             planes: None,
-            has_told_drops: false,
+            has_reported_drops: false,
         };
         (recorder, job)
     }
@@ -119,7 +119,7 @@ impl Recorder {
     /// Whether frames were dropped for the first time.
     pub(super) fn begins_to_drop(&mut self) -> bool {
         let is_dropping = self.sender.n_dropped_frames() > 0;
-        is_dropping && !std::mem::replace(&mut self.has_told_drops, is_dropping)
+        is_dropping && !std::mem::replace(&mut self.has_reported_drops, is_dropping)
     }
 
     fn note(&self, topic: Topic, message: &Value) {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DMat4;
 
-use app_alignment::{Newcomer, StandingPose, StandingSearch};
+use app_alignment::{NewObject, StandingPose, StandingSearch};
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 
@@ -55,16 +55,16 @@ impl SearchJob {
     /// Continues the search; some tenths of a second.
     #[must_use]
     pub fn run(self) -> SearchedJob {
-        let come = match self.part {
-            Part::Look(scene, input) => Come::Looked(Newcomer::of(&scene, &input).ok().flatten()),
+        let result = match self.part {
+            Part::Look(scene, input) => SearchResult::Looked(NewObject::of(&scene, &input).ok().flatten()),
             Part::Step(mut search) => match search.step() {
-                Ok(()) => Come::Stepped(search),
-                Err(_) => Come::Refused,
+                Ok(()) => SearchResult::Stepped(search),
+                Err(_) => SearchResult::Refused,
             },
         };
         SearchedJob {
             number: self.number,
-            come,
+            result,
         }
     }
 }
@@ -73,12 +73,12 @@ impl SearchJob {
 #[derive(Debug)]
 pub struct SearchedJob {
     number: u64,
-    come: Come,
+    result: SearchResult,
 }
 
 #[derive(Debug)]
-enum Come {
-    Looked(Option<Newcomer>),
+enum SearchResult {
+    Looked(Option<NewObject>),
     Stepped(Box<StandingSearch>),
     Refused,
 }
@@ -87,7 +87,7 @@ enum Come {
 #[derive(Debug, Default)]
 enum Stage {
     /// The table is examined from time to time; holds the new thing of the last examination.
-    Watch(Option<Newcomer>),
+    Watch(Option<NewObject>),
     /// A search begins with the next frame that has a pose.
     Begin,
     /// The search waits for its next step.
@@ -219,8 +219,8 @@ impl Search {
             return false;
         }
         self.is_at_work = false;
-        match done.come {
-            Come::Looked(seen) => {
+        match done.result {
+            SearchResult::Looked(seen) => {
                 if let Stage::Watch(before) = std::mem::take(&mut self.stage) {
                     self.stage = match (before, seen) {
                         (Some(before), Some(now)) if is_still([before, now]) => Stage::Begin,
@@ -229,7 +229,7 @@ impl Search {
                 }
                 false
             }
-            Come::Stepped(search) => {
+            SearchResult::Stepped(search) => {
                 let before = std::mem::replace(&mut self.best, search.best());
                 self.stage = if search.is_done() {
                     Stage::Ended
@@ -238,7 +238,7 @@ impl Search {
                 };
                 before != self.best
             }
-            Come::Refused => {
+            SearchResult::Refused => {
                 self.stage = Stage::Ended;
                 false
             }
@@ -247,6 +247,6 @@ impl Search {
 }
 
 /// Whether the new thing is the same, at the same place.
-fn is_still([before, now]: [Newcomer; 2]) -> bool {
+fn is_still([before, now]: [NewObject; 2]) -> bool {
     before.at.distance(now.at) < STILL_M && (now.share - before.share).abs() < STILL_SHARE * before.share
 }

@@ -43,7 +43,7 @@ pub(super) fn table_at(frame: &CameraFrame, camera: &Camera, pixel: DVec2) -> Op
 }
 
 /// The same table in the frame's version; `None` if the frame does not contain it.
-pub(super) fn as_told_now(table: &FoundPlane, frame: &CameraFrame) -> Option<FoundPlane> {
+pub(super) fn as_reported_now(table: &FoundPlane, frame: &CameraFrame) -> Option<FoundPlane> {
     if table.id == CARD {
         return frame.world_from_card.as_ref().map(around_card);
     }

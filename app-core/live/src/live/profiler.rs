@@ -224,10 +224,10 @@ impl Profiler {
 
 /// The part of a frame's scope about heat and settings.
 pub(super) fn args(thermal: Thermal, governor: Option<&Governor>) -> Args {
-    let turned_down = governor.iter().flat_map(|governor| governor.turned_down());
+    let quality_reductions = governor.iter().flat_map(|governor| governor.quality_reductions());
     Args {
         heat: Some(format!("{thermal:?}")),
-        turned_down: turned_down.map(|step| step.what.to_owned()).collect(),
+        turned_down: quality_reductions.map(|step| step.what.to_owned()).collect(),
         ..Args::default()
     }
 }

@@ -284,7 +284,7 @@ impl Core {
 
     /// Reduces settings of the model from the next frame on, or restores them: those that a
     /// [`Governor`](crate::governor::Governor) has [turned
-    /// down](crate::governor::Governor::turned_down). Estimates of the place stay; the next frame
+    /// down](crate::governor::Governor::quality_reductions). Estimates of the place stay; the next frame
     /// runs the fits as from a new view. The steps apply until another scene is set; the baseline
     /// has no such settings.
     ///

@@ -89,7 +89,7 @@ pub enum Warning {
         unseen: Vec<UnseenShadow>,
     },
     /// The scene exceeds the cost budget with the preset's own settings: some are turned down.
-    TurnedDown {
+    QualityReduced {
         /// Descriptions of these settings.
         what: Vec<&'static str>,
         /// Triangles of a new view without the reductions.
@@ -218,7 +218,7 @@ impl fmt::Display for Warning {
             Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Outlier(unknown) => unknown.fmt(f),
             Self::Thing(thing) => thing.fmt(f),
-            Self::TurnedDown {
+            Self::QualityReduced {
                 what,
                 triangles,
                 covered_px,

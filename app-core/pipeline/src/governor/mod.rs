@@ -205,14 +205,14 @@ impl Governor {
     /// The steps that are taken: the reduced settings; a later step of a setting overrides the
     /// earlier ones.
     #[must_use]
-    pub fn turned_down(&self) -> &[QualityStep] {
+    pub fn quality_reductions(&self) -> &[QualityStep] {
         &self.ladder[..self.level]
     }
 
     /// The value of a setting; `None` if it is not reduced.
     #[must_use]
     pub fn value(&self, setting: QualitySetting) -> Option<u32> {
-        let steps = self.turned_down().iter().rev();
+        let steps = self.quality_reductions().iter().rev();
         steps
             .filter(|step| step.setting == setting)
             .map(|step| step.value)

@@ -168,7 +168,7 @@ impl<'a> Resource<'a> {
     }
 }
 
-impl Held {
+impl ResourceKey {
     fn binding<'a>(&'a self, slot: Slot, uniforms: &'a Uniforms) -> wgpu::BindingResource<'a> {
         match (self, slot) {
             (Self::Buffer(buffer), _) => buffer.as_entire_binding(),
@@ -201,14 +201,14 @@ impl<'a> From<&'a Sampler> for Resource<'a> {
 
 /// A resource as a cache key; it lives as long as the group that holds it.
 #[derive(Clone, PartialEq, Eq, Hash)]
-pub(super) enum Held {
+pub(super) enum ResourceKey {
     Buffer(wgpu::Buffer),
     View(wgpu::TextureView),
     Sampler(wgpu::Sampler),
     PerUse,
 }
 
-impl Held {
+impl ResourceKey {
     /// Returns `None` for a resource that was only counted.
     pub(super) fn of(resource: &Resource<'_>) -> Option<Self> {
         Some(match *resource {
@@ -228,7 +228,7 @@ pub(crate) struct Layout {
 }
 
 /// Cache key of a group: its slots and resources.
-type GroupKey = (&'static [Slot], Vec<Held>);
+type GroupKey = (&'static [Slot], Vec<ResourceKey>);
 
 /// Cached layouts by slots, and groups by slots and resources: each is created once.
 #[derive(Default)]
@@ -267,7 +267,7 @@ impl BindingCache {
         layout: &Layout,
         resources: &[Resource<'_>],
     ) -> Option<wgpu::BindGroup> {
-        let held: Vec<Held> = resources.iter().map(Held::of).collect::<Option<_>>()?;
+        let held: Vec<ResourceKey> = resources.iter().map(ResourceKey::of).collect::<Option<_>>()?;
         if !resources.iter().all(Resource::is_own) {
             return Some(make_group(device, uniforms, layout, &held));
         }
@@ -295,7 +295,12 @@ impl BindingCache {
 }
 
 /// A group of the held resources, in the order of the layout's slots.
-fn make_group(device: &Device, uniforms: &Uniforms, layout: &Layout, held: &[Held]) -> wgpu::BindGroup {
+fn make_group(
+    device: &Device,
+    uniforms: &Uniforms,
+    layout: &Layout,
+    held: &[ResourceKey],
+) -> wgpu::BindGroup {
     let entries: Vec<_> = (0..)
         .zip(layout.slots.iter().zip(held))
         .map(|(binding, (slot, resource))| wgpu::BindGroupEntry {

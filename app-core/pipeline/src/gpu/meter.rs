@@ -42,11 +42,11 @@ impl Meter {
     }
 
     /// Counts the bytes of a resource until the returned value is dropped.
-    pub(super) fn hold(&self, n_bytes: u64) -> Held {
+    pub(super) fn hold(&self, n_bytes: u64) -> CountedBytes {
         self.made.fetch_add(n_bytes, Ordering::Relaxed);
         let now = self.held.now.fetch_add(n_bytes, Ordering::Relaxed) + n_bytes;
         self.held.peak.fetch_max(now, Ordering::Relaxed);
-        Held {
+        CountedBytes {
             of: Arc::clone(&self.held),
             n_bytes,
         }
@@ -73,12 +73,12 @@ impl Meter {
 
 /// The counted bytes of one texture or buffer.
 #[derive(Debug)]
-pub(super) struct Held {
+pub(super) struct CountedBytes {
     of: Arc<HeldBytes>,
     n_bytes: u64,
 }
 
-impl Drop for Held {
+impl Drop for CountedBytes {
     fn drop(&mut self) {
         self.of.now.fetch_sub(self.n_bytes, Ordering::Relaxed);
     }

@@ -1,6 +1,6 @@
 //! Buffers and views as passes hold them; if work is only counted, they are no more than sizes.
 
-use super::meter::Held;
+use super::meter::CountedBytes;
 use super::shape::Shape;
 use super::work::Id;
 
@@ -10,7 +10,7 @@ pub(crate) struct Buffer {
     pub raw: Option<wgpu::Buffer>,
     pub(super) id: Id,
     pub(super) n_bytes: u64,
-    pub(super) _held: Held,
+    pub(super) _held: CountedBytes,
 }
 
 /// A view of a texture, or of some of its layers.

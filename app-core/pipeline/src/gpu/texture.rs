@@ -4,7 +4,7 @@ use glam::UVec2;
 use wgpu::{TextureFormat, TextureUsages, TextureViewDimension};
 
 use super::context::Gpu;
-use super::meter::{Held, Meter};
+use super::meter::{CountedBytes, Meter};
 use super::samplers::Sampler;
 use super::shape::Shape;
 
@@ -15,7 +15,7 @@ pub(crate) use super::resource::TextureView;
 pub(crate) struct Texture {
     raw: Option<wgpu::Texture>,
     pub(crate) view: TextureView,
-    _held: Held,
+    _held: CountedBytes,
 }
 
 impl Texture {
@@ -165,7 +165,7 @@ pub(crate) struct TextureLayers {
     pub(crate) view: TextureView,
     /// View of each layer.
     pub(crate) layers: Vec<TextureView>,
-    _held: Held,
+    _held: CountedBytes,
 }
 
 impl TextureLayers {

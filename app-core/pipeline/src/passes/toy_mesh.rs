@@ -15,7 +15,7 @@ use crate::geometry::silhouette::{Projection, Shape, Viewers, find_silhouette};
 use crate::geometry::tiles::Tiles;
 use crate::gpu::{Buffer, Gpu, Group, Pipeline, Recorder, Render, Stream};
 use crate::passes::materials::Materials;
-pub(crate) use crate::passes::toy_mesh::corners::{Corners, Saves, Side, SilhouetteTarget};
+pub(crate) use crate::passes::toy_mesh::corners::{Corners, Savings, Side, SilhouetteTarget};
 use crate::passes::toy_mesh::corners::{Lists, MAX_SILHOUETTE_CORNERS, n};
 pub(crate) use crate::passes::toy_mesh::runs::Sided;
 use crate::passes::toy_mesh::runs::{Run, runs};
@@ -226,7 +226,7 @@ impl ToyMesh {
         let mut facing = viewers.facing(&pose.mesh.positions, closed);
         facing.extend(open);
         gpu.write(&lists.facing, &facing);
-        let worth_it = target.filter(|target| target.saves.pays(facing.len(), self.is_closed));
+        let worth_it = target.filter(|target| target.savings.is_worthwhile(facing.len(), self.is_closed));
         let silhouette = worth_it.and_then(|target| {
             let shape = self.small_shape(pose, lod)?;
             let silhouette =

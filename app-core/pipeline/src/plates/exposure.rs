@@ -84,7 +84,7 @@ pub(crate) fn match_frame(
 }
 
 /// A point that is visible in a picture.
-struct Seen {
+struct VisiblePoint {
     px: DVec2,
     point: PointOn,
     /// Mean colour around it.
@@ -101,12 +101,12 @@ struct Shared {
 }
 
 /// The sample points at which a picture shows a receiver.
-fn seen_places(shot: &Shot<'_>, linear_of_code: &[f64; 256]) -> Vec<Seen> {
+fn seen_places(shot: &Shot<'_>, linear_of_code: &[f64; 256]) -> Vec<VisiblePoint> {
     let spacing = shot.size_px() / f64::from(N_COMPARED);
     let places = (0..N_COMPARED * N_COMPARED).map(|k| UVec2::new(k % N_COMPARED, k / N_COMPARED));
     let seen = places.filter_map(|at| {
         let px = (at.as_dvec2() + 0.5) * spacing;
-        Some(Seen {
+        Some(VisiblePoint {
             px,
             point: shot.nearest(px)?,
             color: shot.mean_color(px, linear_of_code)?,
@@ -117,7 +117,7 @@ fn seen_places(shot: &Shot<'_>, linear_of_code: &[f64; 256]) -> Vec<Seen> {
 
 /// The points that another picture shows, too.
 fn shared_places<'a>(
-    seen: &'a [Seen],
+    seen: &'a [VisiblePoint],
     other: &'a Shot<'_>,
     linear_of_code: &'a [f64; 256],
 ) -> impl Iterator<Item = Shared> + 'a {

@@ -1,7 +1,7 @@
 //! A scene on the device: the toy, the plates, the frame and the state learned from them.
 
-mod afford;
 pub(crate) mod camera_texture;
+mod cost_limit;
 mod footprint;
 mod gloss;
 pub(crate) mod method;
@@ -80,7 +80,7 @@ pub(crate) struct Stage {
     /// Quality steps that the caller requests.
     asked_down: Vec<QualityStep>,
     /// Quality steps that are applied because the scene exceeds the cost budget.
-    turned_down: Vec<QualityStep>,
+    quality_reductions: Vec<QualityStep>,
     /// The warning for it.
     cost_warning: Option<Warning>,
     /// Reach of the clip that was shown last, including the poses shown so far.
@@ -218,7 +218,7 @@ impl Stage {
             scene,
             is_shadow_withheld: false,
             is_every_pose_new: false,
-            turned_down: Vec::new(),
+            quality_reductions: Vec::new(),
             asked_down: Vec::new(),
             cost_warning: None,
             reach: None,

@@ -165,7 +165,7 @@ impl Stage {
     fn start(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
         self.drop_method(gpu);
         let method = match self.settings {
-            Settings::Model(settings) => match self.affordable(settings, footprint) {
+            Settings::Model(settings) => match self.plan_within_limit(settings, footprint) {
                 Some(plan) => self.model(gpu, plan, footprint),
                 None => return,
             },
@@ -254,7 +254,7 @@ impl Stage {
             is_shadow_withheld: self.is_shadow_withheld,
             ..preset
         };
-        let steps = self.turned_down.iter().chain(&self.asked_down);
+        let steps = self.quality_reductions.iter().chain(&self.asked_down);
         steps.for_each(|step| step.apply(&mut settings));
         settings
     }
@@ -358,19 +358,19 @@ impl Stage {
     /// Warnings about things beside the toy in the pictures.
     pub(super) fn thing_warnings(&self) -> impl Iterator<Item = Warning> {
         let things = self.things.as_ref();
-        let told = [
+        let reported = [
             (Mark::Thing, Thing::OnReceiver),
             (Mark::BeforeToy, Thing::BeforeToy),
             (Mark::WrongPlate, Thing::InPlateAlone),
         ];
         let count = move |mark| things.map_or(0, |things| things.given().count(mark));
         // A thing before the toy mostly comes with a shadow.
-        let is_told = move |mark: Mark| match mark {
+        let is_reported = move |mark: Mark| match mark {
             Mark::Thing => count(mark) > count(Mark::BeforeToy),
             _ => count(mark) > 0,
         };
-        let told = told.into_iter().filter(move |(mark, _)| is_told(*mark));
-        told.map(|(_, thing)| Warning::Thing(thing))
+        let reported = reported.into_iter().filter(move |(mark, _)| is_reported(*mark));
+        reported.map(|(_, thing)| Warning::Thing(thing))
     }
 
     fn model(&self, gpu: &Gpu, plan: Plan, footprint: &Footprint) -> Method {

@@ -99,7 +99,7 @@ pub fn queue(n_items: usize, max_bytes: u64) -> (RecordingSender, RecordingRecei
     let receiver = RecordingReceiver {
         receiver,
         counts,
-        n_told: 0,
+        n_reported: 0,
         encoder: None,
     };
     (sender, receiver)
@@ -167,7 +167,7 @@ pub struct RecordingReceiver {
     receiver: Receiver<(u64, Item)>,
     counts: Arc<Counts>,
     /// Number of dropped items that are recorded as such.
-    n_told: u64,
+    n_reported: u64,
     /// `None` if live frames are not accepted.
     encoder: Option<LiveEncoder>,
 }
@@ -259,10 +259,13 @@ impl RecordingReceiver {
 
     fn tell_dropped<W: Write>(&mut self, time_ns: u64, writer: &mut Writer<W>) -> Result<(), WriteError> {
         let n_dropped = self.counts.n_dropped.load(Ordering::Acquire);
-        if n_dropped > self.n_told {
-            let message = format!(r#"{{"event":"dropped","n_items":{}}}"#, n_dropped - self.n_told);
+        if n_dropped > self.n_reported {
+            let message = format!(
+                r#"{{"event":"dropped","n_items":{}}}"#,
+                n_dropped - self.n_reported
+            );
             writer.note(time_ns, Topic::Events, &message)?;
-            self.n_told = n_dropped;
+            self.n_reported = n_dropped;
         }
         Ok(())
     }

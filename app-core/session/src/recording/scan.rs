@@ -87,18 +87,18 @@ struct ChunkHead {
 }
 
 /// The reason why a record is refused.
-enum Bad {
+enum Refused {
     Damage(Damage),
     Io(RecordingError),
 }
 
-impl From<Damage> for Bad {
+impl From<Damage> for Refused {
     fn from(damage: Damage) -> Self {
         Self::Damage(damage)
     }
 }
 
-impl From<std::io::Error> for Bad {
+impl From<std::io::Error> for Refused {
     fn from(error: std::io::Error) -> Self {
         Self::Io(RecordingError::Io(error.to_string()))
     }
@@ -127,16 +127,16 @@ impl Scan<'_> {
             }
             match self.record() {
                 Ok(end) => self.at = end,
-                Err(Bad::Io(error)) => return Err(error),
-                Err(Bad::Damage(damage)) => self.skip_damage(damage)?,
+                Err(Refused::Io(error)) => return Err(error),
+                Err(Refused::Damage(damage)) => self.skip_damage(damage)?,
             }
         };
-        let is_told = match self.found.losses.last() {
+        let is_reported = match self.found.losses.last() {
             Some(Loss::Cut { .. }) => true,
             Some(Loss::Skipped { to, .. }) => *to == self.n_bytes,
             _ => false,
         };
-        if !is_finished && !is_told {
+        if !is_finished && !is_reported {
             self.lose(Loss::Unfinished { at: self.n_bytes });
         }
         Ok(())
@@ -162,7 +162,7 @@ impl Scan<'_> {
     }
 
     /// Reads the record at the scan's position, and returns its end.
-    fn record(&mut self) -> Result<u64, Bad> {
+    fn record(&mut self) -> Result<u64, Refused> {
         let mut head = [0; HEAD_LEN];
         self.source.read_at(self.at, &mut head)?;
         let (opcode, n_bytes) = parse_head(head);
@@ -203,10 +203,10 @@ impl Scan<'_> {
 
     /// Checks the lengths of an index: an invalid one may be a chunk whose opcode has one wrong
     /// bit.
-    fn index(&self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
+    fn index(&self, body_at: u64, n_bytes: u64) -> Result<(), Refused> {
         const HEAD: u64 = 6;
         const ENTRY: u64 = 16;
-        let head = self.head_bytes(body_at, HEAD.min(n_bytes)).map_err(Bad::Io)?;
+        let head = self.head_bytes(body_at, HEAD.min(n_bytes)).map_err(Refused::Io)?;
         let mut rest = Rest(&head);
         let n_entry_bytes = rest.u16().and_then(|_channel| rest.u32()).map(u64::from);
         let is_index = n_entry_bytes.is_some_and(|n| n % ENTRY == 0 && n + HEAD == n_bytes);
@@ -214,10 +214,10 @@ impl Scan<'_> {
     }
 
     /// The header of a chunk, if it is plausible.
-    fn chunk_head(&self, body_at: u64, n_bytes: u64) -> Result<ChunkHead, Bad> {
+    fn chunk_head(&self, body_at: u64, n_bytes: u64) -> Result<ChunkHead, Refused> {
         let head = self
             .head_bytes(body_at, CHUNK_HEAD_BYTES + MAX_COMPRESSION_BYTES)
-            .map_err(Bad::Io)?;
+            .map_err(Refused::Io)?;
         let mut rest = Rest(&head);
         let _times = rest.take(TIMES_BYTES).ok_or(Damage::Length)?;
         let n_record_bytes = rest.u64().ok_or(Damage::Length)?;
@@ -253,7 +253,7 @@ impl Scan<'_> {
         })
     }
 
-    fn chunk(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
+    fn chunk(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Refused> {
         let home = self.check_chunk(body_at, n_bytes)?;
         self.has_chunk = true;
         let is_taken = self.found.chunk(home, &self.buffer);
@@ -261,7 +261,7 @@ impl Scan<'_> {
     }
 
     /// Fills the buffer with a chunk's records, and verifies their checksum.
-    fn check_chunk(&mut self, body_at: u64, n_bytes: u64) -> Result<Home, Bad> {
+    fn check_chunk(&mut self, body_at: u64, n_bytes: u64) -> Result<Home, Refused> {
         let head = self.chunk_head(body_at, n_bytes)?;
         match head.home {
             Home::At(at) => self.fill_buffer(at, head.n_record_bytes)?,
@@ -276,13 +276,13 @@ impl Scan<'_> {
     }
 
     /// Fills the buffer with at most a chunk.
-    fn fill_buffer(&mut self, at: u64, n_bytes: u64) -> Result<(), Bad> {
+    fn fill_buffer(&mut self, at: u64, n_bytes: u64) -> Result<(), Refused> {
         #[expect(clippy::cast_possible_truncation, reason = "at most a chunk")]
         self.buffer.resize(n_bytes as usize, 0);
         Ok(self.source.read_at(at, &mut self.buffer)?)
     }
 
-    fn unpack(&mut self, packed: Packed) -> Result<(), Bad> {
+    fn unpack(&mut self, packed: Packed) -> Result<(), Refused> {
         if packed.n_record_bytes > self.inflation_left {
             let max_bytes = max_inflated(self.n_bytes);
             return Err(Damage::Inflated { max_bytes }.into());
@@ -295,11 +295,11 @@ impl Scan<'_> {
 
     /// An intact schema outside of chunks, before the first of them: messages are outside, too,
     /// then.
-    fn schema(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
+    fn schema(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Refused> {
         if self.has_chunk || n_bytes > WINDOW_BYTES {
             return Err(Damage::Kind.into());
         }
-        let body = self.head_bytes(body_at, n_bytes).map_err(Bad::Io)?;
+        let body = self.head_bytes(body_at, n_bytes).map_err(Refused::Io)?;
         let mut rest = Rest(&body);
         let is_whole = rest.u16().is_some_and(|id| id != 0)
             && rest.text().is_some()
@@ -311,7 +311,7 @@ impl Scan<'_> {
     }
 
     /// Adds the channel or the message at the scan's position, outside of chunks.
-    fn loose(&mut self, n_body_bytes: u64) -> Result<(), Bad> {
+    fn loose(&mut self, n_body_bytes: u64) -> Result<(), Refused> {
         let max_bytes = MAX_CHUNK_BYTES;
         if n_body_bytes > max_bytes {
             return Err(Damage::TooLarge { max_bytes }.into());
@@ -328,10 +328,10 @@ impl Scan<'_> {
     }
 
     /// Verifies the checksum of all data, the only one of messages outside of chunks.
-    fn data_end(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
+    fn data_end(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Refused> {
         let body = self
             .head_bytes(body_at, n_bytes.min(CHECKSUM_BYTES))
-            .map_err(Bad::Io)?;
+            .map_err(Refused::Io)?;
         let checksum = Rest(&body).u32().unwrap_or(0);
         self.has_data_end = true;
         if self.is_loose && checksum != 0 && checksum != self.checksum_of(0, self.at)? {
@@ -341,11 +341,13 @@ impl Scan<'_> {
     }
 
     /// Checksum of bytes of the file, read in windows.
-    fn checksum_of(&self, from: u64, to: u64) -> Result<u32, Bad> {
+    fn checksum_of(&self, from: u64, to: u64) -> Result<u32, Refused> {
         let mut hasher = crc32fast::Hasher::new();
         let mut at = from;
         while at < to {
-            let window = self.head_bytes(at, WINDOW_BYTES.min(to - at)).map_err(Bad::Io)?;
+            let window = self
+                .head_bytes(at, WINDOW_BYTES.min(to - at))
+                .map_err(Refused::Io)?;
             hasher.update(&window);
             at += window.len() as u64;
         }
@@ -353,10 +355,10 @@ impl Scan<'_> {
     }
 
     /// Path of an attached file and position of its bytes, from its header.
-    fn file_head(&self, body_at: u64, n_bytes: u64) -> Result<(String, Span), Bad> {
+    fn file_head(&self, body_at: u64, n_bytes: u64) -> Result<(String, Span), Refused> {
         let head = self
             .head_bytes(body_at, n_bytes.min(MAX_NAME_BYTES))
-            .map_err(Bad::Io)?;
+            .map_err(Refused::Io)?;
         let mut rest = Rest(&head);
         let _times = rest.take(TIMES_BYTES).ok_or(Damage::Length)?;
         let path = rest.text().ok_or(Damage::Length)?.to_owned();
@@ -375,14 +377,14 @@ impl Scan<'_> {
         Ok((path, span))
     }
 
-    fn file(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Bad> {
+    fn file(&mut self, body_at: u64, n_bytes: u64) -> Result<(), Refused> {
         let (path, span) = self.check_file(body_at, n_bytes)?;
         self.found.file(path, span);
         Ok(())
     }
 
     /// Verifies the checksum of an attached file, read in windows.
-    fn check_file(&self, body_at: u64, n_bytes: u64) -> Result<(String, Span), Bad> {
+    fn check_file(&self, body_at: u64, n_bytes: u64) -> Result<(String, Span), Refused> {
         let (path, span) = self.file_head(body_at, n_bytes)?;
         let end = span.at + span.n_bytes;
         let mut checksum = [0; size_of::<u32>()];
@@ -446,8 +448,8 @@ impl Scan<'_> {
         };
         match seems {
             Ok(()) => {}
-            Err(Bad::Damage(_)) => return Ok(false),
-            Err(Bad::Io(error)) => return Err(error),
+            Err(Refused::Damage(_)) => return Ok(false),
+            Err(Refused::Io(error)) => return Err(error),
         }
         if n_bytes > self.trials_left {
             return Ok(false);
@@ -459,8 +461,8 @@ impl Scan<'_> {
         };
         match tried {
             Ok(()) => Ok(true),
-            Err(Bad::Damage(_)) => Ok(false),
-            Err(Bad::Io(error)) => Err(error),
+            Err(Refused::Damage(_)) => Ok(false),
+            Err(Refused::Io(error)) => Err(error),
         }
     }
 }

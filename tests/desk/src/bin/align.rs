@@ -44,7 +44,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     };
     let alignments = Alignments::find(&capture, 0..capture.n_frames(), asked)?.with_lens(lens);
     let session = Stored::open(&args.session)?;
-    let n_corrected = aligned_session::write(&session, &args.out, &alignments, Assumed::LeftOut)?;
+    let n_corrected = aligned_session::write(&session, &args.out, &alignments, Assumed::Omitted)?;
     println!(
         "{n_corrected} of {} frames have a corrected camera, focal length, lens, pose, scale or lights: {}",
         capture.n_frames(),

@@ -86,7 +86,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     args.shaders.hand_to(&mut core)?;
     let options = Options {
         presets: without_repeats(&args.presets),
-        turned_down: &[],
+        quality_reductions: &[],
         frames: args.frames.unwrap_or(Frames::ALL),
         out: Some(out.clone()),
         is_aligned: !args.as_given,

@@ -20,7 +20,7 @@ use crate::stored::Stored;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Assumed {
     /// The session's list stays: assumed lights are no result.
-    LeftOut,
+    Omitted,
     /// They are written, to make pictures with them.
     Written,
 }

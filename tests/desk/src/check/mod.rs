@@ -72,14 +72,14 @@ pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyh
         Source::Given => capture,
         Source::Found => findings.freed_of_lens(session, asked.lights)?,
     };
-    findings.wrong.extend(told(capture.warnings()));
+    findings.wrong.extend(messages(capture.warnings()));
     findings.facts.extend(sense::without(capture.scene()));
     findings.wrong.extend(sense::wrong(capture.scene()));
     let frames = (0..capture.n_frames()).map(|index| (index, capture.frame(index)));
     for (index, frame) in frames {
         match frame {
             Ok(frame) => {
-                findings.wrong.extend(told(&frame.warnings));
+                findings.wrong.extend(messages(&frame.warnings));
                 findings
                     .wrong
                     .extend(sense::wrong_of_frame(capture.scene(), index, &frame));
@@ -145,7 +145,7 @@ fn how_well(pose: &PoseAlignment) -> String {
 }
 
 /// The reader's warnings, without those of files that were checked before.
-fn told(warnings: &[SessionWarning]) -> impl Iterator<Item = String> {
+fn messages(warnings: &[SessionWarning]) -> impl Iterator<Item = String> {
     let others = warnings
         .iter()
         .filter(|warning| !matches!(warning, SessionWarning::Turned { .. }));
@@ -153,13 +153,13 @@ fn told(warnings: &[SessionWarning]) -> impl Iterator<Item = String> {
 }
 
 impl Findings {
-    fn tell(&mut self, told: String, is_wrong: bool) {
+    fn tell(&mut self, message: String, is_wrong: bool) {
         let list = if is_wrong {
             &mut self.wrong
         } else {
             &mut self.facts
         };
-        list.push(told);
+        list.push(message);
     }
 
     /// The session with the lens as estimated from its pictures.
@@ -167,14 +167,14 @@ impl Findings {
         let Opened { capture, lens } = opened::open(session, Source::Found, lights)?;
         if let Some(found) = lens {
             let Distortion { k1, k2 } = found.distortion;
-            let told = match found.errors {
+            let message = match found.errors {
                 Some(_) => format!(
                     "lens: the estimate from toy and shadow is k1 {k1:.4} and k2 {k2:.4}: {}",
                     found.outcome
                 ),
                 None => format!("lens: {}", found.outcome),
             };
-            self.tell(told, found.is_applied());
+            self.tell(message, found.is_applied());
         }
         Ok(capture)
     }
@@ -183,33 +183,33 @@ impl Findings {
         let alignment = &aligned.alignment;
         let report = &alignment.report;
         if let Some(found) = &report.focal_length {
-            let told = match found.errors {
+            let message = match found.errors {
                 Some(_) => format!(
                     "intrinsics: the estimate from toy and shadow is {:.4} times the focal length, +- {:.4}: {}",
                     found.ratio, found.deviation, found.outcome
                 ),
                 None => format!("intrinsics: {}", found.outcome),
             };
-            self.tell(told, found.is_applied());
+            self.tell(message, found.is_applied());
         }
         if let Some(found) = &report.world_scale {
-            let told = match found.errors {
+            let message = match found.errors {
                 Some(_) => format!(
                     "toy.world_from_object: by toy and shadow the world is {:.4} times as large as by the toy's model, +- {:.4}: {}",
                     found.ratio, found.deviation, found.outcome
                 ),
                 None => format!("toy.world_from_object: its scale: {}", found.outcome),
             };
-            self.tell(told, found.is_applied());
+            self.tell(message, found.is_applied());
         }
         if let Some(camera) = &report.camera {
-            let told = format!(
+            let message = format!(
                 "world_from_camera: the table moves by {:.2} px in the picture if the camera is moved by {:.2} mm and turned by {:.2} degrees",
                 camera.moved_px,
                 1e3 * camera.moved_m,
                 camera.turned_rad.to_degrees(),
             );
-            self.tell(told, camera.is_applied);
+            self.tell(message, camera.is_applied);
         }
         self.pose(report.pose.as_ref());
         for plane in &report.planes {
@@ -220,12 +220,12 @@ impl Findings {
             let size = light.size_ratio.map_or(String::new(), |ratio| {
                 format!(", {ratio:.2} times its angular size")
             });
-            let told = format!(
+            let message = format!(
                 "lights[{index}]: the estimate from its shadow is {:.2} degrees from the direction given, at {:.2} times its distance{size}",
                 light.turned_rad.to_degrees(),
                 light.distance_ratio
             );
-            self.tell(told, light.is_applied && light.is_moved);
+            self.tell(message, light.is_applied && light.is_moved);
         }
         if let Some(probe) = &report.probe {
             self.probe(probe, report.no_light.is_some());
@@ -234,7 +234,7 @@ impl Findings {
             let distance = light.distance_m.map_or("far away".to_owned(), |distance_m| {
                 format!("{distance_m:.2} m away")
             });
-            let error = aligned.error_of_discovered(light);
+            let error = aligned.error_of_estimated(light);
             let against = error.as_ref().map(against_listed).unwrap_or_default();
             self.facts.push(format!(
                 "light {index} is found by its shadow: {:.1} degrees wide, {distance}, {:.0} % of the light, its direction known to {:.2} degrees{against}",
@@ -260,14 +260,14 @@ impl Findings {
                     .to_owned(),
             ),
             Some(pose) => {
-                let told = format!(
+                let message = format!(
                     "toy.world_from_object: the outline is {:.2} px from the photograph's as given, {:.2} px if the toy is moved by {:.2} mm and turned by {:.2} degrees",
                     pose.given_outline_px,
                     pose.outline_px,
                     1e3 * pose.moved_m,
                     pose.turned_rad.to_degrees(),
                 );
-                self.tell(told, pose.is_applied);
+                self.tell(message, pose.is_applied);
                 self.facts.push(how_well(pose));
             }
         }

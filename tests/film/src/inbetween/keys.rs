@@ -45,10 +45,10 @@ pub struct Key {
 pub struct Found {
     /// Difference of the camera from the reference: at the picture's corners in pixels, in metres,
     /// and in radians.
-    pub camera: Option<Off>,
+    pub camera: Option<PoseDifference>,
     /// Difference of the print from its shown place: in pixels at its centre, in metres, and in
     /// radians.
-    pub print: Option<Off>,
+    pub print: Option<PoseDifference>,
     /// Factors per channel.
     pub gains: [f64; 3],
     /// Warnings, for example if the toy was not found.
@@ -57,7 +57,7 @@ pub struct Found {
 
 /// A difference of two poses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Off {
+pub struct PoseDifference {
     /// In the picture, in pixels.
     pub moved_px: f64,
     /// In metres.
@@ -117,7 +117,8 @@ impl Keys {
             .collect::<Result<Vec<_>, _>>()?;
         let mark = shot.scene().world_from_object;
         let off_mark = |key: &Key| off(&mark, &key.input.world_from_object, &key.figure.middle());
-        let is_near = |off: Off| off.moved_m < MOST_OFF_MARK_M && off.turned_rad < MOST_OFF_MARK_RAD;
+        let is_near =
+            |off: PoseDifference| off.moved_m < MOST_OFF_MARK_M && off.turned_rad < MOST_OFF_MARK_RAD;
         let is_mark = keys.iter().all(|key| is_near(off_mark(key)));
         let world_from_shown = if is_mark {
             mark
@@ -128,7 +129,7 @@ impl Keys {
             let middle = key.figure.middle();
             let print = off(&world_from_shown, &key.input.world_from_object, &middle);
             let px_per_m = camera.intrinsics.fx_px / distance_m(&camera, middle);
-            key.found.print = (print != Off::default()).then_some(Off {
+            key.found.print = (print != PoseDifference::default()).then_some(PoseDifference {
                 moved_px: print.moved_m * px_per_m,
                 ..print
             });
@@ -248,7 +249,7 @@ pub(super) fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// A photograph registered to the common camera.
-struct Brought {
+struct Registered {
     picture: LightPicture,
     /// Its shift at the corners; 0 if it was not resampled.
     moved_px: f64,
@@ -308,26 +309,26 @@ impl Stage<'_> {
 
     /// A photograph registered to the common camera, and its factors per channel. `from_px` is the
     /// estimate of its camera.
-    fn brought(
+    fn registered(
         &self,
         own: &LightPicture,
         from_px: DMat3,
         (reference, clear): (&Reference, &Clear),
-    ) -> Brought {
+    ) -> Registered {
         let is_moved = |from_px: &DMat3| corner_px(from_px, self.size_px()) > LEAST_MOVED_PX;
         let table = &reference.picture;
-        let mut brought = Brought {
+        let mut registered = Registered {
             picture: own.clone(),
             moved_px: 0.0,
             gains: gains(own, table, clear),
         };
         if !is_moved(&from_px) {
-            return brought;
+            return registered;
         }
-        brought.picture = resampled(own, &from_px);
-        brought.gains = gains(&brought.picture, table, clear);
-        brought.moved_px = corner_px(&from_px, self.size_px());
-        brought
+        registered.picture = resampled(own, &from_px);
+        registered.gains = gains(&registered.picture, table, clear);
+        registered.moved_px = corner_px(&from_px, self.size_px());
+        registered
     }
 
     /// A key's photograph in the common camera and exposure, and the estimate of its print there.
@@ -339,11 +340,11 @@ impl Stage<'_> {
         let figure = self.figure(&key.pose, &key.alignment.world_from_object)?;
         let touched = figure.touched(&scene.receivers, self.lights);
         let clear = Clear::new(&touched, reference, self.size_px());
-        let Brought {
+        let Registered {
             mut picture,
             moved_px,
             gains,
-        } = self.brought(
+        } = self.registered(
             &own,
             carried(&self.camera, &found_camera, receiver),
             (reference, &clear),
@@ -395,7 +396,7 @@ impl Stage<'_> {
             pose: key.pose.clone(),
             time_secs: key.time_secs,
             found: Found {
-                camera: is_moved.then_some(Off { moved_px, ..camera }),
+                camera: is_moved.then_some(PoseDifference { moved_px, ..camera }),
                 print: None,
                 gains,
                 warnings,
@@ -472,13 +473,13 @@ fn corner_px(from_px: &DMat3, [width_px, height_px]: [usize; 2]) -> f64 {
 }
 
 /// The difference of two poses, at a point of the world.
-fn off(world_from_a: &DMat4, world_from_b: &DMat4, middle_in_world: &DVec3) -> Off {
+fn off(world_from_a: &DMat4, world_from_b: &DMat4, middle_in_world: &DVec3) -> PoseDifference {
     // Moves a point of a to its place in b.
     let motion = *world_from_b * world_from_a.inverse();
     let (_, rotation, _) = motion.to_scale_rotation_translation();
     let back = motion.inverse().transform_point3(*middle_in_world);
     let turned_rad = rotation.normalize().to_axis_angle().1;
-    Off {
+    PoseDifference {
         moved_px: 0.0,
         moved_m: (back - *middle_in_world).length(),
         turned_rad: turned_rad.min(std::f64::consts::TAU - turned_rad),

@@ -29,7 +29,7 @@ use desk::output::WriteError;
 use thiserror::Error;
 
 pub use film::{Film, Options, PictureNames, make};
-pub use keys::{Found, Key, Keys, Off};
+pub use keys::{Found, Key, Keys, PoseDifference};
 pub use report::{CONTACT_FILE, REPORT_FILE, SHEET_FILE};
 pub use words::findings;
 

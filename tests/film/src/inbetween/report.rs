@@ -11,7 +11,7 @@ use desk::output::folder::OutputFolder;
 use serde::Serialize;
 
 use super::InbetweenError;
-use super::keys::{Keys, Off};
+use super::keys::{Keys, PoseDifference};
 use super::shot::{SHOT_FILE, Shot};
 use super::words::findings;
 use crate::sheet::{Cell, contact_sheet};
@@ -48,21 +48,21 @@ pub(super) struct FrameEntry {
 struct KeyEntry {
     time_secs: f64,
     pose: String,
-    camera: Option<OffEntry>,
-    print: Option<OffEntry>,
+    camera: Option<PoseDifferenceEntry>,
+    print: Option<PoseDifferenceEntry>,
     gains: [f64; 3],
     warnings: Vec<String>,
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct OffEntry {
+struct PoseDifferenceEntry {
     moved_px: f64,
     moved_mm: f64,
     turned_deg: f64,
 }
 
-impl From<Off> for OffEntry {
-    fn from(off: Off) -> Self {
+impl From<PoseDifference> for PoseDifferenceEntry {
+    fn from(off: PoseDifference) -> Self {
         Self {
             moved_px: off.moved_px,
             moved_mm: 1e3 * off.moved_m,
@@ -88,8 +88,8 @@ impl Report {
         let entries = keys.keys.iter().map(|key| KeyEntry {
             time_secs: key.time_secs,
             pose: shot.pose_text(&key.pose),
-            camera: key.found.camera.map(OffEntry::from),
-            print: key.found.print.map(OffEntry::from),
+            camera: key.found.camera.map(PoseDifferenceEntry::from),
+            print: key.found.print.map(PoseDifferenceEntry::from),
             gains: key.found.gains,
             warnings: key.found.warnings.clone(),
         });

@@ -1,6 +1,6 @@
 //! The corrections of keys, in sentences.
 
-use super::keys::{Found, Keys, Off};
+use super::keys::{Found, Keys, PoseDifference};
 
 /// Smaller differences are not reported.
 const LEAST_PRINT_M: f64 = 1e-4;
@@ -39,7 +39,7 @@ pub fn findings(keys: &Keys) -> Vec<String> {
 }
 
 fn camera(found: &Found) -> Option<String> {
-    let Off {
+    let PoseDifference {
         moved_px,
         moved_m,
         turned_rad,

@@ -22,7 +22,7 @@ use desk::replay::ReplayError;
 
 /// The largest disturbance: of the pose in millimetres and degrees, of each light's direction in
 /// degrees.
-const MOST: Off = Off {
+const MOST: PoseAndLightErrors = PoseAndLightErrors {
     pose_mm: 30.0,
     pose_deg: 18.0,
     light_deg: Some(30.0),
@@ -36,7 +36,7 @@ const FONT: (&str, i32) = ("sans-serif", 14);
 
 /// Errors of pose and lights relative to the recorded ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Off {
+pub struct PoseAndLightErrors {
     /// Distance of the toy's centre.
     pub pose_mm: f64,
     /// Error of its rotation.
@@ -49,9 +49,9 @@ pub struct Off {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Draw {
     /// Error of the start.
-    pub start: Off,
+    pub start: PoseAndLightErrors,
     /// Error after alignment.
-    pub end: Off,
+    pub end: PoseAndLightErrors,
     /// Errors of the pose with their claimed deviations; `None` if no pose was applied.
     pub pull: Option<Pull>,
 }
@@ -111,7 +111,7 @@ fn disturbed(scene: &Scene, recorded: &FrameInput, part: f64, random: &mut Rando
         .with_lights((!scene.lights.is_empty()).then(|| lights.collect()))
 }
 
-fn off(scene: &Scene, recorded: &FrameInput, input: &FrameInput) -> Off {
+fn off(scene: &Scene, recorded: &FrameInput, input: &FrameInput) -> PoseAndLightErrors {
     let place = middle(scene, &recorded.world_from_object);
     let [there, here] = [recorded, input].map(|input| input.world_from_object);
     let rotation = |matrix: &DMat4| matrix.to_scale_rotation_translation().1;
@@ -123,14 +123,14 @@ fn off(scene: &Scene, recorded: &FrameInput, input: &FrameInput) -> Off {
         .iter()
         .zip(lights)
         .map(|(recorded, light)| direction(recorded).angle_between(direction(light)).to_degrees());
-    Off {
+    PoseAndLightErrors {
         pose_mm: 1e3 * middle(scene, &here).distance(place),
         pose_deg: turn.to_scaled_axis().length().to_degrees(),
         light_deg: apart.reduce(f64::max),
     }
 }
 
-impl Off {
+impl PoseAndLightErrors {
     /// In the order of columns and panels; NaN without a light.
     fn numbers(&self) -> [f64; 3] {
         [self.pose_mm, self.pose_deg, self.light_deg.unwrap_or(f64::NAN)]

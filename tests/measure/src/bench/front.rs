@@ -28,7 +28,7 @@ pub struct Point {
 }
 
 /// The governor's quality steps off preset `balanced`, cumulatively; the frame rate costs no error.
-pub(super) fn turned_down() -> impl Iterator<Item = &'static [QualityStep]> {
+pub(super) fn quality_reductions() -> impl Iterator<Item = &'static [QualityStep]> {
     let n_steps = BALANCED_QUALITY_LADDER
         .iter()
         .take_while(|step| step.setting != QualitySetting::FramesPerSecond)

@@ -90,14 +90,14 @@ impl Shot {
     /// # Errors
     /// When the core refuses the toy's file.
     pub fn of(world: &World) -> Result<Self, ToyError> {
-        Self::told(world, &Photos::of(world), &ToyFile::default())
+        Self::described(world, &Photos::of(world), &ToyFile::default())
     }
 
     /// Describes a world with existing pictures, and with the toy's file written in a variant.
     ///
     /// # Errors
     /// When the core refuses the toy's file.
-    pub fn told(world: &World, photos: &Photos, file: &ToyFile) -> Result<Self, ToyError> {
+    pub fn described(world: &World, photos: &Photos, file: &ToyFile) -> Result<Self, ToyError> {
         let glb = toy_glb(world, file);
         let toy = Toy::from_glb("toy.glb", &glb)?;
         let shown_pose = match world.shown {

@@ -63,7 +63,7 @@ fn within_a_code(
 fn uniform_scale(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let world = small();
     let photos = small_photos();
-    let told = |world: &World| Shot::told(world, photos, &ToyFile::default());
+    let told = |world: &World| Shot::described(world, photos, &ToyFile::default());
     let scales = [1e-3, 1e-2, 0.1, 0.5, 2.0, 10.0, 100.0, 1e3];
     let scaled = scales.map(|factor| Ok((format!("x {factor}"), told(&world.clone().scaled(factor))?)));
     let scaled = scaled.into_iter().collect::<Result<Vec<_>, ToyError>>()?;
@@ -92,7 +92,7 @@ fn triangles_permuted(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
             order,
             ..ToyFile::default()
         };
-        Shot::told(&world, photos, &file)
+        Shot::described(&world, photos, &file)
     };
     let others = [1, 2, 3].map(|seed| Ok((format!("seed {seed}"), told(Some(seed))?)));
     let others = others.into_iter().collect::<Result<Vec<_>, ToyError>>()?;
@@ -166,8 +166,8 @@ fn mirrored(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
                 mask: flipped(&photos.truth.mask),
             },
         };
-        let shot = Shot::told(&world, &photos, &ToyFile::default())?;
-        let other = Shot::told(&world.mirrored(), &mirror, &ToyFile::default())?;
+        let shot = Shot::described(&world, &photos, &ToyFile::default())?;
+        let other = Shot::described(&world.mirrored(), &mirror, &ToyFile::default())?;
         let rows = same_errors(lab, label, &shot, [(name.to_owned(), other, 1.0)])?.rows;
         findings.rows.extend(rows);
     }
@@ -216,7 +216,7 @@ fn exposure(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
             frame_gain,
             ..Sensor::default()
         };
-        Shot::told(&world, &films.develop(&sensor), &ToyFile::default())
+        Shot::described(&world, &films.develop(&sensor), &ToyFile::default())
     };
     let warm = DVec3::new(1.15, 1.0, 0.8);
     let one = DVec3::ONE;

@@ -63,7 +63,7 @@ fn plates(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let photos = Photos::of(&world);
     let target = DVec3::new(0.02, 0.04, 0.01);
     join([1u16, 50, 300].map(|n_plates| {
-        let mut shot = Shot::told(&world, &photos, &ToyFile::default())?;
+        let mut shot = Shot::described(&world, &photos, &ToyFile::default())?;
         shot.scene.plates = (0..n_plates)
             .map(|plate| {
                 let turn = 360.0 * f64::from(plate) / f64::from(n_plates);
@@ -115,7 +115,7 @@ fn materials(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let photos = small_photos();
     join([1u16, 100, 1000].map(|n_parts| {
         let world = heap(n_parts, 0.004);
-        let shot = Shot::told(&world, photos, &ToyFile::default())?;
+        let shot = Shot::described(&world, photos, &ToyFile::default())?;
         cost(lab, label, format!("{n_parts} materials"), &shot)
     }))
 }
@@ -125,7 +125,7 @@ fn large_triangles(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let photos = small_photos();
     join([10u16, 100, 1000].map(|n_parts| {
         let world = heap(n_parts, 0.06);
-        let shot = Shot::told(&world, photos, &ToyFile::default())?;
+        let shot = Shot::described(&world, photos, &ToyFile::default())?;
         cost(lab, label, format!("{} large triangles", 12 * n_parts), &shot)
     }))
 }

@@ -116,7 +116,11 @@ impl Rounds {
             noise_codes,
             ..Sensor::default()
         };
-        Ok(Shot::told(world, &films.develop(&sensor), &ToyFile::default())?)
+        Ok(Shot::described(
+            world,
+            &films.develop(&sensor),
+            &ToyFile::default(),
+        )?)
     }
 
     fn run(&self, lab: &mut Lab, preset: Preset, places: &[(World, Films)]) -> anyhow::Result<Vec<Round>> {

@@ -56,7 +56,7 @@ fn equal(
 }
 
 fn run_again(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
-    let shot = Shot::told(&small(), small_photos(), &ToyFile::default())?;
+    let shot = Shot::described(&small(), small_photos(), &ToyFile::default())?;
     let again = (1..=2).map(|run| (format!("run {run}"), shot.clone()));
     equal(lab, label, &shot, again)
 }
@@ -64,7 +64,7 @@ fn run_again(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
 fn rigid_motion(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let world = small();
     let photos = small_photos();
-    let told = |world: &World| Shot::told(world, photos, &ToyFile::default());
+    let told = |world: &World| Shot::described(world, photos, &ToyFile::default());
     let direction = DVec3::new(0.8, 0.0, -0.6);
     let motions = [
         ("1 m", DMat4::from_translation(direction)),
@@ -93,7 +93,7 @@ fn still_clip(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
         has_still_clip: true,
         ..ToyFile::default()
     };
-    let shot = Shot::told(&world, small_photos(), &file)?;
+    let shot = Shot::described(&world, small_photos(), &file)?;
     let clip = shot.scene.toy.find_clip(STILL_CLIP)?;
     let others = [0.0, 1e-9, 0.37, 3.3, 9.99, 10.0].map(|time_secs| {
         let mut other = shot.clone();
@@ -133,9 +133,9 @@ fn told_as(
     let photos = small_photos();
     let others = files
         .iter()
-        .map(|(name, file)| Ok(((*name).to_owned(), Shot::told(&world, photos, file)?)));
+        .map(|(name, file)| Ok(((*name).to_owned(), Shot::described(&world, photos, file)?)));
     let others: Vec<_> = others.collect::<Result<_, ToyError>>()?;
-    equal(lab, label, &Shot::told(&world, photos, base)?, others)
+    equal(lab, label, &Shot::described(&world, photos, base)?, others)
 }
 
 fn unused_parts(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {

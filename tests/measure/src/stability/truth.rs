@@ -116,7 +116,7 @@ fn aside(key_secs: &[f64], aside_at: usize) -> World {
 fn long_clip(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
     let plain = aside(&[0.0, 1.0], 1);
     let photos = Photos::of(&plain);
-    let shot = Shot::told(&plain, &photos, &ToyFile::default())?;
+    let shot = Shot::described(&plain, &photos, &ToyFile::default())?;
     let before = score(&lab.reference(&shot)?, &shot.truth)?;
     let mut rows = Vec::new();
     for minutes in lab.some_of([0.1, 10.0, 1.0], 1) {
@@ -129,7 +129,7 @@ fn long_clip(lab: &mut Lab, label: Label) -> anyhow::Result<Findings> {
             60.0 * minutes,
         ];
         let long = aside(&keys, 2);
-        let shot = Shot::told(&long, &photos, &ToyFile::default())?;
+        let shot = Shot::described(&long, &photos, &ToyFile::default())?;
         let after = score(&lab.picture(&shot)?, &shot.truth)?;
         let regions = [
             ("toy", before.toy, after.toy),

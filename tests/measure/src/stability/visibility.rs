@@ -80,7 +80,7 @@ fn compare(
     let photos = small_photos();
     let mut rows = Vec::new();
     for (parameter, world) in worlds {
-        let shot = Shot::told(&world, photos, &ToyFile::default())?;
+        let shot = Shot::described(&world, photos, &ToyFile::default())?;
         let (region, map) = match lab.visibility(&shot) {
             Ok(Some(found)) => found,
             Ok(None) => {

@@ -165,12 +165,12 @@ fn a_grey_frame_of_a_coloured_place_is_told() {
     let grey = image::open(&path).unwrap().into_luma8();
     grey.save(&path).unwrap();
     let expected = "frames[0].image: the picture is grey, but a plate has colours";
-    let is_told = |wrong: Vec<String>| wrong.iter().any(|line| line.starts_with(expected));
-    assert!(is_told(wrong(&session.0)));
+    let is_reported = |wrong: Vec<String>| wrong.iter().any(|line| line.starts_with(expected));
+    assert!(is_reported(wrong(&session.0)));
     // Two grey pictures belong to the same camera.
     let plate = session.0.join("background_0000.png");
     image::open(&plate).unwrap().into_luma8().save(&plate).unwrap();
-    assert!(!is_told(wrong(&session.0)));
+    assert!(!is_reported(wrong(&session.0)));
 }
 
 /// Keys that are reported as unknown in an index without files.
@@ -244,7 +244,7 @@ fn an_aligned_session_has_the_focal_length_that_was_found() {
         &Stored::open(&session.0).unwrap(),
         &out,
         &alignments,
-        Assumed::LeftOut,
+        Assumed::Omitted,
     )
     .unwrap();
     let cameras = [&recorded.0, &session.0, &out].map(|folder| {
@@ -279,7 +279,7 @@ fn an_aligned_session_has_the_lights_that_were_found() {
         &Stored::open(&session.0).unwrap(),
         &out,
         &alignments,
-        Assumed::LeftOut,
+        Assumed::Omitted,
     )
     .unwrap();
     assert_eq!(wrong(&out), Vec::<String>::new());
@@ -315,7 +315,7 @@ fn an_aligned_session_is_right() {
             &Stored::open(&session.0).unwrap(),
             &out,
             &alignments,
-            Assumed::LeftOut
+            Assumed::Omitted
         )
         .unwrap(),
         capture.n_frames()
@@ -328,7 +328,7 @@ fn an_aligned_session_is_right() {
             &Stored::open(&session.0).unwrap(),
             &inside,
             &alignments,
-            Assumed::LeftOut
+            Assumed::Omitted
         )
         .is_err()
     );
@@ -338,7 +338,7 @@ fn an_aligned_session_is_right() {
             &Stored::open(&session.0).unwrap(),
             &out,
             &alignments,
-            Assumed::LeftOut
+            Assumed::Omitted
         )
         .is_err()
     );

@@ -32,11 +32,15 @@ fn cut(small: &Small, n_bytes: usize) {
                 (0..n_frames).collect::<Vec<_>>(),
                 "{n_bytes} bytes are left"
             );
-            let is_told = recording
+            let is_reported = recording
                 .losses()
                 .iter()
                 .any(|loss| matches!(loss, Loss::Cut { .. } | Loss::Unfinished { .. }));
-            assert_eq!(is_told, n_bytes < small.bytes.len(), "{n_bytes} bytes are left");
+            assert_eq!(
+                is_reported,
+                n_bytes < small.bytes.len(),
+                "{n_bytes} bytes are left"
+            );
         }
         // The first chunk contains the session.
         Err(RecordingError::NoSession { .. } | RecordingError::NotMcap) => {

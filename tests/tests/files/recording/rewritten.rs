@@ -246,11 +246,11 @@ fn without_sequence_numbers_pictures_behind_a_gap_are_left_out() {
             (0..first.n_frames).collect::<Vec<_>>(),
             "{what}"
         );
-        let is_told = recording
+        let is_reported = recording
             .losses()
             .iter()
             .any(|loss| matches!(loss, Loss::Pictures { .. }));
-        assert!(is_told, "{what}: {:?}", recording.losses());
+        assert!(is_reported, "{what}: {:?}", recording.losses());
     }
 }
 

@@ -2,7 +2,7 @@
 //! are known.
 
 use glam::{DVec3, DVec4, UVec2};
-use reference::detail::{DETAIL, NOISE, separate, told};
+use reference::detail::{DETAIL, NOISE, evidence, separate};
 use reference::estimate::{ESTIMATED, Known, complete};
 use reference::fill::fill;
 use reference::grid::{Cell, Taken, accumulate};
@@ -138,8 +138,8 @@ fn separated(residual: impl Fn(UVec2) -> DVec3, texel: UVec2) -> DVec3 {
     let texture = |at: UVec2| DVec3::splat(0.2 + 0.5 * scatter(at.x + SIZE.x * at.y, 0));
     let (region, solution, pictures) = scene(texture, residual);
     let everywhere = Raster::from_fn(SIZE, |_| 1.0);
-    let told = told(&region, &pictures, &everywhere, &solution);
-    separate(&told, (texel, 0))
+    let evidence = evidence(&region, &pictures, &everywhere, &solution);
+    separate(&evidence, (texel, 0))
 }
 
 /// Positions in the light, in shadow, and in shadow at the border, all clear of the toy.

@@ -196,7 +196,7 @@ fn a_scene_that_costs_too_much_is_turned_down_and_says_so_with_the_number() {
     assert!(!fine.warnings.iter().any(is_about_cost), "{:?}", fine.warnings);
     let heavy = report_of(grains(120_000));
     let told = heavy.warnings.iter().find(|warning| is_about_cost(warning));
-    let Some(Warning::TurnedDown { what, triangles, .. }) = told else {
+    let Some(Warning::QualityReduced { what, triangles, .. }) = told else {
         panic!("{:?}", heavy.warnings);
     };
     let drawn: u64 = heavy.ran.iter().map(|run| run.work.triangles()).sum();
@@ -221,5 +221,8 @@ fn triangles_that_cover_too_much_are_refused_with_the_number() {
 }
 
 fn is_about_cost(warning: &Warning) -> bool {
-    matches!(warning, Warning::TurnedDown { .. } | Warning::TooCostly { .. })
+    matches!(
+        warning,
+        Warning::QualityReduced { .. } | Warning::TooCostly { .. }
+    )
 }

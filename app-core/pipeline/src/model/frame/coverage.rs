@@ -14,7 +14,7 @@ use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::passes::counting::{CountingDraws, InstanceOrder, counting, ordered};
 use crate::passes::globals::GLOBALS_GROUP;
-use crate::passes::toy_mesh::{CasterLod, Saves, SeenToy, Side, SilhouetteTarget, ToyMesh};
+use crate::passes::toy_mesh::{CasterLod, Savings, SeenToy, Side, SilhouetteTarget, ToyMesh};
 
 /// Count of a pixel's covered positions.
 pub(crate) const COVERED: Mirrors = mirrors!("common/covered", constants: [N_POSITIONS, COVERED_CODES]);
@@ -101,7 +101,7 @@ impl Pass {
         let target = SilhouetteTarget {
             projection: &inputs.region.uniform.by_camera(),
             part: inputs.region.plan.toy_box,
-            saves: Saves::Pixels,
+            savings: Savings::Pixels,
         };
         let corners = toy.corners(recorder.gpu, &seen, Some(target));
         let globals = [(&inputs.region.globals).into()];

@@ -17,7 +17,7 @@ use crate::model::plan::Plan;
 use crate::passes::counting::{CountingDraws, InstanceOrder, counting, not_counting, ordered};
 use crate::passes::globals::{GLOBALS_GROUP, GlobalsOnDevice};
 use crate::passes::toy_mesh::{
-    CasterLod, Corners, PoseBuffers, Saves, SeenToy, Side, SilhouetteTarget, ToyMesh,
+    CasterLod, Corners, PoseBuffers, Savings, SeenToy, Side, SilhouetteTarget, ToyMesh,
 };
 use app_scene::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 
@@ -318,7 +318,7 @@ impl<'a> Inputs<'a> {
                 origin_px: UVec2::ZERO,
                 size_px: map_px,
             },
-            saves: Saves::Triangles,
+            savings: Savings::Triangles,
         });
         let seen = SeenToy {
             pose: self.pose,

@@ -135,12 +135,12 @@ pub(crate) struct SilhouetteTarget<'a> {
     pub(crate) projection: &'a dyn Projection,
     /// The part of the region.
     pub(crate) part: PixelRect,
-    pub(crate) saves: Saves,
+    pub(crate) savings: Savings,
 }
 
 /// The savings from drawing only once far from silhouettes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Saves {
+pub(crate) enum Savings {
     /// Pixels inside the shape, whatever its triangles.
     Pixels,
     /// Triangles alone: there are no savings if the triangles are so large that most of them meet a
@@ -152,9 +152,9 @@ pub(crate) enum Saves {
 /// triangles, 300 to 500 pixels high, there were none, with 5,000 half were saved.
 const MIN_FINE_CORNERS: usize = 3 * 2000;
 
-impl Saves {
+impl Savings {
     /// Whether the search for the silhouette is worth its cost for this number of corners.
-    pub(super) fn pays(self, n_corners: usize, is_closed: bool) -> bool {
+    pub(super) fn is_worthwhile(self, n_corners: usize, is_closed: bool) -> bool {
         self == Self::Pixels || (is_closed && n_corners >= MIN_FINE_CORNERS)
     }
 }

@@ -81,7 +81,7 @@ pub(super) fn told_radius(lab: &mut Lab, label: Label) -> anyhow::Result<Finding
     let mut moments: Vec<Moment> = Vec::new();
     for radius_mm in evenly(16, 0.0, 3.0) {
         let told = lit(bulb_at_a_metre(1e-3 * radius_mm));
-        let shot = Shot::told(&told, &photos, &ToyFile::default())?;
+        let shot = Shot::described(&told, &photos, &ToyFile::default())?;
         moments.push(Moment {
             truth: None,
             ..moment(lab, radius_mm, &shot)?

@@ -18,7 +18,7 @@ fn sensed(
     let films = Films::of(&world);
     let mut moments = Vec::new();
     for (at, sensor) in sensors {
-        let shot = Shot::told(&world, &films.develop(&sensor), &ToyFile::default())?;
+        let shot = Shot::described(&world, &films.develop(&sensor), &ToyFile::default())?;
         moments.push(moment(lab, at, &shot)?);
     }
     findings(label, along, moments, None)

@@ -33,7 +33,7 @@ fn there_and_back() -> World {
 
 /// Makes the same frame at one moment after another.
 fn at_moments(lab: &mut Lab, world: &World, times_secs: &[f64]) -> anyhow::Result<Vec<Moment>> {
-    let shot = Shot::told(world, &Photos::of(world), &ToyFile::default())?;
+    let shot = Shot::described(world, &Photos::of(world), &ToyFile::default())?;
     let clip = shot.scene.toy.find_clip(CLIP)?;
     let mut moments = Vec::new();
     for (index, &time_secs) in times_secs.iter().enumerate() {

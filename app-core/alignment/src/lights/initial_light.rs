@@ -4,9 +4,9 @@ use glam::{DMat4, DVec2, DVec3};
 
 use super::hemisphere::climb;
 use super::lamp::Lamp;
-use super::leftover::Leftover;
 use super::prior::Prior;
 use super::shadows::{ROBUST_FAR, Shadows};
+use super::unexplained::Unexplained;
 use crate::probe::TrackedLight;
 use crate::raster::Rasterizer;
 use app_scene::scene::MAX_LIGHTS;
@@ -22,7 +22,7 @@ const N_ROUNDS: usize = 5;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hints {
     /// A probe's estimates: the search is restricted to them.
-    pub(crate) guesses: Vec<Guess>,
+    pub(crate) initial_lights: Vec<InitialLight>,
     /// Direction towards a light, in camera space, that is a start if shadows alone show none; it
     /// may be far off.
     ///
@@ -33,7 +33,7 @@ pub(crate) struct Hints {
 
 /// A ray to a light, in camera space.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Guess {
+pub(crate) struct InitialLight {
     origin: DVec3,
     direction: DVec3,
     /// `None` if unknown.
@@ -42,7 +42,7 @@ pub(crate) struct Guess {
     spread: f64,
 }
 
-impl Guess {
+impl InitialLight {
     /// A guess from a probe's light.
     pub(crate) fn new(light: &TrackedLight, camera_from_world: &DMat4) -> Option<Self> {
         let seen = &light.seen;
@@ -63,13 +63,13 @@ impl Guess {
             // A lamp cannot be inside the toy.
             (to.length() > 2.0 * radius_m).then(|| Lamp {
                 direction: to.normalize(),
-                nearness: to.length().recip(),
+                inverse_distance: to.length().recip(),
                 spread: self.spread,
             })
         };
         let far = Lamp {
             direction: self.direction,
-            nearness: 0.0,
+            inverse_distance: 0.0,
             spread: self.spread,
         };
         match self.distance_m.and_then(at) {
@@ -81,16 +81,20 @@ impl Guess {
 
 /// A lamp for each guess, strongest first: with the length of its ray that explains most of the
 /// residual, turned to the best direction around it, and refined by steps.
-pub(super) fn guessed(shadows: &Shadows<'_>, raster: &mut Rasterizer, guesses: &[Guess]) -> Vec<Lamp> {
+pub(super) fn best_initial_lights(
+    shadows: &Shadows<'_>,
+    raster: &mut Rasterizer,
+    initial_lights: &[InitialLight],
+) -> Vec<Lamp> {
     let shape = shadows.caster.shape;
     let mut lamps: Vec<Lamp> = Vec::new();
-    for guess in guesses.iter().take(MAX_LIGHTS) {
+    for initial in initial_lights.iter().take(MAX_LIGHTS) {
         let taken = shadows.taken_of_all(raster, &lamps);
         let shaded = shadows.shaded(&taken);
         let shading = shaded.fit(shadows.caster.receivers.len(), ROBUST_FAR);
-        let leftover = Leftover::new(&shaded, &shading, ROBUST_FAR);
-        let mut explained = |lamp: &Lamp| leftover.explained(&shadows.taken(raster, lamp, &POINT));
-        let tried = guess.lamps(shape.centre, shape.radius_m);
+        let unexplained = Unexplained::new(&shaded, &shading, ROBUST_FAR);
+        let mut explained = |lamp: &Lamp| unexplained.explained(&shadows.taken(raster, lamp, &POINT));
+        let tried = initial.lamps(shape.centre, shape.radius_m);
         let scored = tried.into_iter().map(|lamp| (explained(&lamp), lamp));
         let Some((_, best)) = scored.max_by(|a, b| a.0.total_cmp(&b.0)) else {
             continue;

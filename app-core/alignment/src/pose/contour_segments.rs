@@ -20,7 +20,7 @@ const ON_EDGE_PX: f64 = 1.5;
 const ROUGH_PX: f64 = 0.2;
 
 /// Neighbouring pieces of an outline as one.
-pub(super) struct Sighting {
+pub(super) struct ContourSegment {
     pub(super) at_px: DVec2,
     /// Normal, out of the toy.
     pub(super) normal: DVec2,
@@ -48,7 +48,7 @@ pub(super) fn cell_px(n_pieces: usize) -> f64 {
     CELL_PX.max(n_pieces as f64 / MOST_CELLS)
 }
 
-impl Sighting {
+impl ContourSegment {
     /// Sightings of an outline that was measured with a displaced shape.
     pub(super) fn all(
         measured: &[Measured],

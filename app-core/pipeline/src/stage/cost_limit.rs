@@ -53,8 +53,12 @@ struct Covered {
 impl Stage {
     /// The plan of a region with the finest settings within the budget; `None` if even the lowest
     /// exceed it. Keeps the reductions for later views, and the warning about them.
-    pub(super) fn affordable(&mut self, settings: ModelSettings, footprint: &Footprint) -> Option<Plan> {
-        self.turned_down.clear();
+    pub(super) fn plan_within_limit(
+        &mut self,
+        settings: ModelSettings,
+        footprint: &Footprint,
+    ) -> Option<Plan> {
+        self.quality_reductions.clear();
         self.cost_warning = None;
         let facts = self.facts(footprint, (footprint.region, None));
         let covered = self.covered(footprint);
@@ -69,13 +73,13 @@ impl Stage {
                 covered_px,
             } = *first.get_or_insert(cost);
             if !cost.is_too_much() {
-                if !self.turned_down.is_empty() {
+                if !self.quality_reductions.is_empty() {
                     let what = self
-                        .turned_down
+                        .quality_reductions
                         .iter()
                         .map(|step: &QualityStep| step.what)
                         .collect();
-                    self.cost_warning = Some(Warning::TurnedDown {
+                    self.cost_warning = Some(Warning::QualityReduced {
                         what,
                         triangles,
                         covered_px,
@@ -90,7 +94,7 @@ impl Stage {
                 });
                 return None;
             };
-            self.turned_down.push(*step);
+            self.quality_reductions.push(*step);
         }
     }
 

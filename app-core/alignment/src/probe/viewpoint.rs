@@ -6,13 +6,13 @@ use app_scene::scene::{Camera, Intrinsics};
 
 /// A camera in a probe's space.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Eye {
+pub(super) struct Viewpoint {
     intrinsics: Intrinsics,
     probe_from_camera: DMat4,
     camera_from_probe: DMat4,
 }
 
-impl Eye {
+impl Viewpoint {
     pub(super) fn new(camera: &Camera, world_from_probe: &DMat4) -> Self {
         let probe_from_camera = world_from_probe.inverse() * camera.world_from_camera;
         Self {

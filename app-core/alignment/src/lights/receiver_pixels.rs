@@ -2,7 +2,7 @@
 
 use glam::{DVec3, IVec2};
 
-use super::backdrop::{Backdrop, QUADRATIC, polynomial};
+use super::background::{Background, QUADRATIC, polynomial};
 use crate::picture::{Color, Level, noise_deviation, places};
 use crate::raster::Coverage;
 use crate::receivers::{SeenReceiver, receiver_at};
@@ -17,7 +17,7 @@ const BRIGHTEST: f32 = 0.956;
 
 /// A pixel of a receiver.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct FloorPixel {
+pub(super) struct ReceiverPixel {
     /// Position, in pixels of the level.
     pub(super) at: IVec2,
     /// Index of the receiver.
@@ -34,7 +34,7 @@ pub(super) struct FloorPixel {
     pub(super) precision: Color,
 }
 
-impl FloorPixel {
+impl ReceiverPixel {
     /// One whose colours nobody asks for, of the only receiver.
     pub(super) fn bare(at: IVec2, point: DVec3) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl FloorPixel {
     }
 
     /// Whether all channels of it say something.
-    pub(super) fn is_told(&self) -> bool {
+    pub(super) fn has_evidence(&self) -> bool {
         self.precision.iter().all(|precision| *precision > 0.0)
     }
 }
@@ -57,13 +57,13 @@ impl FloorPixel {
 /// Receiver pixels clear of the toy, row by row; without a plate, compared with the background
 /// model. `around` is the toy's centre in camera space, and the unit of length for the gain's
 /// terms, in metres.
-pub(super) fn floor_pixels(
+pub(super) fn receiver_pixels(
     level: &Level,
-    (coverage, backdrop): (&Coverage, Option<&Backdrop<QUADRATIC>>),
+    (coverage, background): (&Coverage, Option<&Background<QUADRATIC>>),
     receivers: &[SeenReceiver],
     around: (DVec3, f64),
     is_wanted: impl Fn(IVec2) -> bool,
-) -> Vec<FloorPixel> {
+) -> Vec<ReceiverPixel> {
     // A single receiver has no interreflection, and a plate shows its texture.
     let is_even = receivers.len() == 1 && level.plate.is_some();
     let n_terms = if is_even { 1 } else { QUADRATIC };
@@ -71,16 +71,16 @@ pub(super) fn floor_pixels(
     let pixels = clear.filter_map(|at| {
         let (receiver, point) = receiver_at(receivers, &level.intrinsics, at)?;
         let frame = level.frame.get(at)?;
-        let (plate, texture) = match (&level.plate, backdrop) {
+        let (plate, texture) = match (&level.plate, background) {
             (Some(plate), _) => (plate.get(at)?, 0.0),
-            (None, backdrop) => backdrop?.at(receivers, receiver, point)?,
+            (None, background) => background?.at(receivers, receiver, point)?,
         };
         let unexplained = UNEXPLAINED.hypot(texture);
         let precision = [0, 1, 2].map(|channel| precision(frame[channel], plate[channel], unexplained));
         let terms = polynomial(&receivers[receiver], point, around);
         #[allow(clippy::cast_possible_truncation, reason = "a place, to 7 digits")]
         let gain = std::array::from_fn(|term| if term < n_terms { terms[term] as f32 } else { 0.0 });
-        Some(FloorPixel {
+        Some(ReceiverPixel {
             at,
             receiver,
             point,

@@ -5,7 +5,7 @@ use nalgebra::{Cholesky, Const};
 use super::shading::{FIRST_LAMP, Factors, N_FACTORS, PRIOR, Shaded, Shading, add_outer};
 
 /// The residual of a shading.
-pub(super) struct Leftover<'a> {
+pub(super) struct Unexplained<'a> {
     shaded: &'a Shaded<'a>,
     /// Weight and residual of each channel of each pixel.
     pixels: Vec<[(f64, f64); 3]>,
@@ -14,7 +14,7 @@ pub(super) struct Leftover<'a> {
     loss: f64,
 }
 
-impl<'a> Leftover<'a> {
+impl<'a> Unexplained<'a> {
     pub(super) fn new(shaded: &'a Shaded<'a>, shading: &Shading, robust: f64) -> Self {
         let n_columns = FIRST_LAMP + shaded.lamps.len();
         let mut normals = vec![nalgebra::SMatrix::identity() * PRIOR; 3 * shading.factors.len()];

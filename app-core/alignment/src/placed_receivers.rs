@@ -13,7 +13,10 @@ use app_scene::toy::ToyError;
 
 /// All receivers of a scene, moved as one so that the toy stands on the most level of them; `None`
 /// if the toy has no three feet that support it.
-pub(super) fn laid(scene: &Scene, world_from_object: &DMat4) -> Result<Option<Vec<Receiver>>, ToyError> {
+pub(super) fn placed_receivers(
+    scene: &Scene,
+    world_from_object: &DMat4,
+) -> Result<Option<Vec<Receiver>>, ToyError> {
     let shape = Shape::new(scene, world_from_object)?;
     let planes = scene.receivers.iter().map(plane_of);
     let Some(plane) = Plane::most_level(planes, DVec3::Y) else {

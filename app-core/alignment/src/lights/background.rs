@@ -27,7 +27,7 @@ type Terms<const N: usize> = SVector<f64, N>;
 
 /// The colour of each receiver, a polynomial of N coefficients.
 #[derive(Debug)]
-pub(super) struct Backdrop<const N: usize> {
+pub(super) struct Background<const N: usize> {
     /// `None` for a receiver that is not visible.
     receivers: Vec<Option<Seen<N>>>,
     middle: DVec3,
@@ -41,7 +41,7 @@ struct Seen<const N: usize> {
     texture: f64,
 }
 
-impl<const N: usize> Backdrop<N> {
+impl<const N: usize> Background<N> {
     /// The background of a picture with a toy around `middle`, in camera space, within `reach_m` of
     /// it.
     pub(super) fn of(

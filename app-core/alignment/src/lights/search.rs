@@ -9,14 +9,14 @@
 use glam::{DVec2, DVec3};
 
 use super::evidence::{doubtful, is_gain, outshines};
-use super::guess::{Hints, guessed};
 use super::hemisphere::{climb, lamp_from, lamps as hemisphere, peaks};
+use super::initial_light::{Hints, best_initial_lights};
 use super::lamp::{Lamp, disc};
-use super::leftover::Leftover;
 use super::prior::Prior;
-use super::refine::{Discovered, Refined};
+use super::refine::{MeasuredLight, Refined};
 use super::shading::Shading;
 use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
+use super::unexplained::Unexplained;
 use crate::no_light::NoLight;
 use crate::picture::Pyramid;
 use crate::raster::Rasterizer;
@@ -48,13 +48,13 @@ const POINT: [DVec2; 1] = [DVec2::ZERO];
 /// Estimates the lamps whose shadows a picture shows; `pose` is the uncertainty of the toy's. If
 /// there are guesses, lamps are searched around them, one for each; a light estimate is a start if
 /// no other leads to a lamp, and is judged by evidence like any other.
-pub(super) fn discover(
+pub(super) fn search_lights(
     shape: &Shape,
     receivers: &[SeenReceiver],
     pyramid: &Pyramid,
     pose: &PoseDeviation,
     hints: &Hints,
-) -> Result<Vec<Discovered>, NoLight> {
+) -> Result<Vec<MeasuredLight>, NoLight> {
     let searched = pyramid.smallest_for_shadows();
     let coarse = shape.merged_in_px(SEARCH_CELL_PX, pyramid.level(searched));
     let mut raster = Rasterizer::default();
@@ -63,10 +63,10 @@ pub(super) fn discover(
     if shadows.pixels.len() < LEAST_PIXELS {
         return Err(NoLight::ReceiversUnseen);
     }
-    let mut lamps = if hints.guesses.is_empty() {
+    let mut lamps = if hints.initial_lights.is_empty() {
         Search::new(shadows, &mut raster).all_lamps(hints.estimated)
     } else {
-        guessed(&shadows, &mut raster, &hints.guesses)
+        best_initial_lights(&shadows, &mut raster, &hints.initial_lights)
     };
     for level in (searched.saturating_sub(N_LARGER_LEVELS)..=searched).rev() {
         let fine = shape.merged_in_px(CELL_PX, pyramid.level(level));
@@ -159,9 +159,9 @@ impl<'a> Search<'a> {
         let followed = starts.iter().filter_map(|start| {
             let more = self.follow(lamps, start)?;
             let shading = self.shading(&more);
-            let is_told =
+            let is_significant =
                 is_gain(before.loss, shading.loss) && doubtful(&more, &shading, &self.shadows).is_none();
-            is_told.then_some((shading.loss, more))
+            is_significant.then_some((shading.loss, more))
         });
         let best = followed.min_by(|a, b| a.0.total_cmp(&b.0));
         best.map(|(_, more)| more)
@@ -206,8 +206,11 @@ impl<'a> Search<'a> {
         let taken = self.shadows.taken_of_all(self.raster, lamps);
         let shaded = self.shadows.shaded(&taken);
         let shading = shaded.fit(self.shadows.caster.receivers.len(), ROBUST_FAR);
-        let leftover = Leftover::new(&shaded, &shading, ROBUST_FAR);
-        let scores = self.candidates.iter().map(|(_, taken)| leftover.explained(taken));
+        let unexplained = Unexplained::new(&shaded, &shading, ROBUST_FAR);
+        let scores = self
+            .candidates
+            .iter()
+            .map(|(_, taken)| unexplained.explained(taken));
         scores.collect()
     }
 
@@ -217,9 +220,9 @@ impl<'a> Search<'a> {
         let taken = shadows.taken_of_all(raster, lamps);
         let shaded = shadows.shaded(&taken);
         let shading = shaded.fit(shadows.caster.receivers.len(), ROBUST_FAR);
-        let leftover = Leftover::new(&shaded, &shading, ROBUST_FAR);
+        let unexplained = Unexplained::new(&shaded, &shading, ROBUST_FAR);
         let mut explained =
-            |lamp: &Lamp, points: &[DVec2]| leftover.explained(&shadows.taken(raster, lamp, points));
+            |lamp: &Lamp, points: &[DVec2]| unexplained.explained(&shadows.taken(raster, lamp, points));
         let points = disc(N_SPREAD_POINTS);
         let climbed = from.iter().map(|peak| {
             let (score, lamp) = climb(peak, |lamp| explained(lamp, &POINT));
