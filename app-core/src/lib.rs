@@ -1,5 +1,5 @@
-//! Shadow retargeting: a static toy in a camera picture moves, with its own real shadow, re-made from
-//! samples of it.
+//! Shadow retargeting: a static toy in a camera picture moves, with its own real shadow, re-made
+//! from samples of it.
 //!
 //! The method is that of Casas et al. 2018 and 2019 («Image Based Proximate Shadow Retargeting»; «Enhanced Shadow
 //! Retargeting with Light-Source Estimation Using Flat Fresnel Lenses»), with an additive model in its place where
@@ -21,14 +21,14 @@
 //! use app_core::{Core, wgpu};
 //!
 //! fn main() -> Result<(), Box<dyn Error>> {
-//!     // `Folder` needs the feature `fs`: the core opens no file, but reads through the trait `Files`.
+//!     // `Folder` needs the feature `fs`: the core itself reads through the trait `Files`.
 //!     let session = Capture::open(Folder::open("../tests/sessions/llama")?)?;
 //!     let instance = wgpu::Instance::default();
 //!     let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
 //!     core.set_scene(session.scene().clone(), Preset::Balanced)?;
 //!
-//!     // A frame has the camera's picture, the poses of camera and toy, the lights, and the pose to
-//!     // show: here a moment of a clip.
+//!     // A frame has the camera's picture, the poses of camera and toy, the lights, and the pose
+//!     // to show: here a moment of a clip.
 //!     let mut input = FrameInput::from(&session.frame(0)?);
 //!     let report = core.frame(&input)?;
 //!     for warning in &report.warnings {
@@ -38,8 +38,8 @@
 //!     assert_eq!([picture.width_px, picture.height_px], [640, 360]);
 //!     assert!(picture.rgba8 != input.image.rgba().rgba8);
 //!
-//!     // The app sets a pose: the llama turns its head. This frame costs far less, since the scene is
-//!     // known.
+//!     // The app sets a pose: the llama turns its head. This frame costs far less, since the
+//!     // scene is known.
 //!     let toy = &session.scene().toy;
 //!     let head = toy.find_node("head")?;
 //!     let mut transform = toy.authored_transform(head)?.ok_or("authored as a matrix")?;

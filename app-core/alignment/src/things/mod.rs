@@ -68,7 +68,7 @@ pub(crate) struct Sight<'a> {
     pub(crate) pyramid: &'a Pyramid,
     pub(crate) lights: &'a [Light],
     pub(crate) world_from_camera: &'a DMat4,
-    /// Whether planes of things are searched.
+    /// Whether planes of things are searched for.
     pub(crate) wants_planes: bool,
 }
 
