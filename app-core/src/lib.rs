@@ -1,4 +1,5 @@
-//! Shadow retargeting: a static toy in a camera picture moves, with its own real shadow, re-made from samples of it.
+//! Shadow retargeting: a static toy in a camera picture moves, with its own real shadow, re-made
+//! from samples of it.
 //!
 //! The method is that of Casas et al. 2018 and 2019 («Image Based Proximate Shadow Retargeting»; «Enhanced Shadow
 //! Retargeting with Light-Source Estimation Using Flat Fresnel Lenses»), with an additive model in its place where
@@ -20,13 +21,14 @@
 //! use app_core::{Core, wgpu};
 //!
 //! fn main() -> Result<(), Box<dyn Error>> {
-//!     // Of the feature `fs`: by itself the core opens no file, and reads through the trait `Files`.
+//!     // `Folder` needs the feature `fs`: the core itself reads through the trait `Files`.
 //!     let session = Capture::open(Folder::open("../tests/sessions/llama")?)?;
 //!     let instance = wgpu::Instance::default();
 //!     let mut core = pollster::block_on(Core::headless(&instance, &AdapterChoice::Fastest))?;
 //!     core.set_scene(session.scene().clone(), Preset::Balanced)?;
 //!
-//!     // A frame brings the camera's picture, where camera, toy and lights are, and the pose to be shown: here a moment of a clip.
+//!     // A frame has the camera's picture, the poses of camera and toy, the lights, and the pose
+//!     // to show: here a moment of a clip.
 //!     let mut input = FrameInput::from(&session.frame(0)?);
 //!     let report = core.frame(&input)?;
 //!     for warning in &report.warnings {
@@ -36,7 +38,8 @@
 //!     assert_eq!([picture.width_px, picture.height_px], [640, 360]);
 //!     assert!(picture.rgba8 != input.image.rgba().rgba8);
 //!
-//!     // A pose of the app's own: the llama turns its head. The scene is known by now, so that this frame costs far less.
+//!     // The app sets a pose: the llama turns its head. This frame costs far less, since the
+//!     // scene is known.
 //!     let toy = &session.scene().toy;
 //!     let head = toy.find_node("head")?;
 //!     let mut transform = toy.authored_transform(head)?.ok_or("authored as a matrix")?;
@@ -46,14 +49,14 @@
 //!         ..NodePose::default()
 //!     }));
 //!     core.frame(&input)?;
-//!     // Without reading anything back, the picture can be had as a texture to draw on with.
+//!     // The picture is also available as a texture, without readback.
 //!     assert_eq!(core.picture()?.width(), 640);
 //!     Ok(())
 //! }
 //! ```
 //!
-//! If poses come from a tracker, or lights from a person, [`alignment::Aligner`] first corrects them
-//! against the picture.
+//! If poses come from a tracker, or lights from a person, [`alignment::Aligner`] first corrects
+//! them against the picture.
 //! An app with its own device uses [`Core::on_device`]; one with a window uses [`Core::on_surface`]
 //! and [`Core::present`]. [`Core::warm_up`] compiles on another thread, or in slices.
 //!
@@ -63,8 +66,8 @@
 //!
 //! The documents of `app-core/doc` explain the [architecture], the [spaces] and units, the [passes]
 //! and the terms of the [glossary]; [`session`] has the format of sessions, [`recording`] that of
-//! recordings. The programs in `app-core/examples` use a device of their own, a loop over poses, and
-//! a scene made of values alone.
+//! recordings. The programs in `app-core/examples` use a device of their own, a loop over poses,
+//! and a scene made of values alone.
 #![forbid(unsafe_code)]
 
 pub use app_pipeline::{Core, CoreError, governor, ledger, preset, profile, wgpu};

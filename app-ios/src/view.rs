@@ -229,7 +229,7 @@ impl MetalView {
                 right_px: insets.right * pixels_per_point,
                 bottom_px: insets.bottom * pixels_per_point,
             },
-            // How many points a hundred become in the letters that the person has chosen.
+            // Size of a hundred points with the person's letter size.
             text_scale: UIFontMetrics::defaultMetrics().scaledValueForValue(100.0) / 100.0,
         })
     }

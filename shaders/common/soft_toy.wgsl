@@ -5,7 +5,7 @@
 //#import common/globals
 //#import common/spread
 
-// Number of rings around a pixel in which the toy is searched, and of positions on each.
+// Number of rings around a pixel in which the toy is searched for, and of positions on each.
 const N_RINGS: u32 = 4u;
 const N_ON_RING: u32 = 12u;
 const TURN: f32 = 6.2831853;

@@ -1,10 +1,11 @@
 // The picture: plate times new shadow, without real toy and real shadow, under the animated toy.
 //
-//   out = gain plate (M' + r)         in general, r the pooled residual, fading where the shadow changed much
-//   out = frame + gain plate (M' - M) where the receiver is seen and M' is near M: r is the pixel's own, so the frame
-//                                     passes; also where the frame shows what the model cannot explain
-//   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r): no plate is read there
-// A glossy receiver's reflection is subtracted from the frame first, and that of the shown toy is added last.
+//   out = gain plate (M' + r)         in general, r the pooled residual, fading with large changes
+//   out = frame + gain plate (M' - M) if the receiver is visible and M' is near M: r is the pixel's
+//                                     own, so the frame passes; also for unexplained things
+//   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r), not a plate
+// A glossy receiver's reflection is subtracted from the frame first, and that of the shown toy is
+// added last.
 //
 // Reads: all state of the receiver, visibility and ambient of the animated pose, the drawn toy.
 // Writes: linear colour, opaque. CPU reference: tests/reference/src/composite.rs.
@@ -26,8 +27,8 @@
 struct Drawing {
   // Whether the own residual of visible pixels is that of `detail` and not the frame's.
   has_detail: u32,
-  // The next four are for grain: number of the picture, variance of light in frame and plate as (in the dark,
-  // for each unit of light), correlation of neighbouring pixels, and of a pixel's channels.
+  // Grain: number of the picture; variance of light in frame and plate as (in the dark, for each
+  // unit); correlation of neighbouring pixels, and of a pixel's channels.
   picture: u32,
   frame_noise: vec2f,
   plate_noise: vec2f,
@@ -65,25 +66,25 @@ override HAS_STRENGTH: bool = false;
 // COVERED_POSITION for each position that the shown toy covers.
 @group(3) @binding(7) var covered: texture_2d<f32>;
 
-// Change of the model, in plates, up to which a visible pixel keeps its residual, and from which it has none.
+// Change of the model, in plates, up to which a visible pixel keeps its residual, and its end.
 const KEEP_ALL: f32 = 0.02;
 const KEEP_NONE: f32 = 0.15;
 // Change of the model at which the pooled residual is halved.
 const RESIDUAL_HALF: f32 = 0.5;
-// Pooled residual, in plates, from which it may be an unknown thing, such as a hand or an unlisted light's
-// shadow, and from which it certainly is: then the pixel stays as photographed.
+// Pooled residual, in plates, from which it may be an unknown thing or shadow, and from which it
+// certainly is: then the pixel stays as photographed.
 const OUTLIER_NONE: f32 = 0.15;
 const OUTLIER_ALL: f32 = 0.3;
-// Smallest over largest channel of a residual from which it may be a shadow, and below which it has a colour of
-// its own.
+// Smallest over largest channel of a residual from which it may be a shadow, and below which it is
+// not.
 const SHADOW_EVENNESS: f32 = 0.4;
 const OBJECT_EVENNESS: f32 = 0.2;
-// Deviation from the model, in plates, up to which a pixel beside a moved toy is unaffected, and from which the
-// toy has bled into it.
+// Deviation from the model, in plates, up to which a pixel is not affected by the colour of a moved
+// toy beside it, and from which it is.
 const BLED_NONE: f32 = 0.03;
 const BLED_ALL: f32 = 0.1;
 
-// Share of a pixel's colour that is the receiver's own: less if the toy stood beside it and has moved.
+// Share of a pixel's colour that is the receiver's own: less beside a toy that has moved.
 fn own_share(evident: vec4f, has_moved: bool, deviation: f32) -> f32 {
   if evident.r == 0.0 { return 0.0; }
   if !has_moved { return 1.0; }
@@ -108,9 +109,8 @@ fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
   return select(model, mix(model, vec3f(1.0), clipped), plate > vec3f(BRIGHTEST_USABLE));
 }
 
-// Remainder of the light `open` under a styled shadow, if the true one leaves `left`. A weaker shadow has a
-// share of the true loss; a stronger one is applied repeatedly, so that it keeps its hue and light stays
-// positive.
+// Remainder of the light `open` under a styled shadow, if the true one leaves `left`. A weaker one
+// has a share of the loss; a stronger one is applied repeatedly, so that it keeps its hue.
 fn strengthened(open: vec3f, left: vec3f, strength: f32) -> vec3f {
   if strength <= 1.0 { return mix(open, left, strength); }
   let part = select(vec3f(1.0), left / open, open > vec3f(0.0));
@@ -118,10 +118,9 @@ fn strengthened(open: vec3f, left: vec3f, strength: f32) -> vec3f {
   return open * pow(clamp(part, vec3f(0.0), vec3f(1.0)), vec3f(strength)) * max(part, vec3f(1.0));
 }
 
-// The receiver's colour. `change` becomes that of the model since the frame, if the receiver is visible; its
-// alpha is the weight of a camera pixel that mixes toy and receiver: 1 for a small change. `f` is the frame
-// there, `evident` are its marks; `has_moved` is whether the real toy beside it has. `strength` is that of the
-// shadow.
+// The receiver's colour. `change` becomes that of the model since the frame `f`, with the weight of
+// a camera pixel that mixes toy and receiver in alpha: 1 for a small change. `evident` are the
+// marks; `has_moved` is whether the real toy beside it has. `strength` is that of the shadow.
 fn receiver(
   position: vec4f,
   f: vec3f,
@@ -274,8 +273,7 @@ fn fs_beside(@builtin(position) position: vec4f) -> @location(0) vec4f {
   return vec4f(grained(color, vec2i(position.xy), missing), 1.0);
 }
 
-// Pixels near a toy that was drawn once, or four times: separate entry points, since some processors execute
-// all branches.
+// Pixels near a toy that was drawn once, or four times, as some processors execute all branches.
 @fragment
 fn fs_drawn_once(@builtin(position) position: vec4f) -> @location(0) vec4f {
   return composed(position, 1u);

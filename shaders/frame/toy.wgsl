@@ -1,13 +1,13 @@
 // The toy in the shown pose, textured with its camera pixels.
 //
-// Points that the camera saw in the physical pose take its pixels, scaled by the change of the fitted
-// light on the turned surface; hidden points take the model's base colour under the fitted light, times
-// the tint. The old reflection of a glossy toy is subtracted from its pixels, and the new one is added.
-// Drawn once for each offset; with the multisample positions the offsets make a denser pattern.
+// Visible points of the physical pose take the camera's pixels, scaled by the change of the fitted
+// light; hidden points take the model's base colour under the fitted light, times the tint. The old
+// reflection of a glossy toy is subtracted from its pixels, and the new one is added. Drawn once
+// for each offset; with the multisample positions the offsets make a denser pattern.
 //
-// Reads: both poses, materials, frame, the source pixels of the toy's colours and the light on them,
-// gbuffer, fit, depth maps from the lights, tints. Writes: linear radiance, premultiplied, with the
-// fraction of hit samples in alpha; difference from the camera's pixel.
+// Reads: both poses, materials, frame, the source pixels of the toy's colours and the light on
+// them, gbuffer, fit, depth maps from the lights, tints. Writes: linear radiance, premultiplied,
+// with the fraction of hit samples in alpha; difference from the camera's pixel.
 
 //#import common/fit
 //#import common/frame
@@ -33,7 +33,7 @@
 @group(1) @binding(4) var<uniform> tint_grid: TintGrid;
 @group(1) @binding(5) var<storage, read> tints: array<vec4f>;
 @group(1) @binding(6) var appearance_source: texture_2d<f32>;
-// Colour that a soft picture mixes into the toy's, relative to the gain, and the toy's part of a pixel.
+// Colour that a soft picture mixes into the toy's, over the gain, and the toy's part of a pixel.
 @group(1) @binding(7) var rim: texture_2d<f32>;
 // Reflected radiance of a glossy toy, relative to the gain; alpha is the visibility of the paint.
 @group(1) @binding(8) var reflected: texture_2d<f32>;
@@ -54,7 +54,7 @@ const STRETCH_NONE: f32 = 0.1;
 const STRETCH_LINES: f32 = 0.75;
 // Relative difference of base colours above which two points of the model have different materials.
 const OTHER_MATERIAL: f32 = 0.25;
-// Relative step of depth up to which a point is the visible one: a tenth of a millimetre at one metre.
+// Relative step of depth up to which a point is the visible one: .1 mm at one metre.
 const SHOWN_DEPTH: f32 = 1e-4;
 // Weight of other paint around a visible point: with less of it lines are ragged, with all of it they
 // are soft. It reduced the bundled toy's error from 3.89 to 3.75 codes.

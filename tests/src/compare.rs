@@ -87,7 +87,7 @@ pub enum CompareError {
     /// A side's length contradicts its size, or is zero.
     #[error("{side} has {n_texels} texels instead of width times height, or none")]
     WrongLength {
-        /// Which side.
+        /// Name of the side.
         side: &'static str,
         /// Texels that it holds.
         n_texels: usize,

@@ -161,7 +161,7 @@ impl Session {
             match card::database(&self.api, &self.session) {
                 Ok(card) => self.card = Some(card),
                 Err(failure) => {
-                    eprintln!("arcore: the card is not looked for: {failure}");
+                    eprintln!("arcore: the card is not detected: {failure}");
                     self.refused |= CARD;
                 }
             }

@@ -34,7 +34,7 @@ pub enum Remedy {
     Install,
     /// Update this app.
     UpdateApp,
-    /// None on this phone.
+    /// There is none on this phone.
     None,
     /// An error of this app: the person should send its log.
     Report,

@@ -260,7 +260,7 @@ impl Tracker {
             self.watch.is_second_try = false;
         }
         if self.watch.n_pictures == N_FOCUSED && !self.watch.has_refocused && session.is_focus_stuck() {
-            eprintln!("arcore: the camera does not focus by itself: paused and resumed");
+            eprintln!("arcore: the camera has no autofocus: paused and resumed");
             self.watch.has_refocused = true;
             self.begin_anew(|_| Ok(true))?;
         }
@@ -271,7 +271,7 @@ impl Tracker {
     /// can be slow, then with the next mode.
     fn begin_smaller(&mut self) -> Result<(), FrameError> {
         if !std::mem::replace(&mut self.watch.is_second_try, true) {
-            eprintln!("arcore: the camera's pictures do not come: it is begun anew");
+            eprintln!("arcore: the camera delivers no pictures: restarted");
             return self.begin_anew(|_| Ok(true)).map(drop);
         }
         if self.begin_anew(Session::next_mode)? {

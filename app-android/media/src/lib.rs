@@ -1,8 +1,9 @@
-//! Videos by Android's own encoder, copies of files where other apps find them, what the display reports, how hot the phone is, and what
-//! reaches a person beside the screen.
+//! Videos by Android's own encoder, copies of files for other apps, values of the display, the
+//! thermal state, and output to the person beside the screen.
 //!
-//! `yuv`, the layout of samples that encoders take, and `stored`, where a file belongs, run in desktop tests; `video`, `media_store`,
-//! `display`, `heat`, `person` and `settings` are compiled for Android alone.
+//! `yuv`, the layout of samples that encoders take, and `stored`, where a file belongs, run in
+//! desktop tests; `video`, `media_store`, `display`, `heat`, `person` and `settings` are compiled
+//! for Android alone.
 
 pub mod stored;
 pub mod yuv;

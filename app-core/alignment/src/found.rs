@@ -33,7 +33,7 @@ pub struct Alignment {
     pub sharpness: Sharpness,
     /// The reflection of the receiver below the toy; `None` if it is matt, as far as the picture shows.
     pub reflection: Option<Reflection>,
-    /// How glossy the toy is.
+    /// Gloss of the toy.
     pub gloss: Gloss,
     /// The report.
     pub report: AlignmentReport,

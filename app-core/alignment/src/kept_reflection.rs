@@ -5,8 +5,8 @@ use super::view::Seen;
 use app_scene::scene::{Light, Scene};
 use app_scene::toy::ToyError;
 
-/// Largest distance of the outline from the picture's, in pixels, with which a reflection is searched for; whether it
-/// is there is told by what it explains.
+/// Largest distance of the outlines in pixels at which a reflection is searched for: a worse pose
+/// cannot show whether there is one.
 const REFLECTION_OUTLINE_PX: f64 = 1.5;
 
 /// A reflection that is kept from view to view.
@@ -18,7 +18,8 @@ pub(super) struct KeptReflection {
 }
 
 impl KeptReflection {
-    /// Searches the first view that shows the toy, under lights as far as they are known; returns whether it did.
+    /// Searches the first view that shows the toy, under the lights known so far. Returns whether
+    /// it did.
     pub(super) fn search(&mut self, scene: &Scene, seen: &Seen, lights: &[Light]) -> Result<bool, ToyError> {
         if self.is_searched_for || !seen.view.is_trusted(REFLECTION_OUTLINE_PX) {
             return Ok(false);
@@ -39,7 +40,8 @@ impl KeptReflection {
         Ok(())
     }
 
-    /// A view as if the receiver below the toy were matt; `None` if it is, as far as the pictures show.
+    /// A view as if the receiver below the toy were matt; `None` if it is matt, according to the
+    /// pictures.
     pub(super) fn removed_from(&self, scene: &Scene, seen: &Seen) -> Result<Option<Seen>, ToyError> {
         let found = self.found.as_ref();
         found.map(|found| seen.freed_of(scene, found)).transpose()

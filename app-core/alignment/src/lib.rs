@@ -1,35 +1,38 @@
 //! Alignment: camera, toy and lights, corrected by the photograph.
 //!
-//! No tracker knows where a toy is to a tenth of a pixel, and no person where a lamp is to a tenth of a degree; both
-//! show in the picture at once. The **table** beside the toy gives the camera (`camera`), since plates show its
-//! texture. Frame against plate is the best segmentation there is: the **outline** of the toy gives its pose, and its
-//! feet stand on the table (`pose`); the outline of its **shadow**, a second view of the toy from the light, gives the
-//! light (`lights`). Where the outline shows that the toy is not quite its **model**, the model is displaced to have
-//! the toy's (`adapted`). Both papers name misregistration as their largest error and leave it there.
+//! No tracker knows where a toy is to a tenth of a pixel, and no person where a lamp is to a tenth
+//! of a degree; both show in the picture at once. The **table** beside the toy gives the camera
+//! (`camera`), since plates show its texture. Frame against plate is the best segmentation there
+//! is: the **outline** of the toy gives its pose, and its feet stand on the table (`pose`); the
+//! outline of its **shadow**, a second view of the toy from the light, gives the light (`lights`).
+//! If the outline shows that the toy differs from its **model**, the model is displaced to match it
+//! (`adapted`). Both papers name misregistration as their largest error and leave it there.
 //!
 //! ```text
 //! frame, plates ─► camera ─► pyramid ─┐
 //! physical pose ─► shape ─────────────┴► pose ─► model ─► lights ─► things ─► Alignment
 //! ```
 //!
-//! Where the receiver that the toy stands on reflects the toy, that is found as well, once a session, and shadows are read without it
-//! (`lights/reflection`).
+//! If the receiver below the toy reflects it, the reflection is estimated as well, once per
+//! session, and removed for the shadows (`lights/reflection`).
 //!
-//! The softness of the photograph, relative to its plate and at the toy's outline, is measured as well (`softness`).
+//! The softness of the photograph, relative to its plate and at the toy's outline, is measured as
+//! well (`softness`).
 //!
-//! On request, the **focal length** or the **scale** of the world is estimated first, from toy and shadow together
-//! (`ratio`), and before all else the distortion of the **lens** ([`Aligner::lens`]), which is removed from
-//! photographs.
+//! On request, the **focal length** or the **scale** of the world is estimated first, from toy and
+//! shadow together (`ratio`), and before all else the distortion of the **lens**
+//! ([`Aligner::lens`]), which is removed from photographs.
 //!
-//! Some quantities are fixed, since pictures do not constrain them separately: the first plate's camera, to which all
-//! others are relative, the principal point, and the receivers. All is solved in camera space, from numbers of 32 bits:
-//! the correction does not depend on the world's origin, except for the last bits. A correction is applied only if it
-//! explains the picture better by more than noise ([`Aligner::align`]).
+//! Some quantities are fixed, since pictures do not constrain them separately: the first plate's
+//! camera, to which all others are relative, the principal point, and the receivers. All is solved
+//! in camera space, from numbers of 32 bits: the correction does not depend on the world's origin,
+//! except for the last bits. A correction is applied only if it explains the picture better by more
+//! than noise ([`Aligner::align`]).
 //!
-//! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.5 to 1.3 s for a pose, once a view, and 1 to 7
-//! s for the lights, once a session, growing with the number of triangles and lights. A camera takes about as long as a
-//! pose, once a view and once for each of the first 32 plates; unlisted lights 1 to 5 s, and a focal length 2 to 12 s
-//! more, once a session.
+//! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.5 to 1.3 s for a pose,
+//! once a view, and 1 to 7 s for the lights, once a session, growing with the number of triangles
+//! and lights. A camera takes about as long as a pose, once a view and once for each of the first
+//! 32 plates; unlisted lights 1 to 5 s, and a focal length 2 to 12 s more, once a session.
 
 #![forbid(unsafe_code)]
 
@@ -146,7 +149,7 @@ pub struct Aligner {
     /// Whether the scene's plates were relit.
     is_relit: bool,
     are_shadows_withheld: bool,
-    /// How glossy the toy is, by the first view that shows it in its place.
+    /// Gloss of the toy, from the first view that shows it at its place.
     gloss: Option<Gloss>,
     /// The adapted model, once there is one.
     model: Option<ModelAlignment>,

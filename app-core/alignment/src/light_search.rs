@@ -19,9 +19,9 @@ use app_scene::toy::ToyError;
 /// means another toy.
 const DISCOVERY_OUTLINE_PX: f64 = 1.5;
 
-/// What was seen beside the toy.
+/// Result of the search for other things.
 enum Looked {
-    /// Things, where there are any.
+    /// Things, if there are any.
     Things(Option<Things>),
     /// Planes of things: the view with these among the receivers.
     Planes(Box<Seen>),
@@ -209,7 +209,7 @@ impl Aligner {
             let toy = &seen.input.world_from_object;
             self.gloss = Some(looked_at.photograph.gloss(&self.scene, toy, lights.in_use())?);
         }
-        // Equal marks stay identical, so that nothing is learned anew.
+        // Equal marks stay identical, so that nothing is learned again.
         let is_same = |known: &Things| things.as_ref().is_some_and(|things| things.is_like(known));
         if !self.things.as_ref().is_some_and(is_same) {
             self.things = things;
@@ -234,8 +234,8 @@ impl Aligner {
         ))))
     }
 
-    /// Lights that explain a view in place of those that were there when the plates were taken, and the scene with plates in their
-    /// light; none where they do not explain it as well.
+    /// Lights that explain a view in place of those at the time of the plates, and the scene with
+    /// plates in their light; `None` if they do not explain it as well.
     fn relight(&self, kept: &KeptLights, seen: &Seen) -> Result<Option<(KeptLights, Arc<Scene>)>, ToyError> {
         let Some(plates) = seen.photograph.relit_plates(&self.scene, &seen.input)? else {
             return Ok(None);
@@ -249,7 +249,7 @@ impl Aligner {
         Ok(now.map(|now| (others.in_place_of(kept, now), relit.scene)))
     }
 
-    /// The loss that lights leave in a view; `None` if the view does not constrain them.
+    /// The loss of lights in a view; `None` if the view does not constrain them.
     fn watch(&self, lights: &KeptLights, seen: &Seen) -> Result<Option<Watched>, ToyError> {
         if !self.can_tell_lights(lights.in_use()) || !seen.view.is_trusted(MOST_OUTLINE_PX) {
             return Ok(None);

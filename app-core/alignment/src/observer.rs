@@ -16,7 +16,7 @@ use app_scene::sharpness::Spread;
 #[derive(Debug, Default)]
 pub struct Observer {
     latest: Option<FrameInput>,
-    /// How glossy the toy is, once that was looked for.
+    /// Gloss of the toy, once it was estimated.
     gloss: Option<Gloss>,
     planes: FoundPlanes,
 }
@@ -99,7 +99,7 @@ impl Observer {
     }
 }
 
-/// The conditions in which a frame is looked at.
+/// The conditions of a frame.
 struct Look<'a> {
     input: &'a FrameInput,
     plate_spread: Spread,

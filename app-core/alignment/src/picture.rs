@@ -85,7 +85,7 @@ impl Picture {
     pub(super) fn add(&mut self, at: IVec2, light: Color) {
         if let Some(pixel) = index_in(self.size_px, at).and_then(|index| self.pixels.get_mut(index)) {
             for (channel, light) in pixel.iter_mut().zip(light) {
-                // What is unknown stays so.
+                // Unknown values stay unknown.
                 let sum = *channel + light;
                 *channel = if sum < 0.0 { 0.0 } else { sum };
             }

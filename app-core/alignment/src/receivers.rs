@@ -53,20 +53,21 @@ impl SeenReceiver {
         }
     }
 
-    /// The point in camera space that a pixel shows of it; none where it shows none.
+    /// The receiver's point at a pixel, in camera space; `None` if the pixel shows none.
     pub(super) fn point_at(&self, k: &Intrinsics, at: IVec2) -> Option<DVec3> {
         let ray = ray(k, at);
         self.depth_m(ray).map(|depth_m| depth_m * ray)
     }
 
-    /// Its plane in camera space, where the lowest of points is within a distance of it; rounded to 32 bits, as poses are.
+    /// The plane in camera space, if the lowest of the points is within `most_m` of it; rounded to
+    /// 32 bits, as poses are.
     pub(super) fn plane_under(&self, points: &[DVec3], most_m: f64) -> Option<Plane> {
         let heights_m = points
             .iter()
             .map(|point| self.plane_from_camera.transform_point3(*point).y);
         let lowest_m = heights_m.fold(f64::INFINITY, f64::min);
         let normal = self.plane_from_camera.inverse().y_axis.truncate().normalize();
-        // Below the toy, where 32 bits are enough for any origin of the plane.
+        // The point is below the toy: there 32 bits are enough for any origin of the plane.
         let above = *points.first()?;
         let point = above - self.plane_from_camera.transform_point3(above).y * normal;
         (lowest_m.abs() <= most_m).then(|| Plane {

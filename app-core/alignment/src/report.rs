@@ -59,7 +59,7 @@ pub struct AlignmentReport {
 /// A plane of a thing that stands on a receiver, by the toy's shadow on it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PlaneAlignment {
-    /// Of its middle above that receiver, in metres.
+    /// Height of its centre above that receiver, in metres.
     pub height_m: f64,
     /// Between both, in radians.
     pub tilt_rad: f64,
@@ -135,7 +135,8 @@ pub struct PoseAlignment {
     /// `None` without a texture or if the picture shows another one: the pose is then estimated
     /// from the outline alone.
     pub texture_correlation: Option<f64>,
-    /// Standard deviation of the spread that lens and focus give the outline, in pixels; 0 where it is sharp.
+    /// Standard deviation of the spread that lens and focus give the outline, in pixels; 0 if it is
+    /// sharp.
     pub spread_px: f64,
     /// The shown toy's position on the receiver that it was given on; `None` if it is given above
     /// all of them.
@@ -263,12 +264,12 @@ pub struct AssumedLight {
 /// receiver that is not flat.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LightDeviation {
-    /// Of the direction, in radians.
+    /// Standard deviation of the direction, in radians.
     pub direction_rad: f64,
-    /// Of the inverse distance, in 1/m, which unlike that of the distance is defined for far lights
-    /// too.
+    /// Standard deviation of the inverse distance, in 1/m, which unlike that of the distance is
+    /// also defined for far lights.
     pub nearness_per_m: f64,
-    /// Of the angular radius, in radians.
+    /// Standard deviation of the angular radius, in radians.
     pub angular_radius_rad: f64,
 }
 
@@ -350,7 +351,7 @@ impl fmt::Display for RatioOutcome {
             Self::OutlineDisagrees => {
                 "another would explain the shadows, but not the outline: toy or receivers may be of another size or height"
             }
-            Self::Unseen => "there is no plate, or too little of toy and shadows is seen",
+            Self::Unseen => "there is no plate, or too little of toy and shadows is visible",
         })
     }
 }

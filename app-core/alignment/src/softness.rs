@@ -69,8 +69,8 @@ pub(super) fn sharpness(level: &Level, coverage: &Coverage, outline_px: Option<f
     }
 }
 
-/// The blur that makes the plate as soft as the photograph; none if it is unconstrained, or if the
-/// plate is as soft already.
+/// The blur that makes the plate as soft as the photograph; `None` if it is unconstrained, or if
+/// the plate is as soft already.
 fn over_plate(level: &Level, coverage: &Coverage) -> Option<Spread> {
     let (frame, plate, unlike) = textures(level, coverage)?;
     let is_used: Vec<bool> = places(frame.size_px).map(|at| !unlike.has(at)).collect();

@@ -249,7 +249,7 @@ impl Search {
         Ok(followed)
     }
 
-    /// A pose, followed to the outline; none if too little of that is seen.
+    /// A pose, followed to the outline; `None` if too little of the outline is visible.
     pub(crate) fn follow(&self, start: &DMat4) -> Result<Option<Followed>, AlignError> {
         let tried = self.photograph.tried_pose(&self.scene, (start, Start::Given))?;
         Ok(tried.map(|(world_from_object, outline_px)| Followed {

@@ -41,11 +41,12 @@ pub struct FrameInput {
     /// Measured softness of the picture, which is applied to everything that is composed into it.
     /// Alignment measures it.
     pub sharpness: Sharpness,
-    /// How glossy the real toy is, where that was measured: its highlights are then moved as reflections, and else as paint. It is the
-    /// toy's, not the picture's: with another one all is learned anew. Alignment measures it; presets of the model alone go by it.
+    /// Gloss of the real toy, if it was measured: its highlights then move as reflections, and
+    /// otherwise as paint. It belongs to the toy and not to the picture: after a change everything
+    /// is learned again. Alignment measures it; only presets of the model use it.
     pub gloss: Gloss,
-    /// How the receiver that the toy stands on reflects; none where it is matt, as far as is known. Alignment measures it. Presets of
-    /// the model alone go by it, and only beside fewer lights than shadows are moved of.
+    /// Reflection of the receiver below the toy; `None` if it is matt or unknown. Alignment
+    /// measures it. Only presets of the model use it, and only if the lights leave a channel.
     pub reflection: Option<Reflection>,
     /// The pose to show.
     pub shown_pose: Pose,
@@ -60,7 +61,7 @@ pub struct FrameInput {
     pub grain: Option<Grain>,
     /// Artistic strength and softness of the shown shadow, for presets of the model. The first
     /// frame with a strength other than 1 compiles a shader; a softness above all earlier ones may
-    /// enlarge the work region, which is then learned anew.
+    /// enlarge the work region, which is then learned again.
     pub shadow_style: ShadowStyle,
 }
 

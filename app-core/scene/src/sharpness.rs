@@ -134,7 +134,7 @@ impl Spread {
 /// Measured softness of a picture, relative to the images that are composed into it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sharpness {
-    /// The blur that makes the plates as soft as the picture; none if they are at least as soft.
+    /// The blur that makes the plates as soft as the picture; `None` if they are at least as soft.
     pub plate_spread: Spread,
     /// The blur that makes an antialiased edge as soft as edges in the picture.
     pub outline_spread: Spread,

@@ -132,7 +132,7 @@ impl Shared {
                 self.run(session, ARSessionRunOptions::empty());
             }
             AfterFailure::RunWithLess => {
-                eprintln!("arkit: the card is not looked for: the session refuses it");
+                eprintln!("arkit: the card is not detected: the session refuses it");
                 self.card.replace(Card::Refused);
                 self.run(session, ARSessionRunOptions::empty());
             }

@@ -57,9 +57,9 @@ pub struct Alignments {
     found: Vec<Aligned>,
     /// Plates with a corrected camera, by their index.
     moved_plates: Vec<(usize, Camera)>,
-    /// The receivers, where they are others than the session's.
+    /// The receivers, if they differ from the session's.
     receivers: Option<Vec<Receiver>>,
-    /// Of the lens, where it was looked for.
+    /// Estimate of the lens, if it was requested.
     lens: Option<LensAlignment>,
 }
 
@@ -319,7 +319,7 @@ impl Alignments {
         found.map_or(self.lights.listed(given).len(), |lights| lights.len())
     }
 
-    /// The receivers, where they are others than the session's: laid under the toy, or with planes that were found.
+    /// The receivers, if they differ from the session's: fitted under the toy, or found planes.
     #[must_use]
     pub fn receivers(&self) -> Option<&[Receiver]> {
         self.receivers.as_deref()

@@ -130,7 +130,7 @@ impl Shown {
     }
 }
 
-const MASK_CAPTION: &str = "Where the real toy is in the camera frame (figure 3a of the paper).";
+const MASK_CAPTION: &str = "Mask of the real toy in the camera frame (figure 3a of the paper).";
 const ELIGIBLE_CAPTION: &str =
     "The real shadow, and where samples of it may be taken (figures 3b and 3c of the paper).";
 
@@ -173,7 +173,7 @@ pub fn describe(map: Map) -> Option<Shown> {
         Map::GbufferBase => (
             "gbuffer",
             "Toy as modelled",
-            "Base colour of the real toy's model where the camera sees it; its outline must fit the camera frame.",
+            "Base colour of the real toy's model in its visible parts; its outline must fit the camera frame.",
             None,
         ),
         Map::GbufferReceived => (

@@ -115,9 +115,8 @@ pub fn alignments(session: &dyn Session, options: &Options) -> Result<Alignments
 /// removed, so that no old report lies beside new frames.
 ///
 /// # Errors
-/// When a frame cannot be read, made or written; earlier frames stay, with a report that gives the
-/// reason of the end. When the output folder holds files that no run wrote, or another run writes
-/// into it.
+/// When a frame cannot be read, made or written; earlier frames stay, with a report of the reason.
+/// When the output folder contains files that no run wrote, or another run writes into it.
 pub fn replay(
     session: &dyn Session,
     truth: Option<&dyn GroundTruth>,

@@ -99,9 +99,9 @@ pub struct FrameEntry {
     pub alignment: Option<AlignmentEntry>,
     /// Measured softness of the picture.
     pub sharpness: SharpnessEntry,
-    /// How glossy the toy was measured to be; none of a matt one.
+    /// Measured gloss of the toy; `None` if it is matt.
     pub gloss: Option<GlossEntry>,
-    /// How the receiver that the toy stands on was found to reflect; none where it is taken for matt.
+    /// Estimated reflection of the receiver below the toy; `None` if it counts as matt.
     pub reflection: Option<ReflectionEntry>,
     /// Error against the truth, if there is one.
     pub scores: Option<Scores>,
@@ -123,14 +123,14 @@ pub struct SharpnessEntry {
     pub outline_px: [f64; 2],
 }
 
-/// How a receiver reflects.
+/// Reflection of a receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ReflectionEntry {
     /// Width of the lobe, as Beckmann's alpha.
     pub roughness: f64,
     /// Linear light of the surroundings that it reflects.
     pub surroundings: [f32; 3],
-    /// What the toy's is above it.
+    /// Light of the toy less that of the surroundings.
     pub toy_above_surroundings: [f32; 3],
 }
 
@@ -154,17 +154,17 @@ impl From<Sharpness> for SharpnessEntry {
     }
 }
 
-/// How glossy a toy is.
+/// Gloss of a toy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GlossEntry {
-    /// Of its surface: root mean square slope of its facets, times the square root of 2.
+    /// Roughness of its surface: root mean square slope of its facets, times the square root of 2.
     pub roughness: f32,
-    /// Of each of its first materials, the reflectance over that of smooth plastic.
+    /// Reflectance of each of its first materials, relative to smooth plastic.
     pub strengths: [f32; N_GLOSSES],
 }
 
 impl GlossEntry {
-    /// None of a matt toy.
+    /// The entry of a toy; `None` if it is matt.
     #[must_use]
     pub fn of(gloss: &Gloss) -> Option<Self> {
         let Gloss { roughness, strengths } = *gloss;

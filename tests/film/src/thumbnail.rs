@@ -33,7 +33,8 @@ impl Stand {
     /// A volume around the toy in all of `poses`.
     ///
     /// # Errors
-    /// When a pose is none of the toy's.
+    ///
+    /// Fails if a pose does not fit the toy.
     pub fn new(toy: &Toy, poses: &[Pose]) -> Result<Self, ToyError> {
         let view_from_object =
             DMat4::from_rotation_x(PITCH_DEG.to_radians()) * DMat4::from_rotation_y(YAW_DEG.to_radians());
@@ -57,7 +58,8 @@ impl Stand {
     /// Draws a pose, as large as fits a square.
     ///
     /// # Errors
-    /// When the pose is none of the toy's.
+    ///
+    /// Fails if the pose does not fit the toy.
     pub fn draw(&self, toy: &Toy, pose: &Pose, side_px: u32) -> Result<RgbImage, ToyError> {
         let mut posed = PosedMesh::default();
         toy.pose(pose, &self.view_from_object, &mut posed)?;

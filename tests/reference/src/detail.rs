@@ -20,7 +20,7 @@ const LIT: f64 = 0.98;
 /// The evidence of a receiver pixel clear of the toy, with a photographed plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
-    /// Which receiver.
+    /// Index of the receiver.
     pub receiver: usize,
     /// The model's remaining light, in plates.
     pub model: DVec3,

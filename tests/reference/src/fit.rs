@@ -84,7 +84,7 @@ pub struct ReceiverSample {
     pub ambient: f64,
     /// Visibility of each light.
     pub visibility: DVec4,
-    /// What the receiver reflects, over the gain.
+    /// Light that the receiver reflects, relative to the gain.
     pub reflected: DVec3,
 }
 
@@ -167,7 +167,7 @@ fn receiver_equations(
         let total = before.plate_falloff(region, sample.point)[channel];
         let plane = region.plane_of(sample.point);
         let ambient = sample.ambient;
-        // As bright as in shadow, as far as such a pixel is reliable.
+        // Such a pixel counts as equally bright in shadow, as far as it is reliable.
         let visibility = match is_clipped(frame, plate) {
             true => DVec4::ZERO,
             false => sample.visibility,
@@ -207,7 +207,7 @@ fn receiver_priors(region: &Region, receiver: usize, before: &Solution, channel:
         (to_light.normalize().y / falloff).max(0.0)
     };
     if receiver == 0 {
-        // As if all had the same intensity at one metre.
+        // All lights count as if they had the same intensity at one metre.
         let each = (0..n_lights).map(|i| irradiance(&region.receivers[0], i));
         let total: f64 = each.clone().sum();
         let direct_fractions = each.map(|one| PRIOR_DIRECT_FRACTION * one / total);
@@ -330,7 +330,8 @@ pub struct ToySample {
     pub normal: DVec3,
     /// Cosine to each light times its visibility.
     pub received: DVec4,
-    /// What a glossy surface reflects of each unknown's light, at the plate's level; empty of a matt one.
+    /// Reflection of a glossy surface for each unknown's light, at the plate's level; empty if it
+    /// is matt.
     pub reflected: Vec<f64>,
 }
 

@@ -29,7 +29,7 @@ pub struct Region {
     pub border_px: [f64; 4],
     /// Homogeneous, in anchor space: (position, 1) or (unit direction to the light, 0).
     pub lights: Vec<DVec4>,
-    /// How the first receiver reflects; none where it is matt.
+    /// Reflection of the first receiver; `None` if it is matt.
     pub reflection: Option<Reflection>,
 }
 
@@ -51,7 +51,7 @@ pub struct ReceiverPlane {
 /// A point of a receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReceiverPoint {
-    /// Which receiver.
+    /// Index of the receiver.
     pub receiver: usize,
     /// (x, z) in its plane space.
     pub in_plane: DVec2,

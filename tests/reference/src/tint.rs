@@ -18,7 +18,7 @@ const FULL_PIXELS: f64 = 16.0;
 pub struct SeenPaint {
     /// The point of the physical toy, in metres.
     pub in_anchor: DVec3,
-    /// Which of the toy's materials.
+    /// Index of the toy's material.
     pub material: usize,
     /// The pixel's colour, linear.
     pub shown: DVec3,
@@ -103,7 +103,8 @@ pub fn tints(grid: &TintGrid, seen: &[SeenPaint]) -> Vec<Volume> {
 fn pooled<'a>(seen: impl Iterator<Item = &'a SeenPaint>) -> DVec4 {
     let (mut shown, mut expected, mut n_pixels) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for paint in seen {
-        // As if each pixel also had an amount too dark to measure, exactly as expected.
+        // The sums include a constant, as if each pixel also had an amount too dark to measure,
+        // exactly as expected.
         shown += paint.shown + DARKEST_USABLE;
         expected += paint.expected.min(DVec3::splat(MOST_EXPECTED)) + DARKEST_USABLE;
         n_pixels += 1.0;

@@ -341,7 +341,7 @@ fn a_camera_that_moves_is_refused_and_the_sharpest_is_taken_at_last() {
                 assert!(off < 1.2, "{off}: not the sharpest");
                 return;
             }
-            // Those after the sharp one are blurred in comparison.
+            // The pictures after the sharp one are blurred in comparison.
             step => {
                 n_moving += u32::from(matches!(
                     refusal(&step),

@@ -1,4 +1,4 @@
-//! How a can is turned shows in its dots alone: its outline is the same from all sides.
+//! The turn of a can is visible in its dots alone: its outline is the same from all sides.
 
 use app_core::alignment::{Aligner, Alignment};
 use glam::{DMat4, DVec2, DVec3};

@@ -50,7 +50,7 @@ fn a_page_states_its_size_and_the_crosses_are_where_a_ruler_finds_them() {
         // Centres of the black columns and rows through each cross.
         let found = paper.crosses_m().map(|cross| {
             let dot = |at: f64| (at * f64::from(dots)).floor() as usize;
-            // Beside the centre, where only one of the two lines is.
+            // A row beside the centre, with only one of the two lines.
             let middle = |is_across: bool| {
                 let black = (0..80).map(|i| i + dot(if is_across { cross.x } else { cross.y }) - 40);
                 let off = dot(if is_across { cross.y } else { cross.x } + 0.003);

@@ -85,7 +85,7 @@ fn part_of_each_pixel() {
     }
 }
 
-/// As `fast` samples it.
+/// These are the samples of `fast`.
 #[test]
 fn part_of_each_pixel_by_sixteen_positions() {
     let stand = Stand::new(SETUPS[0]);

@@ -108,7 +108,7 @@ fn texels_of_hidden_sides(stand: &Stand) -> Vec<UVec2> {
 /// Sides of the toy that the camera never saw are dimmed with the light to which they turn.
 #[test]
 fn hidden_sides_of_the_toy_follow_a_light() {
-    // Such that the head turns its hidden side to camera and light.
+    // The head turns its hidden side to camera and light.
     let stand = Stand::seen_from(
         Setup {
             image_px: UVec2::new(391, 263),

@@ -21,7 +21,8 @@ use crate::stand::Stand;
 /// Along the outline of one light point's shadow, one texel in some 200 has a sample that close to it; outlines of 64
 /// light points are some 10^3 texels long in a region of 10^4. Measured: 0.09 %.
 const MAX_LIGHT_SHARE: f64 = 0.005;
-/// The same for a coarse ambient map, where the outlines of 64 directions cross most texels. Measured: 1.3 %.
+/// The same for a coarse ambient map, in which the outlines of 64 directions cross most texels.
+/// Measured: 1.3 %.
 const MAX_AMBIENT_SHARE: f64 = 0.03;
 /// Light points that may fall on the other side of an edge in one texel. Measured: 1, and 2 of 32 before a wall.
 const MAX_POINTS: f64 = 2.0;

@@ -151,7 +151,7 @@ fn a_warm_up_on_another_thread_leaves_nothing_to_compile() {
         .unwrap();
     let mut first = FrameInput::from(&session.frame(0).unwrap());
     let pixels = first.image.rgba().clone();
-    // As a phone delivers it: the pipelines for pixels are compiled when the first come.
+    // A phone delivers planes: the pipelines for pixels are compiled when the first ones come.
     first.image = as_planes(&pixels);
     traced.core.frame(&first).unwrap();
     assert_eq!(traced.given().n_created("Pipeline"), 0);

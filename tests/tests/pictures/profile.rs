@@ -37,7 +37,7 @@ fn a_profile_is_a_trace_whose_scopes_lie_within_their_frames() {
             frame.dur
         );
     }
-    // As any reader of JSON sees it, by the names of the format.
+    // The file as any reader of JSON sees it, by the names of the format.
     let text = serde_json::to_string(&profile).unwrap();
     let value: Value = serde_json::from_str(&text).unwrap();
     let events = value["traceEvents"].as_array().unwrap();

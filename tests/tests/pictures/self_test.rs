@@ -25,7 +25,7 @@ fn faults(picture: &Image) -> Vec<(&'static str, Image)> {
     let photograph = self_test::photograph().unwrap();
     let is_shadow = |x, y| {
         let [before, after] = [at(&photograph, x, y), at(picture, x, y)];
-        // Darker than the photograph, where the table was lit.
+        // The code is darker than in the photograph in a lit part of the table.
         before
             .iter()
             .zip(after)

@@ -85,8 +85,8 @@ pub struct Way {
     pub n_touches: u32,
     /// Time of the camera's pictures until then, in seconds: a thread's work takes none of it here.
     pub camera_s: f64,
-    /// What threads and pictures took on this machine, in seconds: from the toy that was put down to the first ghost, from there to the
-    /// end of the search, and from there to the toy that moves.
+    /// Time of threads and pictures on this machine, in seconds: from putting down the toy to the
+    /// first ghost, from there to the end of the search, and from there to the moving toy.
     pub machine_s: [f64; 3],
 }
 
@@ -123,9 +123,10 @@ impl<'a> Tour<'a> {
         Ok(self.written)
     }
 
-    /// Goes straight to the toy that moves.
+    /// Takes the shortest way to the moving toy.
     ///
     /// # Errors
+    ///
     /// When the app does not go where it should.
     pub fn straight(mut self) -> Result<Way, TourError> {
         self.desk.answer = Permission::Granted;

@@ -86,8 +86,8 @@ pub(crate) struct Comparison {
     pub(super) lamps: Vec<Lamp>,
 }
 
-/// Compares a level's pixels beside the toy with what given lights make of the plate; none where too little is seen, no plate shows the
-/// place, or no shadow of the lights does.
+/// Compares a level's pixels beside the toy with the expectation from the plate and given lights;
+/// `None` if too little is visible, or no plate or no shadow of the lights shows the place.
 pub(crate) fn compare(
     lights: &[Light],
     (shape, receivers): (&Shape, &[SeenReceiver]),

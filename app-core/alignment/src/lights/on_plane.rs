@@ -33,7 +33,7 @@ pub(crate) struct OnPlane<'a> {
 }
 
 impl<'a> OnPlane<'a> {
-    /// In the light of one of the compared receivers.
+    /// The light on one of the compared receivers.
     pub(crate) fn new(
         comparison: &'a Comparison,
         (shape, receivers): (&'a Shape, &[SeenReceiver]),
@@ -57,7 +57,8 @@ impl<'a> OnPlane<'a> {
         }
     }
 
-    /// Frame over plate of pixels, row by row, if they show a plane; `None` for a pixel that does not.
+    /// Ratio of frame to plate, pixel by pixel, row by row, if they show a plane; `None` for other
+    /// pixels.
     pub(crate) fn ratios(
         &self,
         raster: &mut Rasterizer,

@@ -14,12 +14,12 @@ use app_scene::sharpness::{Sharpness, Spread};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 
-/// What stands beside the toy.
+/// Things beside the toy.
 #[derive(Default)]
 pub(crate) struct Sighted {
-    /// None where nothing tells of any.
+    /// `None` if the pictures cannot show any.
     pub(crate) things: Option<Things>,
-    /// Planes that things have.
+    /// Planes of things.
     pub(crate) planes: Vec<FoundReceiver>,
 }
 
@@ -39,7 +39,8 @@ impl Photograph {
         }
     }
 
-    /// How the receiver that the toy stands on reflects, in given lights; none where the picture does not tell.
+    /// Reflection of the receiver below the toy, in given lights; `None` if the picture does not
+    /// constrain it.
     pub(crate) fn reflection(
         &self,
         scene: &Scene,
@@ -56,7 +57,7 @@ impl Photograph {
         ))
     }
 
-    /// As if the receiver that the toy stands on were matt.
+    /// The photograph as if the receiver below the toy were matt.
     pub(crate) fn freed_of(
         &self,
         scene: &Scene,
@@ -135,7 +136,7 @@ impl Photograph {
         })
     }
 
-    /// How glossy the toy is in its place, in given lights.
+    /// Gloss of the toy at its place, in given lights.
     pub(crate) fn gloss(
         &self,
         scene: &Scene,
@@ -150,7 +151,7 @@ impl Photograph {
         Ok(gloss::gloss(&gloss::Look::new(&shape, &surfels, &lights)))
     }
 
-    /// How soft it is, for given camera and pose.
+    /// Softness for given camera and pose.
     pub(crate) fn sharpness_as_given(
         &self,
         scene: &Scene,
@@ -162,7 +163,7 @@ impl Photograph {
         self.sharpness(scene, world_from_object, outline_px)
     }
 
-    /// The softness around a toy in its place, whose outline has the given blur in pixels; `None`
+    /// The softness around a toy at its place, whose outline has the given blur in pixels; `None`
     /// for an outline that was not measured.
     pub(crate) fn sharpness(
         &self,

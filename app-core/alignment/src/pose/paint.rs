@@ -91,7 +91,7 @@ impl Paint {
         Some(coverage.pixels().map(|at| shaded.at(at)).collect())
     }
 
-    /// What pixels show of the toy where it is given, with one of so many.
+    /// Pixels of the toy at its given place, at most `most` of them.
     pub(crate) fn surfels(&self, level: &Level, coverage: &Coverage, most: usize) -> Vec<Surfel> {
         let placement = Placement::of(RigidMotion::none(DVec3::ZERO, 1.0));
         let seen = self.seen(&placement, &level.intrinsics, coverage);
@@ -308,12 +308,12 @@ fn within(coverage: &Coverage) -> Vec<IVec2> {
     coverage.pixels().filter(is_within).collect()
 }
 
-/// What a pixel shows of the toy.
+/// A visible pixel of the toy.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surfel {
     /// By the photograph.
     pub(crate) shown: Color,
-    /// Of the model's paint.
+    /// Colour of the model's paint.
     pub(crate) base: Color,
     /// Unit vector in camera space, as is the place.
     pub(crate) normal: DVec3,

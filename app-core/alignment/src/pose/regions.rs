@@ -87,7 +87,7 @@ pub(crate) fn guesses(shape: &Shape, level: &Level, directions: &[ViewDirection]
 pub(crate) struct Standing {
     /// A point of the plane.
     pub(crate) point: DVec3,
-    /// Of unit length.
+    /// Unit normal.
     pub(crate) normal: DVec3,
 }
 

@@ -1,4 +1,4 @@
-//! Colours of a toy's textures, as a pixel shows them.
+//! Colours of a toy's textures at the size of a pixel.
 
 use glam::DVec2;
 
@@ -10,14 +10,15 @@ pub(super) fn texture_size(texture: &Texture) -> DVec2 {
     DVec2::new(f64::from(texture.width_px), f64::from(texture.height_px))
 }
 
-/// Mean of some texels around a place, in linear light, over a square of a side in texels; (0, 0) is the corner of the first texel.
+/// Mean of texels around a place, in linear light, over a square with this side in texels; (0, 0)
+/// is the corner of the first texel.
 pub(super) fn mean_texel(
     texture: &Texture,
     linear: &[f32; 256],
     (uv, wraps): (DVec2, [Wrap; 2]),
     side: f64,
 ) -> Color {
-    /// Along each side of the square: more texels would hardly change the mean.
+    /// Maximum number of texels along each side of the square: more would hardly change the mean.
     const MOST_TEXELS: f64 = 4.0;
     let size = texture_size(texture);
     let n = side.min(MOST_TEXELS).round();

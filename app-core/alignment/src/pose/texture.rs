@@ -36,7 +36,7 @@ const LEAST_IN_CELL: usize = 6;
 /// More points than that add nothing; fewer than the second number determine nothing.
 const MOST_POINTS: usize = 3000;
 const LEAST_POINTS: usize = 60;
-/// The model's logarithm changes by less than that within the spread where it has no texture.
+/// Smallest change of the model's logarithm within the spread that counts as texture.
 const LEAST_CHANGE: f64 = 0.03;
 /// Scale of the robust weights, in deviations; and the least deviation of a logarithm: models are painted from other photographs.
 const ROBUST: f64 = 3.0;
@@ -82,42 +82,42 @@ struct Point {
     gradients: [DVec2; 3],
 }
 
-/// One number of the picture that should be that of the model.
+/// A number of the picture that should agree with the model's.
 pub(super) struct Row {
     pub(super) at_px: DVec2,
-    /// How much each unknown changes.
+    /// Derivative for each unknown.
     pub(super) row: Unknowns,
-    /// How much is left to change.
+    /// Remaining difference.
     pub(super) residual: f64,
     pub(super) weight: f64,
 }
 
-/// How well a model's paint fits a picture.
+/// Agreement of a model's paint with a picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Likeness {
     /// Mean robust loss of the logarithms.
     loss: f64,
     area_px2: f64,
-    /// Of model and picture within the cells.
+    /// Correlation of model and picture within the cells.
     pub(super) correlation: f64,
 }
 
 impl Likeness {
-    /// Logarithm of how much likelier the picture is with this placement than with another one.
+    /// Log likelihood ratio of the picture for this placement against another one.
     pub(super) fn likelier_than(&self, other: &Self) -> f64 {
         let least = LEAST_DEVIATION * LEAST_DEVIATION;
         let n = self.area_px2.min(other.area_px2) / ALIKE_PX2;
         0.5 * n * (other.loss.max(least) / self.loss.max(least)).ln()
     }
 
-    /// Whether the model's paint is what the picture shows.
+    /// Whether the picture shows the model's paint.
     pub(super) fn is_of_model(&self) -> bool {
         self.correlation > LEAST_CORRELATION
     }
 }
 
 impl Texture {
-    /// Of a toy about where it is; none if it has no texture there.
+    /// The texture of a toy near its estimated place; `None` if it has no texture there.
     pub(super) fn new(shaded: &Shaded<'_>, level: &Level, coverage: &Coverage) -> Option<Self> {
         let of_toy = |color: &dyn Fn(IVec2) -> Option<Color>| {
             let pixels = coverage.pixels().map(|at| color(at).unwrap_or(UNKNOWN));
@@ -151,13 +151,13 @@ impl Texture {
         (!layers.is_empty()).then_some(Self { layers })
     }
 
-    /// How far the picture is from the model at a placement, as sharp as a round has it.
+    /// Differences between picture and model at a placement, with the sharpness of a round.
     pub(super) fn rows(&self, round: usize, placement: &Placement, k: &Intrinsics) -> Vec<Row> {
         let layer = &self.layers[(round / N_ROUNDS).min(self.layers.len() - 1)];
         Compared::new(layer, placement, k).rows(placement, k)
     }
 
-    /// How well the narrowest spread fits; none if too little of it is seen.
+    /// Agreement at the narrowest spread; `None` if too little of it is visible.
     pub(super) fn likeness(&self, placement: &Placement, k: &Intrinsics) -> Option<Likeness> {
         Compared::new(self.layers.last()?, placement, k).likeness()
     }
@@ -184,7 +184,7 @@ fn logarithms(picture: &Picture, spread_px: f64) -> Picture {
 }
 
 impl Layer {
-    /// Points with texture, and no picture yet; none if they are too few.
+    /// Points with texture, without a picture; `None` if there are too few.
     fn new(spread_px: f64, (model, shaded): (&Template, &Shaded<'_>), corner_px: IVec2) -> Option<Self> {
         #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
         let cell_px = (f64::from(CELL_PX) * spread_px.max(1.0)) as i32;
@@ -219,7 +219,7 @@ impl Layer {
     }
 }
 
-/// The point of the toy that a pixel of the model shows; none where it has no texture.
+/// The point of the toy at a pixel of the model; `None` if it has no texture.
 fn point(
     model: &Template,
     place: IVec2,
@@ -250,12 +250,13 @@ fn point(
     })
 }
 
-/// Points against the picture where a placement has them.
+/// Points compared with the picture at a placement.
 struct Compared<'a> {
     layer: &'a Layer,
-    /// Of the picture over the model, as a logarithm, less the gain of the cell; none where the picture is not known.
+    /// Logarithm of picture over model, less the gain of the cell; `None` for unknown pixels of the
+    /// picture.
     excess: Vec<Option<[f64; 3]>>,
-    /// Where the points are in the picture.
+    /// Positions of the points in the picture.
     at_px: Vec<DVec2>,
     weights: Vec<[f64; 3]>,
     variance: f64,
@@ -284,7 +285,7 @@ impl<'a> Compared<'a> {
         compared
     }
 
-    /// Takes the mean of each cell out of the excess.
+    /// Subtracts the mean of each cell from the excess.
     fn take_gains(&mut self) {
         let means = self.means(|index, channel| self.excess[index].map_or(0.0, |excess| excess[channel]));
         for (excess, point) in self.excess.iter_mut().zip(&self.layer.points) {
@@ -296,7 +297,7 @@ impl<'a> Compared<'a> {
         }
     }
 
-    /// Mean over each cell and channel, by the weights, of what each point has.
+    /// Weighted means over each cell and channel of values of the points.
     fn means<T>(&self, of: impl Fn(usize, usize) -> T) -> Vec<[T; 3]>
     where
         T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T> + Default,
@@ -321,7 +322,7 @@ impl<'a> Compared<'a> {
         sums.into_iter().map(|cell| cell.map(mean)).collect()
     }
 
-    /// Weights by how far each value is from most.
+    /// Sets weights from each value's distance from the majority.
     fn weigh(&mut self) {
         let mut away: Vec<f64> = self
             .excess
@@ -399,7 +400,8 @@ impl<'a> Compared<'a> {
     }
 }
 
-/// How much the logarithm of the paint changes at a fixed place of the picture for each unknown, if the toy's point moves over a gradient.
+/// Change of the paint's logarithm at a fixed place of the picture for each unknown, if the toy's
+/// point moves over a gradient.
 fn change(placement: &Placement, given: DVec3, gradient: DVec2, k: &Intrinsics) -> Unknowns {
     let now = placement.apply(given);
     let depth_m = -now.z;

@@ -71,7 +71,7 @@ pub(crate) struct Sight<'a> {
     pub(crate) pyramid: &'a Pyramid,
     pub(crate) lights: &'a [Light],
     pub(crate) world_from_camera: &'a DMat4,
-    /// Whether planes of things are searched.
+    /// Whether planes of things are searched for.
     pub(crate) wants_planes: bool,
 }
 
@@ -232,9 +232,9 @@ impl Sight<'_> {
             .unwrap_or(self.pyramid.level(Pyramid::SMALLEST))
     }
 
-    /// For each pixel of a level, whether it is in a thing but shows another receiver than the
-    /// thing stands on, where the thing has few seeds: for example the top of a book that is a
-    /// receiver, in contrast to its sides.
+    /// For each pixel of a level, whether it is in a part of a thing with few seeds, but shows
+    /// another receiver than the thing stands on: for example the top of a book that is a receiver,
+    /// in contrast to its sides.
     fn on_planes(&self, (grown, seeds): (&Grown, &Seeds), level: &Level, before: &[bool]) -> Vec<bool> {
         let mut counts = vec![[[0; 2]; MAX_RECEIVERS]; before.len()];
         let pixels: Vec<Option<(usize, usize)>> = places(level.frame.size_px)

@@ -38,7 +38,7 @@ const LEAST_LEFT: f64 = 3e-4;
 const SAME_M: f64 = 0.012;
 /// The receiver nearest to the toy, which stands on it.
 const GROUND: usize = 0;
-/// A level plane wins if its loss is at most so many times a tilted plane's, plus a constant.
+/// A level plane wins if its loss is at most this factor times a tilted plane's, plus a constant.
 const LEVEL_TIMES: f64 = 1.3;
 const LEVEL_MORE: f64 = 1e-4;
 /// Least and largest depth of the shadow over the expected one, and rounds of its estimate.
@@ -49,7 +49,7 @@ const HEIGHTS: (f64, f64, usize) = (-0.03, 0.03, 24);
 /// Slopes of the first search, and the directions of each.
 const SLOPES: [f64; 2] = [0.1, 0.22];
 const N_SIDES: usize = 8;
-/// Steepest slope, and how far below the receiver a plane may reach, in metres.
+/// Steepest slope, and largest depth of a plane below the receiver, in metres.
 const STEEPEST: f64 = 0.6;
 const BELOW_M: f64 = 0.004;
 /// Starts of the descents, their first steps over the toy's radius, and the tries of each.
@@ -62,13 +62,14 @@ const CELL_PX: f64 = 0.7;
 /// A plane with its extent and its evidence.
 pub(crate) struct FoundPlane {
     pub(crate) plane: SeenReceiver,
-    /// Index of the receiver that it replaces: one above the toy's ground that is listed slightly off.
+    /// Index of the receiver that it replaces: one above the toy's ground that is listed slightly
+    /// off.
     pub(crate) instead_of: Option<usize>,
     pub(crate) report: PlaneAlignment,
 }
 
 impl FoundPlane {
-    /// Whether its middle is close to a receiver.
+    /// Whether its centre is close to a receiver.
     fn is_near(&self, receiver: &SeenReceiver) -> bool {
         let middle = self.plane.plane_from_camera.inverse().w_axis.truncate();
         receiver.plane_from_camera.transform_point3(middle).y.abs() < SAME_M
@@ -127,7 +128,7 @@ fn most_on(pixels: &[&Compared]) -> Option<usize> {
     (0..counts.len()).max_by_key(|on| counts[*on])
 }
 
-/// Searches a thing's plane, first by all of its pixels, then by those of its upper side.
+/// Searches for a thing's plane, first with all of its pixels, then with those of its upper side.
 fn found(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     let raster = &mut Rasterizer::default();
     let first = search.best_plane(raster)?;
@@ -159,7 +160,7 @@ struct Candidate {
     is_level: bool,
 }
 
-/// Parameters of a plane, in metres: its height above the receiver in the thing's middle, and its
+/// Parameters of a plane, in metres: its height above the receiver at the thing's centre, and its
 /// rise over the thing's size along either axis.
 type Heights = [f64; 3];
 
@@ -168,7 +169,7 @@ struct Search<'a> {
     on_plane: OnPlane<'a>,
     table: &'a SeenReceiver,
     intrinsics: Intrinsics,
-    /// Every so many pixels one is sampled.
+    /// Sampling stride of the pixels.
     apart: usize,
     pixels: Vec<IVec2>,
     seen: Vec<(Color, f32)>,
@@ -332,8 +333,8 @@ impl<'a> Search<'a> {
         losses.sum::<f64>() / self.seen.len().max(1) as f64
     }
 
-    /// Depth of the shadow over the prediction, which is uncertain if the receiver shows little of the
-    /// shadow.
+    /// Depth of the shadow over the prediction, which is uncertain if the receiver shows little of
+    /// it.
     fn depth(&self, expected: &[Option<Color>]) -> f64 {
         let mut depth = 1.0;
         for _ in 0..N_ROUNDS {
@@ -373,8 +374,8 @@ fn keep<T>(values: &mut Vec<T>, marks: &[bool]) {
     values.retain(|_| marks.next().is_some_and(|is_kept| *is_kept));
 }
 
-/// Squared difference between photograph and prediction, its shadow scaled by a depth, less the
-/// noise's.
+/// Squared difference between photograph and prediction, with a scaled shadow, less the squared
+/// noise.
 fn square((ratio, noise): &(Color, f32), expected: Color, depth: f64) -> f64 {
     let squares = (0..3).map(|channel| {
         let expected = 1.0 - depth * f64::from(1.0 - expected[channel]);

@@ -388,8 +388,8 @@ impl App {
         }
     }
 
-    /// Starts the question about the toy's place: a toy that was just put down is searched, and one
-    /// that was seen before is placed by hand.
+    /// Starts the question about the toy's place: the app searches for a toy that was just put
+    /// down, and the person places one that was detected before.
     fn enter_ghost(&mut self, cause: Cause) {
         let place = self.place.take();
         match cause {

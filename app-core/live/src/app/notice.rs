@@ -39,7 +39,7 @@ pub enum Notice {
     WorldLost,
     /// Graphics had to be set up again.
     DeviceRestarted,
-    /// A panic ended the app, and it began anew.
+    /// A panic ended the app, and it started again.
     Restarted,
     /// A photo, a video or a shared file was saved.
     Saved(Saved),

@@ -99,7 +99,7 @@ pub(super) struct Asked {
     pub(super) card: bool,
 }
 
-/// State that the shell was told to keep until the next request.
+/// Requested state of the shell, which holds until the next request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Commanded {
     tracking: bool,
@@ -137,7 +137,7 @@ impl Commanded {
         }
     }
 
-    /// Whether the camera was told to run.
+    /// Whether the camera must run.
     pub(super) fn is_tracking(&self) -> bool {
         self.tracking
     }

@@ -57,7 +57,7 @@ words! {
     PUT_TOY_HINT: "Where you like on the table, then take your hand away.", "Wohin du magst auf dem Tisch, dann nimm die Hand weg.";
     TAP_TOY_HINT: "It is not seen yet. Tap it in the picture.", "Noch ist es nicht zu sehen. Tippe es im Bild an.";
     LOOKING: "One moment", "Einen Moment";
-    LOOKING_HINT: "The toy is looked for.", "Das Spielzeug wird gesucht.";
+    LOOKING_HINT: "Searching for the toy.", "Das Spielzeug wird gesucht.";
     ASK: "Is it on your toy?", "Liegt es auf dem Spielzeug?";
     ASK_SEARCHING: "It may still get better.", "Es wird vielleicht noch besser.";
     ASK_HINT: "If not, turn it.", "Wenn nicht, dreh es.";
@@ -72,7 +72,7 @@ words! {
     CAMERA_BARRED_HINT: "Allow it in the system's settings, then come back.", "Erlaube sie in den Einstellungen und komm zurück.";
     TOO_HOT: "The phone is too hot", "Das Telefon ist zu heiß";
     TOO_HOT_HINT: "Let it cool down. It goes on by itself.", "Lass es abkühlen. Es geht von selbst weiter.";
-    INSTALLING_HINT: "What this phone needs for AR is looked for.", "Was das Telefon für AR braucht, wird gesucht.";
+    INSTALLING_HINT: "This phone's AR services are being checked.", "Was das Telefon für AR braucht, wird gesucht.";
     INTERRUPTED: "The camera is in use elsewhere", "Die Kamera ist anderswo in Gebrauch";
     INTERRUPTED_HINT: "It goes on here when that has ended.", "Hier geht es weiter, wenn das endet.";
     AR_FAILED: "Tracking has stopped", "Die Verfolgung ist zu Ende";
@@ -94,13 +94,13 @@ words! {
     ONE_LIGHT: "The lens shows one light.", "Die Linse zeigt ein Licht.";
     N_LIGHTS: "The lens shows {} lights.", "Die Linse zeigt {} Lichter.";
     LENS_NOT_DARK: "This camera cannot be darkened for the lens. Lights are found by the shadow.", "Diese Kamera lässt sich für die Linse nicht abdunkeln. Der Schatten zeigt die Lichter.";
-    LENS_NO_LIGHT: "No light is seen on the lens. Lights are found by the shadow.", "Auf der Linse ist kein Licht zu sehen. Der Schatten zeigt die Lichter.";
+    LENS_NO_LIGHT: "The lens shows no light. Lights are found by the shadow.", "Auf der Linse ist kein Licht zu sehen. Der Schatten zeigt die Lichter.";
     LENS_NOT_SEEN: "The lens is not in the picture. Show the whole card.", "Die Linse ist nicht im Bild. Zeig die ganze Karte.";
     CARD_REFUSED: "This phone cannot look for the card. Go on without it.", "Dieses Telefon kann die Karte nicht suchen. Es geht auch ohne.";
     TOY_REFUSED: "This file is no toy for this app: {}", "Diese Datei ist kein Spielzeug für die App: {}";
     WORLD_LOST: "The phone has lost the place. Show the table again.", "Das Telefon hat den Ort verloren. Zeig wieder den Tisch.";
     DEVICE_RESTARTED: "Graphics were set up again.", "Die Grafik wurde neu eingerichtet.";
-    RESTARTED: "Something went wrong inside the app, so it began anew. What was recorded is kept.", "In der App ging etwas schief, also beginnt sie neu. Aufgenommenes bleibt erhalten.";
+    RESTARTED: "Something went wrong inside the app, so it started again. Recordings are kept.", "In der App ging etwas schief, also beginnt sie neu. Aufgenommenes bleibt erhalten.";
     SAVED: "Saved.", "Gesichert.";
     SAVED_NO_ROOM: "Not saved: there is no room left.", "Nicht gesichert: Es ist kein Platz mehr.";
     SAVED_NOT_ALLOWED: "Not saved: the system does not allow it.", "Nicht gesichert: Das System erlaubt es nicht.";
@@ -120,7 +120,7 @@ words! {
     ENDED_FAILED: "It cannot be written: {}. ", "Sie lässt sich nicht schreiben: {}. ";
     GUESSED: "The shadow is a guess: no light was found, since {}.", "Der Schatten ist geschätzt, denn kein Licht wurde gefunden: {}.";
     FITTED: "Fitted to {} pixels", "Auf {} Pixel genau";
-    LITTLE_SEEN: "Too little of the toy is seen to check where it is.", "Vom Spielzeug ist zu wenig zu sehen, um es zu prüfen.";
+    LITTLE_SEEN: "Too little of the toy is visible to check its place.", "Vom Spielzeug ist zu wenig zu sehen, um es zu prüfen.";
     TOY_LOST: "Looking for the toy ({} pixels off)", "Das Spielzeug wird gesucht ({} Pixel daneben)";
     NOT_FITTED: "It could not be fitted: {}", "Es ließ sich nicht einpassen: {}";
     ASK_AXES: "Does green point up, do red and blue lie on the table, and do all stay in their place as you walk around them?", "Zeigt Grün nach oben, liegen Rot und Blau auf dem Tisch, und bleiben alle am Platz, wenn du herumgehst?";

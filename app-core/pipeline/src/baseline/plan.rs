@@ -14,8 +14,8 @@ pub(crate) struct BaselinePlan {
     pub(crate) n_lights: u32,
     /// Number of receivers, each of which is retargeted separately.
     pub(crate) n_receivers: u32,
-    /// Number of non-empty sets of these lights. Where the shadows of a set overlap, they have an
-    /// appearance of their own.
+    /// Number of non-empty sets of these lights. If the shadows of a set overlap, the overlap has
+    /// an appearance of its own.
     pub(crate) n_sets: u32,
     /// Whether the shadow has a constant strength and is not sampled.
     pub(crate) is_constant: bool,

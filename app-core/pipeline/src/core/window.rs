@@ -51,7 +51,7 @@ impl Window {
         let opened = gpu.opened.as_ref();
         let adapter = opened
             .and_then(|opened| opened.adapter.as_ref())
-            .ok_or_else(|| failed("the device was opened by the caller, who presents by itself"))?;
+            .ok_or_else(|| failed("the caller has opened the device, and must present the picture itself"))?;
         let config = surface
             .get_default_config(adapter, width.max(1), height.max(1))
             .ok_or_else(|| failed("the adapter offers no configuration for it"))?;

@@ -135,7 +135,7 @@ impl Warning {
     fn words(&self) -> Option<&'static str> {
         Some(match self {
             Self::NoLight { has_ambient: true } => {
-                "no light is known: the shadow is made of light from all around, as far as the real one shows it; list a light, photograph a lens, or show more of the real shadow"
+                "no light is known: the new shadow is that of ambient light, as strong as in the picture; list a light, photograph a lens, or show more of the real shadow"
             }
             Self::NoLight { has_ambient: false } => {
                 "no light is known: no new shadow is drawn; list a light, photograph a lens, or show more of the real shadow"
@@ -148,11 +148,11 @@ impl Warning {
                 "the camera is not above the receiver: the camera frame passes through"
             }
             Self::NothingToSample => {
-                "no umbra of the real shadow is seen: no new shadow is drawn, for want of samples"
+                "no umbra of the real shadow is visible: no new shadow is drawn, since there is nothing to sample; show more of the real shadow"
             }
             Self::OutOfPicture => "the toy and its shadow are out of the picture",
             Self::ToyOutOfPicture => {
-                "the real toy is out of the picture: its colours are those of its model where no picture has shown them; turn the camera to it, or check its pose"
+                "the real toy is out of the picture: surfaces that no picture has shown have the colours of its model; turn the camera to it, or check its pose"
             }
             _ => return None,
         })
@@ -167,7 +167,7 @@ impl fmt::Display for Warning {
         match self {
             Self::PlatePartial { fraction } => write!(
                 f,
-                "the plates show {:.0} % of what is worked on: the rest is estimated, or stays as it is with a preset that needs a plate",
+                "the plates show {:.0} % of the work region: the rest is estimated, or stays unchanged if the preset needs a plate",
                 // Rounded down, since 100 % must mean that nothing is missing.
                 (100.0 * fraction).floor()
             ),
@@ -184,29 +184,29 @@ impl fmt::Display for Warning {
             }
             Self::LightsBelowReceivers { lights } => write!(
                 f,
-                "left out, since they stand above none of the receivers: {}",
+                "lights that are not above any receiver are ignored: {}",
                 lights_in_words(lights)
             ),
             Self::LightsInsideToy { lights } => write!(
                 f,
-                "{} would stand inside the real toy, which lets no light out: check where lights and toy stand",
+                "{} would be inside the real toy, which blocks all light: check the places of lights and toy",
                 lights_in_words(lights)
             ),
             Self::TooGlossy { roughness, strength } => too_glossy(f, (*roughness, *strength)),
             Self::AmbientAlone { strength } => ambient_alone(f, *strength),
             Self::FaintShadow { assumed } => write!(
                 f,
-                "little real shadow is seen: {:.0} % of the strength of the new one is assumed; show more of it, from higher up or from closer by",
+                "little of the real shadow is visible: {:.0} % of the strength of the new one is assumed; show more of it, from higher up or from a shorter distance",
                 100.0 * assumed
             ),
             Self::SmallShadow { n_pixels } => write!(
                 f,
-                "the real shadow is seen on {n_pixels:.0} pixels alone: the strength of the new one is uncertain; show more of it, from higher up or from closer by"
+                "the real shadow is visible on only {n_pixels:.0} pixels: the strength of the new one is uncertain; show more of it, from higher up or from a shorter distance"
             ),
             Self::BounceAtLimit { is_black } => f.write_str(bounce_at_limit(*is_black)),
             Self::LightsUnderConstrained { lights } => write!(
                 f,
-                "the real shadow does not tell the strength of {} by itself: lights are taken to be alike",
+                "the real shadow does not constrain the strength of {} separately: the lights are assumed to be equal",
                 lights_in_words(lights)
             ),
             Self::ShadowsUnseen { unseen } => shadows_unseen(f, unseen),
@@ -252,16 +252,16 @@ impl Serialize for Warning {
 fn shadows_unseen(f: &mut fmt::Formatter<'_>, unseen: &[UnseenShadow]) -> fmt::Result {
     write!(
         f,
-        "no real shadow is seen of {}: the new one there has the shade of others",
+        "no real shadow of {} is visible: the new one there has the shade of the others",
         listed(unseen, ", ")
     )
 }
 
 fn bounce_at_limit(is_black: bool) -> &'static str {
     if is_black {
-        "the table beside the toy is darker than beside a black one: a tone curve or HDR of the camera, or a light that is not listed; the new shadow may be too dark"
+        "the table beside the toy is darker than beside a black one: possible causes are a tone curve or HDR of the camera, or a light that is not listed; the new shadow may be too dark"
     } else {
-        "the table beside the toy is brighter than beside a white one: a bright thing nearby, or gloss; the new shadow may be too light"
+        "the table beside the toy is brighter than beside a white one: possible causes are a bright thing nearby, or gloss; the new shadow may be too light"
     }
 }
 
@@ -282,12 +282,12 @@ fn mirror_like(f: &mut fmt::Formatter<'_>, roughness: f64) -> fmt::Result {
 fn ambient_alone(f: &mut fmt::Formatter<'_>, strength: f32) -> fmt::Result {
     if strength <= 0.0 {
         return f.write_str(
-            "the real picture shows no shadow of light from all around: none is drawn where no light is known",
+            "no light is known, and the real picture shows no shadow of ambient light: no new shadow is drawn",
         );
     }
     write!(
         f,
-        "where no light is known the new shadow is that of light from all around: {:.0} % of the light is taken for such, by the real shadow",
+        "no light is known: the new shadow is that of ambient light, which is {:.0} % of the light according to the real shadow",
         100.0 * strength
     )
 }
@@ -299,7 +299,7 @@ fn too_much(
 ) -> fmt::Result {
     write!(
         f,
-        "a new view would take {triangles} triangles over {covered_px:.2e} pixels, which is too much{and}"
+        "a new view would draw {triangles} triangles over {covered_px:.2e} pixels, which exceeds the budget{and}"
     )
 }
 
@@ -348,7 +348,7 @@ impl fmt::Display for Outlier {
             Self::Object => {
                 "something that the plate does not show lies on the receiver: it stays as photographed"
             }
-            Self::Shadow => "a shadow is there that no listed light casts: it stays as photographed",
+            Self::Shadow => "a shadow is visible that no listed light casts: it stays as photographed",
         })
     }
 }
@@ -368,10 +368,10 @@ impl fmt::Display for Thing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::OnReceiver => {
-                "a thing stands where the shadow falls: it stays as photographed, without a new shadow; move it away, or list its top as a receiver if it is flat"
+                "a thing stands in the shadow's place: it stays as photographed, without a new shadow; move it away, or list its top as a receiver if it is flat"
             }
             Self::BeforeToy => {
-                "a thing stands before the toy: the toy is drawn behind it; the colours of what it hides are those of the toy's model"
+                "a thing stands before the toy: the toy is drawn behind it; its hidden parts have the colours of the model"
             }
             Self::InPlateAlone => {
                 "the plate shows something that the picture does not, such as the toy in another place or the shadow of a hand: that part of the plate is estimated; take the plate again"
@@ -416,7 +416,7 @@ impl fmt::Display for Mismatch {
         match self {
             Self::NoShadow { direct_fraction } => write!(
                 f,
-                "where the real shadow should be, the picture is as bright as the plate ({:.1} % is the lights'): check lights and toy, and whether a light is on",
+                "the picture shows no real shadow at its expected place: it is as bright as the plate there ({:.1} % of that is from the lights); check lights and toy, and whether a light is on",
                 100.0 * direct_fraction
             ),
             Self::ShadowUnreadable { fraction } => write!(
@@ -431,7 +431,7 @@ impl fmt::Display for Mismatch {
             ),
             Self::ToyNotSeen { fraction } => write!(
                 f,
-                "the picture shows the plate where the real toy should be ({:.0} % of it): check whether it is there, and its pose",
+                "the picture shows the plate at the place of the real toy ({:.0} % of it): check whether the toy is there, and its pose",
                 100.0 * fraction
             ),
             Self::RedAndBlueSwapped { times } => write!(

@@ -35,7 +35,7 @@ impl View {
             .truncate()
     }
 
-    /// Width of a pixel at a distance, in metres, where it is smallest.
+    /// Smallest width of a pixel at a distance, in metres.
     #[must_use]
     pub fn pixel_m(&self, distance_m: f64) -> f64 {
         distance_m / self.intrinsics.fx_px.max(self.intrinsics.fy_px)

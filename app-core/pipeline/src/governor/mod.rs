@@ -195,7 +195,7 @@ impl Governor {
         let is_slow = self.loads.median().is_some_and(|load| load > HIGH)
             || self.lates.mean().is_some_and(|late| late >= MANY_LATE[0]);
         let is_slow_at_end = is_slow && self.level == self.ladder.len();
-        // Every step that was taken for it begins the count anew.
+        // Every step for that reason restarts the count.
         let is_warm = thermal >= Thermal::Serious;
         for (frames, is_end) in self.end_frames.iter_mut().zip([is_slow_at_end, is_warm]) {
             *frames = if is_end { frames.saturating_add(1) } else { 0 };

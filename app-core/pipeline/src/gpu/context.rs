@@ -16,7 +16,7 @@ use super::samplers::Samplers;
 use super::shader::ShaderTexts;
 use super::uniforms::Uniforms;
 
-/// Which graphics adapter to use.
+/// Choice of the graphics adapter.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum AdapterChoice {
     /// The fastest one.
@@ -397,7 +397,7 @@ async fn find_adapter(
                 .into_iter()
                 .find(fits)
                 .ok_or_else(|| GpuError::NoAdapter {
-                    reason: format!("none is named \"{wanted}\"; available: {names:?}"),
+                    reason: format!("there is none named \"{wanted}\"; available: {names:?}"),
                 })
         }
     }

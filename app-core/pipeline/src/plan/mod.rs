@@ -40,7 +40,7 @@ pub struct SceneFacts {
     pub sharpness: Sharpness,
     /// Whether this picture or an earlier one is softer than the content that is drawn into it.
     pub is_softened: bool,
-    /// How glossy the toy is.
+    /// Gloss of the toy.
     pub gloss: Gloss,
     /// Angular radius of each retargeted light, seen from the toy.
     pub angular_radii_rad: Vec<f64>,
@@ -104,7 +104,7 @@ impl Change {
     pub const ALL: [Self; 4] = [Self::Pose, Self::Picture, Self::View, Self::Scene];
 }
 
-/// What changed since the previous frame; selects the passes to run.
+/// Changes since the previous frame, which select the passes to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FrameDelta {
     pub(crate) change: Change,

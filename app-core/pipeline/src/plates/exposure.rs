@@ -115,7 +115,7 @@ fn seen_places(shot: &Shot<'_>, linear_of_code: &[f64; 256]) -> Vec<VisiblePoint
     seen.collect()
 }
 
-/// Those points that another picture shows too.
+/// The points that another picture shows, too.
 fn shared_places<'a>(
     seen: &'a [VisiblePoint],
     other: &'a Shot<'_>,

@@ -107,7 +107,7 @@ pub(crate) struct Stage {
     shadow_style: ShadowStyle,
     /// Style of the shadow that was drawn last.
     drawn_style: ShadowStyle,
-    /// Share of the region's picture that the frame shows; `None` if the camera image passes through.
+    /// Share of the region's picture that the frame shows; `None` if the camera image is shown.
     effect: Option<f64>,
     /// The latest frame's noise.
     grain: Option<PictureGrain>,
@@ -298,7 +298,7 @@ impl Stage {
         &self.receiver_indices
     }
 
-    /// Drops the learned state and the uploads, since a refused frame may have left them incomplete.
+    /// Drops the learned state and the uploads, which a refused frame may have left incomplete.
     pub(crate) fn forget(&mut self, gpu: &Gpu) {
         self.drop_method(gpu);
         self.camera.forget();
@@ -453,7 +453,7 @@ impl Stage {
         }
     }
 
-    /// Uploads the shown pose, if it or its shadow's style changed. Returns whether it must be drawn.
+    /// Uploads the shown pose if it or its shadow's style changed. Returns whether to draw it.
     fn take_shown_pose(&mut self, gpu: &Gpu) -> bool {
         // After a refused frame nothing is known, and its pose may not have been uploaded.
         let is_known =

@@ -36,7 +36,7 @@ use app_scene::things::Mark;
 /// Step of the region's size under a moving camera, so that the size stays the same for a while.
 const REGION_STEP_PX: u32 = 64;
 
-/// How much of the method's state a frame can reuse.
+/// The part of the method's state that a frame can reuse.
 enum Reuse {
     /// Nothing, not even the targets.
     Nothing,

@@ -100,7 +100,7 @@ pub enum Loss {
         /// End of the last intact record.
         at: u64,
     },
-    /// As [`Loss::Cut`], without a partial record.
+    /// Loss as in [`Loss::Cut`], without a partial record.
     #[error("the recording was not finished: it ends after byte {at} without its summary")]
     Unfinished {
         /// Size of the file.
@@ -126,7 +126,7 @@ pub enum Loss {
     },
     /// Missing attached files.
     #[error(
-        "{n_files} of {n_written} attached files are lost: a program that wrote the recording anew may have dropped them, as `mcap filter` does without --include-attachments"
+        "{n_files} of {n_written} attached files are lost: a program that rewrote the recording may have dropped them, as `mcap filter` does without --include-attachments"
     )]
     Files {
         /// Number of missing files.
@@ -171,7 +171,7 @@ pub enum Damage {
     Magic,
     /// Compression, which our own recordings do not use.
     #[error(
-        "the chunk is compressed, which apps do not read: write it anew without compression, as `cargo xtask convert` does"
+        "the chunk is compressed, which apps do not read: rewrite it without compression, as `cargo xtask convert` does"
     )]
     Compressed,
     /// Compressed data that cannot be decompressed.

@@ -36,7 +36,7 @@ const DRAWING: &str = "check.png";
 /// The result of a check.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
-    /// How toy, lights and camera stand to one another.
+    /// Relations between the poses of toy, lights and camera.
     pub facts: Vec<String>,
     /// Mistakes; empty for a good session.
     pub wrong: Vec<String>,
@@ -256,7 +256,7 @@ impl Findings {
     fn pose(&mut self, pose: Option<&PoseAlignment>) {
         match pose {
             None => self.wrong.push(
-                "frames[0]: too little of the toy's outline is seen to align it: check toy.world_from_object and world_from_camera"
+                "frames[0]: too little of the toy's outline is visible to align it: check toy.world_from_object and world_from_camera"
                     .to_owned(),
             ),
             Some(pose) => {

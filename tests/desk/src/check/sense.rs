@@ -16,14 +16,14 @@ pub(super) fn without(scene: &Scene) -> Vec<String> {
     let mut facts = Vec::new();
     if let (true, Some(_)) = (scene.lights.is_empty(), &scene.probe) {
         facts.push(
-            "lights: none is listed, so that they are estimated from the probe and corrected by the toy's shadow"
+            "lights: none is listed: they are estimated from the probe and corrected by the toy's shadow"
                 .to_owned(),
         );
     } else if scene.lights.is_empty() {
-        facts.push("lights: none is listed, so that they are estimated from the toy's shadow".to_owned());
+        facts.push("lights: none is listed: they are estimated from the toy's shadow".to_owned());
     }
     if scene.plates.is_empty() {
-        facts.push("backgrounds: there is none, so that the place behind the toy is estimated".to_owned());
+        facts.push("backgrounds: there is none: the place behind the toy is estimated".to_owned());
     }
     facts
 }
@@ -43,7 +43,7 @@ pub(super) fn wrong(scene: &Scene) -> Vec<String> {
         let mut receivers = scene.receivers.iter();
         let is_above = receivers.any(|receiver| light.is_above(&receiver.world_from_plane.inverse()));
         if !is_above {
-            wrong.push(format!("lights[{index}]: it is above none of the receivers"));
+            wrong.push(format!("lights[{index}]: it is not above any receiver"));
         }
     }
     wrong

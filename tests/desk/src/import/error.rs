@@ -161,7 +161,7 @@ pub enum ImportReason {
     #[error("camera {0} is not in the list of cameras")]
     NoCamera(u64),
     /// Several objects, none of which was named as the toy.
-    #[error("the scene has the objects {0}: say which is the toy by --object")]
+    #[error("the scene has the objects {0}: name the toy with --object")]
     Objects(String),
     /// A mesh that cannot be read.
     #[error("{0}")]

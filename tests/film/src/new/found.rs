@@ -168,7 +168,7 @@ fn table(world_from_plane: DMat4, given: &Given) -> Receiver {
 
 fn not_found(given: &Given, nearest_px: Option<f64>) -> NewError {
     let reached = match nearest_px {
-        None => "too little of any outline is seen".to_owned(),
+        None => "too little of any outline is visible".to_owned(),
         Some(px) => {
             format!("the nearest outline stays {px:.1} px from the photograph's, or is met by chance alone")
         }

@@ -27,7 +27,7 @@ pub struct World {
     pub bounces: bool,
     /// The toy.
     pub parts: Vec<Part>,
-    /// How glossy it is, if it is.
+    /// Gloss of the toy, if there is any.
     pub sheen: Option<Sheen>,
     /// Object space to world: a rotation, a translation and one positive scale.
     pub world_from_object: DMat4,
@@ -39,7 +39,7 @@ pub struct World {
     pub quality: Quality,
 }
 
-/// How glossy a toy is: the same all over.
+/// Uniform gloss of a toy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheen {
     /// Slope of Beckmann's distribution of facets.
@@ -75,7 +75,7 @@ pub struct Part {
 /// A pose of the toy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shown {
-    /// As the real toy stands.
+    /// The pose of the real toy.
     Rest,
     /// A moment of the clip.
     At {

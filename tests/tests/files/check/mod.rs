@@ -81,7 +81,7 @@ fn a_toy_that_lies_on_its_back_is_offered_the_turn() {
     let lying = changed("lying", |index| {
         let object = &mut index["toy"]["world_from_object"];
         *given.borrow_mut() = object.clone();
-        // As if the file had Z up.
+        // This corresponds to a file with Z up.
         *object =
             json!((matrix(object) * DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2)).to_cols_array());
     });
@@ -144,7 +144,7 @@ fn each_wrong_session_is_told_by_its_field() {
         ),
         ("bulb", |index| index["lights"][0]["radius"] = json!(50.0), "lights[0].radius: the bulb's radius is 50 m, but its middle is only"),
         ("exposure", |index| index["frames"][0]["exposure"] = json!(4.0), "frames[0].exposure: an exposure of 4 is stated, but the picture is"),
-        ("light", |index| index["lights"][0]["position"][1] = json!(-1.0), "lights[0]: it is above none of the receivers"),
+        ("light", |index| index["lights"][0]["position"][1] = json!(-1.0), "lights[0]: it is not above any receiver"),
         ("file", |index| index["frames"][1]["image"] = json!("gone.png"), "gone.png"),
         ("pose", off, "toy.world_from_object: the outline is"),
     ];

@@ -217,7 +217,7 @@ fn the_toy_of_several_objects_is_asked_for() {
     let error = error.err().unwrap().to_string();
     assert_eq!(
         error,
-        "scene_gt.json (obj_id): the scene has the objects 2, 5: say which is the toy by --object"
+        "scene_gt.json (obj_id): the scene has the objects 2, 5: name the toy with --object"
     );
     let mirrored = truth
         .replace("[1,0,0,0,1,0,0,0,1]", "[1,0,0,0,1,0,0,0,-1]")

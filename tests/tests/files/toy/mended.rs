@@ -145,7 +145,7 @@ fn a_neighbour_that_is_cut_short_is_not_read_on_into_the_next() {
     );
 }
 
-/// As in the files of exporters that write everything into one text.
+/// Some exporters write everything into one text.
 #[test]
 fn data_in_the_text_does_not_count_as_text() {
     let mut json = tree(DATA);

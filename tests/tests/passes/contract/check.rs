@@ -226,7 +226,7 @@ fn counts(module: &Module, entry: &naga::EntryPoint, uses: &FunctionInfo) -> Vec
     let workgroup_bytes = used
         .iter()
         .filter(|global| global.space == AddressSpace::WorkGroup)
-        // As wgpu counts them: each variable is aligned to 16 bytes.
+        // The count is that of wgpu: each variable is aligned to 16 bytes.
         .map(|global| inner(global).size(module.to_ctx()).next_multiple_of(16))
         .sum();
     let n_groups = used

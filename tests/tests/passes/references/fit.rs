@@ -151,8 +151,7 @@ fn unseen_shadow_leaves_the_expected_share() {
         sample.frame = sample.plate * 0.9;
     }
     let fitted = fit_receiver(&region, (0, &lit), &start(2), &constants, 5);
-    // As for bulbs: the cosine over the squared distance of each, from the reference point at the
-    // origin.
+    // A phone delivers planes: the pipelines for pixels are compiled when the first ones come.
     let of_bulb = |bulb: DVec4| bulb.y / bulb.truncate().length().powi(3);
     let bulbs = two_bulbs();
     let both: f64 = bulbs.iter().map(|bulb| of_bulb(*bulb)).sum();

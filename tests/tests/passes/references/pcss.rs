@@ -126,7 +126,8 @@ fn penumbra_grows_with_height_over_what_is_left_to_the_light() {
     for (softness, height_m, expected_m) in [
         (&bulb, 0.5, RADIUS_M),
         (&bulb, 0.8, 4.0 * RADIUS_M),
-        // As high as the light, higher, and so close below it that the disc fills the sky.
+        // Occluders as high as the light, higher, and so close below it that the disc fills the
+        // sky.
         (&bulb, LIGHT_M, LIGHT_M),
         (&bulb, 1.5, 1.5),
         (&bulb, 0.99, 0.99),

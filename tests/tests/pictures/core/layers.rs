@@ -118,8 +118,7 @@ fn layers_are_laid_together_to_the_picture() {
             for index in 0..light.texels.len() {
                 let [clean, ratio, toy] =
                     [&layers.clean_plate, &layers.shadow_ratio, &layers.toy].map(|layer| layer.texels[index]);
-                // Where the camera shows the outline of the real toy, its pixel stays if the toy
-                // does not move.
+                // A pixel with the outline of the real toy stays if the toy does not move.
                 let width = light.width as usize;
                 let at = [index % width, index / width].map(|side| u32::try_from(side).unwrap());
                 let at = glam::UVec2::from(at);

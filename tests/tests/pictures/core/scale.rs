@@ -58,7 +58,7 @@ fn scaled(scale: f64) -> (Scene, FrameInput) {
     (scene, input)
 }
 
-/// Of 14,400 pixels some ten have a sample that falls on the other side of an edge.
+/// Some ten of 14,400 pixels have a sample that falls on the other side of an edge.
 #[test]
 fn the_scale_of_the_world_changes_nothing() {
     let mut core = core();

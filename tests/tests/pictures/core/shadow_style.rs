@@ -40,7 +40,7 @@ fn a_style_is_that_of_its_frame() {
         }
         assert!(picture_of(&mut core, &input) == forth[0].1, "{preset}");
     }
-    // As published.
+    // Preset `paper` draws shadows as published.
     core.set_scene(scene(), Preset::Paper).unwrap();
     let [plain, other] = [(1.0, 1.0), (0.5, 2.0)]
         .map(|(strength, softness)| picture_of(&mut core, &styled(&input, strength, softness)));

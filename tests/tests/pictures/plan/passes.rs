@@ -275,8 +275,8 @@ fn the_fit_takes_enough_pixels_and_not_many() {
         let plan = plan(size_px, 1);
         let [width, height] = size_px.map(|side_px| u64::from(side_px / plan.fit_stride_px));
         let (n_taken, n_pixels) = (width * height, u64::from(size_px[0]) * u64::from(size_px[1]));
-        // The next smaller stride would give too many pixels: at least a quarter of them remains, and
-        // half of these after rounding.
+        // The next smaller stride would give too many pixels: at least a quarter of them remains,
+        // and half of these after rounding.
         assert!(n_taken <= 1 << 16, "{size_px:?}: {n_taken}");
         assert!(n_taken >= n_pixels.min(1 << 16) / 8, "{size_px:?}: {n_taken}");
         let n_rows = plan.n_fit_rows(plan.fit_stride_px);

@@ -333,7 +333,7 @@ fn shadows_land_on_any_receiver() {
     };
     let on_shelf = projection(shelf_from_anchor);
     assert!(corners.iter().all(|corner| is_held(&on_shelf, corner)));
-    // As if the shelf were on the table.
+    // The expectation is that of a shelf on the table.
     let on_table = projection(Mat4::IDENTITY);
     assert!(!corners.iter().all(|corner| is_held(&on_table, corner)));
 }

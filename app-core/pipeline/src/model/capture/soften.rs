@@ -29,7 +29,7 @@ struct TapGrid {
     variance: f64,
 }
 
-/// Grids for most blurs, and for wide ones, where taps of the first grid would leave gaps.
+/// Grids for most blurs, and for wide ones, for which taps of the first grid would leave gaps.
 const GRIDS: [TapGrid; 2] = [
     TapGrid {
         n_beside: 3,

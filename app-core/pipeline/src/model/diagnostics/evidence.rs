@@ -107,7 +107,7 @@ impl Evidence {
         self.receiver.value()
     }
 
-    /// The same share in the picture, where the real shadow falls and the plate is usable.
+    /// The same share in the picture, within the real shadow, for usable pixels of the plate.
     #[must_use]
     pub(crate) fn unreadable_shadow(&self) -> Option<f64> {
         self.shadow.value()

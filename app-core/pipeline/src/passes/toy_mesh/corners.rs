@@ -15,7 +15,7 @@ use crate::passes::toy_mesh::PoseBuffers;
 pub(super) struct Lists {
     /// Triangles that face the viewers.
     pub(super) facing: Buffer,
-    /// Those of them that meet tiles near a silhouette.
+    /// Triangles that meet tiles near a silhouette.
     silhouette: Buffer,
     /// These tiles: two triangles per run, in pixels of the region.
     tiles: Buffer,
