@@ -307,6 +307,8 @@ impl Aligner {
                 self.scene = Arc::new(scene);
                 self.are_plates_aligned = false;
                 (self.view, self.held, self.lights) = (None, None, None);
+                (self.gloss, self.things) = (None, None);
+                self.reflection = KeptReflection::default();
             }
         }
         Ok(input

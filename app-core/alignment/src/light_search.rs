@@ -173,7 +173,8 @@ impl Aligner {
         let things = if !are_trusted {
             None
         } else {
-            match self.look_for_things(&known, seen)? {
+            // A plane is not fitted under lights that may be degrees off.
+            match self.look_for_things(&known, seen, kept.is_some())? {
                 Looked::Things(things) => things,
                 Looked::Planes(again) => return self.look_at_lights(kept, given, &again),
             }
@@ -182,15 +183,21 @@ impl Aligner {
         let looked_at = clear.as_ref().unwrap_or(seen);
         let before = Arc::clone(&self.scene);
         let are_kept = kept.is_some();
-        let lights = match kept {
+        let mut lights = match kept {
             Some(kept) => self.watch_lights(kept, looked_at)?,
             None => self.find_lights(Arc::clone(&given), looked_at)?,
         };
         if is_searched && lights.in_use() != &*known {
             self.reflection
                 .search_again(&self.scene, as_it_is, lights.in_use())?;
+            // A shadow of unknown lights was taken for a reflection: its removal misled the lights.
+            if freed.is_some() && self.reflection.found.is_none() && !are_kept {
+                let clear = things.as_ref().map(|things| as_it_is.clear_of(things));
+                lights = self.find_lights(Arc::clone(&given), clear.as_ref().unwrap_or(as_it_is))?;
+            }
         }
-        let things = if !are_trusted || lights.in_use() == &*known {
+        let are_settled = are_kept && lights.in_use() == &*known;
+        let things = if !are_trusted || are_settled {
             things
         } else {
             // Plates may have been relit.
@@ -198,14 +205,15 @@ impl Aligner {
             let relit = (!is_same).then(|| Seen::again(&self.scene, seen.view.clone(), &seen.input));
             let relit = relit.as_ref().unwrap_or(as_it_is);
             let freed = self.reflection.removed_from(&self.scene, relit)?;
-            match self.look_for_things(lights.in_use(), freed.as_ref().unwrap_or(relit))? {
+            match self.look_for_things(lights.in_use(), freed.as_ref().unwrap_or(relit), true)? {
                 Looked::Things(things) => things,
                 Looked::Planes(again) => {
                     return self.look_at_lights(are_kept.then_some(lights), given, &again);
                 }
             }
         };
-        if are_trusted && self.gloss.is_none() {
+        // Without lights no highlight constrains it: a later view may.
+        if are_trusted && self.gloss.is_none() && !lights.in_use().is_empty() {
             let toy = &seen.input.world_from_object;
             self.gloss = Some(looked_at.photograph.gloss(&self.scene, toy, lights.in_use())?);
         }
@@ -218,8 +226,13 @@ impl Aligner {
     }
 
     /// Things that stand beside the toy in given lights; or, once planes of some are found, the view with these among the receivers.
-    fn look_for_things(&mut self, lights: &[Light], seen: &Seen) -> Result<Looked, ToyError> {
-        let wants_planes = self.planes.are_wanted();
+    fn look_for_things(
+        &mut self,
+        lights: &[Light],
+        seen: &Seen,
+        may_have_planes: bool,
+    ) -> Result<Looked, ToyError> {
+        let wants_planes = may_have_planes && self.planes.are_wanted();
         let sighted = seen
             .photograph
             .things(&self.scene, &seen.input, lights, wants_planes)?;

@@ -19,6 +19,8 @@ pub struct Observer {
     /// Gloss of the toy, once it was estimated.
     gloss: Option<Gloss>,
     planes: FoundPlanes,
+    /// The reflection of the receiver under the toy, once it was searched for.
+    reflection: Option<Option<FoundReflection>>,
 }
 
 impl Observer {
@@ -66,10 +68,14 @@ impl Observer {
         let photograph = Photograph::new(&known, input, None);
         let sharpness = photograph.sharpness_as_given(&known, &input.world_from_object)?;
         let lights = input.lights_in(&known);
-        // The reflection is that of the receiver under the toy, which found planes do not change.
-        let reflection = photograph
-            .with_plate_as_soft(sharpness.plate_spread)
-            .reflection(&known, input, &lights)?;
+        // It belongs to the receiver under the toy: found planes and later frames do not change it.
+        let reflection = match self.reflection {
+            Some(reflection) => reflection,
+            None => photograph
+                .with_plate_as_soft(sharpness.plate_spread)
+                .reflection(&known, input, &lights)?,
+        };
+        self.reflection = Some(reflection);
         let look = Look {
             input,
             plate_spread: sharpness.plate_spread,
@@ -92,7 +98,8 @@ impl Observer {
                 photograph.gloss(scene, &input.world_from_object, &lights)?
             }
         };
-        self.gloss = Some(gloss);
+        // Without lights no highlight constrains it: a later frame may.
+        self.gloss = (!lights.is_empty()).then_some(gloss);
         let input = input.clone().with_things(things).with_sharpness(sharpness);
         let reflection = reflection.map(|found| found.reflection);
         Ok(input.with_reflection(reflection).with_gloss(gloss))

@@ -17,7 +17,7 @@ use crate::photograph::Photograph;
 use crate::picture::{Level, places};
 use crate::pose::{self, Standing};
 use crate::shape::Shape;
-use crate::toy_search::{Followed, Search, distinguished};
+use crate::toy_search::{Followed, FoundToy, Search, distinguished};
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 
@@ -149,7 +149,7 @@ pub struct StandingSearch {
     search: Option<Search>,
     guesses: Vec<DMat4>,
     followed: Vec<Followed>,
-    found: Vec<crate::FoundToy>,
+    found: Vec<FoundToy>,
     best: Option<StandingPose>,
 }
 
@@ -329,6 +329,7 @@ impl StandingSearch {
             return Ok(Stage::Done);
         };
         self.found.extend(search.refine(&pose.world_from_object)?);
+        self.found.sort_by(|a, b| a.outline_px.total_cmp(&b.outline_px));
         if let Some(best) = distinguished(self.found.clone()).first() {
             self.best = Some(StandingPose {
                 world_from_object: best.world_from_object,

@@ -29,7 +29,7 @@ const SHARED: &[&Mirrors] = &[
     &model::capture::fit::FIT_STEP,
     &model::capture::pool::POOL,
     &model::frame::coverage::COVERED,
-    &model::gloss::GLOSS,
+    &passes::specular::GLOSS,
     &model::lighting::self_shadow::SELF_SHADOW_MAPS,
     &model::state::grids::GRID,
     &model::state::solution::FIT,

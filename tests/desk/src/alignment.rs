@@ -296,15 +296,16 @@ impl Alignments {
         scene
     }
 
-    /// The scene from a frame on: its plates in another light if lights were moved, or its toy in
-    /// another shape.
+    /// The scene from a frame on: its plates in another light if lights were moved, its toy in
+    /// another shape, or planes of things among its receivers.
     #[must_use]
     pub fn changed_scene(&self, given: &Scene, index: usize) -> Option<Scene> {
         let now = self.of(index)?.alignment.scene.as_ref()?;
-        // From the first frame on, the scene has corrected cameras and nothing else.
+        // Corrected cameras of plates alone are no other scene.
         let mut pairs = now.plates.iter().zip(&given.plates);
         let is_relit = pairs.any(|(now, given)| !Arc::ptr_eq(&now.image, &given.image));
-        let is_changed = is_relit || !Arc::ptr_eq(&now.toy, &given.toy);
+        let has_planes = now.receivers != given.receivers;
+        let is_changed = is_relit || has_planes || !Arc::ptr_eq(&now.toy, &given.toy);
         is_changed.then(|| {
             self.scene(given)
                 .with_plates(now.plates.clone())

@@ -342,11 +342,10 @@ impl<'a> Run<'a> {
 
     fn frame(&mut self, shot: &Shot<'_>) -> Result<FrameEntry, ReplayError> {
         let scene = shot.session.scene();
-        if self.frames.is_empty() {
-            self.set_scene(shot.alignments.scene(scene))?;
-        }
         if let Some(changed) = shot.alignments.changed_scene(scene, shot.index) {
             self.set_scene(changed)?;
+        } else if self.frames.is_empty() {
+            self.set_scene(shot.alignments.scene(scene))?;
         }
         let (mut entry, picture) = self.make(shot)?;
         if let Some(truth) = &shot.truth {

@@ -6,7 +6,7 @@ use app_core::gloss::{Gloss, N_GLOSSES};
 use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_pipeline::geometry::rect::PixelRect;
-use app_pipeline::model::gloss::Specular;
+use app_pipeline::passes::specular::Specular;
 use glam::{DVec2, DVec3, DVec4, UVec2};
 use reference::gloss::{Glossy, SeenPoint, reflection};
 use reference::model::centre_px;
@@ -166,8 +166,8 @@ fn a_fault_in_the_reflection_is_found() {
             "cosines.x * masked.x + cosines.y * masked.y",
         ),
         (
-            "fit.toy[2u + i].rgb * fit.intensity[i].rgb",
-            "fit.toy[2u + i].rgb",
+            "part * fit.toy[2u + i].rgb * fit.intensity[i].rgb",
+            "part * fit.toy[2u + i].rgb",
         ),
         ("part.y * fit.toy[1].rgb", "part.y * fit.toy[0].rgb"),
         ("frame_at(region_texel(texel))", "frame_at(texel)"),

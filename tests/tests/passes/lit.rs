@@ -105,7 +105,7 @@ fn a_fault_in_the_pooling_is_found() {
     let faults = [
         ("LIT_POWER: f32 = 8.0", "LIT_POWER: f32 = 7.0"),
         ("(texel)).b;", "(texel)).r;"),
-        ("fit.gain.rgb * ", ""),
+        ("(fit.gain.rgb * model)", "model"),
         ("= smallest(", "= largest("),
         ("FULL_SHARE: f32 = 0.25", "FULL_SHARE: f32 = 0.24"),
         ("MAX_FRAMES: f32 = 8.0", "MAX_FRAMES: f32 = 7.0"),

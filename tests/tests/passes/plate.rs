@@ -150,7 +150,7 @@ fn a_fault_in_the_choice_is_found() {
         ("{ return true; }", "{ return false; }"),
         ("let point = surface_point", "let point = receiver_point"),
         ("2.0 - 5.0 * ", "2.0 - 4.9 * "),
-        (".gain.rgb;", ".gain.aaa;"),
+        ("[k].gain.rgb;", "[k].gain.aaa;"),
     ];
     check_faults("plate", &faults, ALLOWED, errors);
 }

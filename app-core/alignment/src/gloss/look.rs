@@ -1,5 +1,7 @@
 //! Visible pixels of a toy, and the light that each receives from every light.
 
+use std::collections::BTreeSet;
+
 use glam::{DMat4, DVec3};
 
 use super::columns::{Columns, N_COLUMNS};
@@ -13,6 +15,8 @@ use app_scene::geometry::disc::vogel_disc;
 use app_scene::gloss::N_GLOSSES;
 use app_scene::scene::{Light, MAX_LIGHTS};
 
+/// Cells of normals along each axis, for each unit of length: their sides are some 15 degrees.
+const NORMAL_CELLS: f64 = 4.0;
 /// Points over a light.
 const N_POINTS: usize = 8;
 /// Assumed distance of a far light, in radii of the toy.
@@ -114,6 +118,12 @@ impl Look {
             up: lights.up,
             n_columns: (2 + lights.lights.len()).min(N_COLUMNS),
         }
+    }
+
+    /// Number of clearly different normals.
+    pub(super) fn n_normals(&self) -> usize {
+        let cell = |sample: &Sample| (NORMAL_CELLS * sample.normal).round().as_ivec3().to_array();
+        self.samples.iter().map(cell).collect::<BTreeSet<_>>().len()
     }
 
     /// Number of samples.

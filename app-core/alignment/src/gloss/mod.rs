@@ -29,12 +29,14 @@ const BELIEVED: [f64; 2] = [0.15, 0.25];
 const HIGHLIGHTS_BELIEVED: [f64; 2] = [0.005, 0.015];
 /// Minimum number of pixels of an estimate.
 const LEAST_SURFELS: usize = 300;
+/// Minimum number of clearly different normals: on a few flat faces any brightness is a paint's.
+const LEAST_NORMALS: usize = 12;
 /// Maximum number of pixels; more do not improve it.
 pub(crate) const MOST_SURFELS: usize = 2500;
 
 /// Estimated gloss of a toy; matt if the pixels do not constrain it.
 pub(crate) fn gloss(look: &Look) -> Gloss {
-    if look.len() < LEAST_SURFELS {
+    if look.len() < LEAST_SURFELS || look.n_normals() < LEAST_NORMALS {
         return Gloss::NONE;
     }
     let Some(found) = search::found(look, BELIEVED[0]) else {

@@ -59,6 +59,9 @@ const N_TRIES: usize = 60;
 /// Side of the cells that merge the toy's vertices, in pixels of the level.
 const CELL_PX: f64 = 0.7;
 
+/// Maximum number of things whose planes are searched: more receivers are not moved.
+const MOST_SEARCHED: usize = MAX_RECEIVERS - 1;
+
 /// A plane with its extent and its evidence.
 pub(crate) struct FoundPlane {
     pub(crate) plane: SeenReceiver,
@@ -84,7 +87,11 @@ pub(super) fn find(
     grown: &Grown,
 ) -> Vec<FoundPlane> {
     let shape = shape.merged_in_px(CELL_PX, level);
-    let planes = (0..grown.n_things()).filter_map(|thing| {
+    // Each search takes a second: only the largest things are searched.
+    let mut things: Vec<usize> = (0..grown.n_things()).collect();
+    things.sort_by_key(|thing| std::cmp::Reverse(grown.n_seeds(*thing)));
+    things.truncate(MOST_SEARCHED);
+    let planes = things.into_iter().filter_map(|thing| {
         let pixels = pixels(comparison, grown, thing);
         let on = most_on(&pixels)?;
         let search = Search::new((&shape, receivers), level, comparison, &pixels)?;

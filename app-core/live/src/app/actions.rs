@@ -161,7 +161,10 @@ impl App {
                 self.go(Cause::TableChosen);
             }
             (Step::PlaceToy, Some(camera), _) => {
+                let is_by_hand = self.placing() == Placing::ByHand;
                 match (&mut self.ghost, &self.table) {
+                    // A touch of the ring is a turn that did not begin.
+                    (Some(ghost), _) if is_by_hand => return ghost.move_beyond_ring(camera, pixel),
                     (Some(ghost), _) => ghost.move_to(camera, pixel),
                     (ghost, Some(table)) => {
                         *ghost = Ghost::at(&self.toy, table, (camera, pixel)).ok().flatten();

@@ -10,6 +10,7 @@ use app_alignment::pose_filter::{PoseFilter, PoseNoise};
 use app_alignment::{AlignError, Aligner, Alignment};
 use app_scene::camera_frame::Anchor;
 use app_scene::frame::FrameInput;
+use app_scene::gloss::Gloss;
 use app_scene::reflection::Reflection;
 use app_scene::scene::{Camera, Light, Scene};
 use app_scene::things::Things;
@@ -118,6 +119,7 @@ pub(super) struct Place {
     lights: Option<Arc<[Light]>>,
     things: Option<Things>,
     reflection: Option<Reflection>,
+    gloss: Gloss,
     pub(super) verdict: Option<Verdict>,
 }
 
@@ -136,6 +138,7 @@ impl Place {
             lights: None,
             things: None,
             reflection: None,
+            gloss: Gloss::NONE,
             verdict: None,
             scene,
         }
@@ -183,6 +186,7 @@ impl Place {
             .with_lights(self.lights.clone())
             .with_things(self.things.clone())
             .with_reflection(self.reflection)
+            .with_gloss(self.gloss)
     }
 
     /// An alignment of `input`, if one is due.
@@ -249,6 +253,7 @@ impl Place {
         self.lights = alignment.lights;
         self.things = alignment.things;
         self.reflection = alignment.reflection;
+        self.gloss = alignment.gloss;
         // Results of an alignment that missed the toy are used from now on, too.
         self.scene = Arc::clone(aligner.scene());
         self.verdict = Some(verdict);

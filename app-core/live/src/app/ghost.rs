@@ -87,6 +87,16 @@ impl Ghost {
         }
     }
 
+    /// The same for a place outside the ring and its knob; a place inside changes nothing.
+    pub(super) fn move_beyond_ring(&mut self, camera: &Camera, pixel: DVec2) {
+        const BEYOND: f64 = 1.2;
+        let place_m = seen_at(&self.world_from_plane, camera, pixel);
+        let is_beyond = |place_m: &DVec2| place_m.distance(self.place_m) > BEYOND * self.ring_m;
+        if let Some(place_m) = place_m.filter(is_beyond) {
+            self.place_m = place_m;
+        }
+    }
+
     /// Moves it if a finger drags within the ring, and turns it if one drags around it elsewhere.
     pub(super) fn drag(&mut self, camera: &Camera, [from_px, to_px]: [DVec2; 2]) {
         let places = [from_px, to_px].map(|pixel| seen_at(&self.world_from_plane, camera, pixel));

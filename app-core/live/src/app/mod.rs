@@ -365,6 +365,10 @@ impl App {
         }
         self.step = next;
         self.lens.give_up();
+        if next != Step::PlaceToy {
+            // A search holds pictures of the size of the camera's.
+            self.search.give_up();
+        }
         self.toy_files = None;
         // Notices of the previous step are no longer useful.
         self.notices = Notices::default();

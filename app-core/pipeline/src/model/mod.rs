@@ -4,7 +4,6 @@
 pub(crate) mod capture;
 pub mod diagnostics;
 pub(crate) mod frame;
-pub mod gloss;
 pub(crate) mod lighting;
 pub mod plan;
 pub(crate) mod readback;

@@ -6,8 +6,8 @@ use wgpu::TextureFormat;
 
 use crate::geometry::rect::PixelRect;
 use crate::geometry::shadow_atlas::ShadowAtlas;
-use crate::model::gloss::Specular;
 use crate::passes::plate::{CODED_FORMAT, FINE_FORMAT};
+use crate::passes::specular::Specular;
 use crate::passes::toy_mesh::CasterLod;
 use crate::plan::{SceneFacts, SkippedWork};
 use crate::preset::ModelSettings;

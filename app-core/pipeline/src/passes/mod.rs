@@ -14,6 +14,7 @@ pub(crate) mod pictures;
 pub mod plate;
 pub(crate) mod present;
 pub(crate) mod screen;
+pub mod specular;
 pub(crate) mod thing_marks;
 pub(crate) mod toy_mesh;
 

@@ -3,7 +3,7 @@
 pub(crate) mod camera_texture;
 mod cost_limit;
 mod footprint;
-mod gloss;
+mod glossy;
 pub(crate) mod method;
 mod output;
 mod placement;

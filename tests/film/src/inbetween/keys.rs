@@ -378,12 +378,12 @@ impl Stage<'_> {
         let scene = alignment.scene.map_or_else(
             || Arc::new(of_print.clone()),
             |changed| {
-                Arc::new(
-                    of_print
-                        .clone()
-                        .with_plates(plates(&changed, scene))
-                        .with_toy(Arc::clone(&changed.toy)),
-                )
+                let mut print = of_print
+                    .clone()
+                    .with_plates(plates(&changed, scene))
+                    .with_toy(Arc::clone(&changed.toy));
+                print.receivers.clone_from(&changed.receivers);
+                Arc::new(print)
             },
         );
         let grain = app_core::grain::Grain::of(&scene, input.image.rgba(), &input.camera);

@@ -120,7 +120,7 @@ fn a_film_without_frames_or_with_too_many_is_refused() {
         ..timing()
     };
     assert!(refused("Look", &late).contains("last 1.000 s"));
-    assert!(refused("Look*10000@0.01x", &timing()).contains("at most 100000"));
+    assert!(refused("Look*10000@0.01x", &timing()).contains("the limit is 100000"));
 }
 
 #[test]

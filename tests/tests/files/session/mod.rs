@@ -204,7 +204,7 @@ fn each_wrong_value_is_named() {
         ("frames[1].world_from_object", with(5, json!(-1)), "mirrors"),
         ("frames[1].world_from_shown", with(5, json!(-1)), "mirrors"),
         ("backgrounds[0].intrinsics.fy", json!(0), "0 is not from"),
-        ("backgrounds", json!(vec![plate; 513]), "has 513 entries, but at most 512"),
+        ("backgrounds", json!(vec![plate; 513]), "has 513 entries, but the limit is 512"),
         ("frames[0].animation.clip", json!("Wafe"), "none is called \"Wafe\"; it has Wave"),
         ("frames[0].animation.time", json!(-0.1), "-0.1 s is not from 0 s to"),
         ("probe.focal_length", json!(0), "0 is not from"),

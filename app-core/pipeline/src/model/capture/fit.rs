@@ -12,11 +12,11 @@ use crate::gpu::shared::shared_struct;
 use crate::gpu::texture::TextureView;
 use crate::model::capture::Observed;
 use crate::model::capture::gbuffer;
-use crate::model::gloss::Specular;
 use crate::model::plan::{MAX_FIT_ROWS, Plan};
 use crate::model::state::grids::Grids;
 use crate::model::state::solution::{N_CHANNELS, N_FIT_SUMS, SEEN_SLOTS, SeenScene};
 use crate::passes::pictures::ByForm;
+use crate::passes::specular::Specular;
 
 /// One step of the iteratively reweighted least squares.
 pub(crate) const FIT_STEP: Mirrors = mirrors!(

@@ -11,10 +11,10 @@ use crate::gpu::recorder::{Recorder, cleared_to};
 use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::Texture;
 use crate::model::capture::gbuffer;
-use crate::model::gloss::Specular;
 use crate::model::plan::Plan;
 use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
 use crate::passes::pictures::ByForm;
+use crate::passes::specular::Specular;
 
 pub(crate) const SHADER: Shader = shader!("capture/gloss");
 const SLOTS: &[Slot] = &[

@@ -16,7 +16,6 @@ use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::appearance;
 use crate::model::frame::moved_mask::MOVED_FORMAT;
-use crate::model::gloss::Specular;
 use crate::model::lighting::self_shadow;
 use crate::model::lighting::self_shadow::{GROUP_SELF_SHADOW, SELF_SHADOW_GROUP};
 use crate::model::plan::Plan;
@@ -24,6 +23,7 @@ use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
 use crate::model::state::tints::{TintGrid, Tints};
 use crate::passes::materials::MATERIAL_GROUP;
 use crate::passes::pictures::ByForm;
+use crate::passes::specular::Specular;
 use crate::passes::toy_mesh::{LOOK_STREAMS, Sided, ToyMesh};
 
 pub(crate) const SHADER: Shader = shader!("frame/toy");
