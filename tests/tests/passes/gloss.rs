@@ -169,7 +169,10 @@ fn a_fault_in_the_reflection_is_found() {
             "part * fit.toy[2u + i].rgb * fit.intensity[i].rgb",
             "part * fit.toy[2u + i].rgb",
         ),
-        ("part.y * fit.toy[1].rgb", "part.y * fit.toy[0].rgb"),
+        (
+            "return part.x * fit.toy[0].rgb + part.y * fit.toy[1].rgb",
+            "return part.x * fit.toy[0].rgb + part.y * fit.toy[0].rgb",
+        ),
         ("frame_at(region_texel(texel))", "frame_at(texel)"),
         ("PAINT_TOLD: f32 = 0.5", "PAINT_TOLD: f32 = 0.4"),
         ("CLIPPED_HIGHLIGHT: f32 = 0.1", "CLIPPED_HIGHLIGHT: f32 = 0.3"),

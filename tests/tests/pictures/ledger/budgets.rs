@@ -89,7 +89,8 @@ fn frames_stay_within_their_budgets() {
         (1, Preset::Balanced, [(222_000, 1.52), (222_000, 1.80), (392_000, 2.69)], 34.0),
         (2, Preset::Balanced, [(332_000, 1.76), (332_000, 2.05), (609_000, 3.10)], 37.5),
         (1, Preset::Fast, [(101_000, 1.39), (101_000, 1.67), (171_000, 2.47)], 32.0),
-        (2, Preset::Fast, [(135_000, 1.56), (135_000, 1.84), (239_000, 2.74)], 35.0),
+        // At most 2.74 without the 48 bytes of a reflection in the uniform that all passes read.
+        (2, Preset::Fast, [(135_000, 1.56), (135_000, 1.84), (239_000, 2.741)], 35.0),
         // Its `retarget` reads anywhere in the picture, so that planes are kept beside their
         // decoded picture.
         (1, Preset::Paper, [(20_100, 4.7), (20_100, 5.9), (40_100, 7.1)], 63.0),
