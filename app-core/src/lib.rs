@@ -94,7 +94,7 @@ pub mod gpu {
 /// The input and the report of a frame.
 pub mod frame {
     pub use app_pipeline::frame::*;
-    pub use app_scene::frame::FrameInput;
+    pub use app_scene::frame::{FrameInput, Observations};
 }
 
 #[cfg(feature = "alignment")]

@@ -7,7 +7,7 @@
 //! Source: corners by Shi and Tomasi 1994, normalized cross-correlation, consensus by Fischler and
 //! Bolles 1981.
 
-use glam::{DMat3, DQuat, DVec2, DVec3, IVec2};
+use glam::{DMat3, DQuat, DVec3, IVec2};
 
 use crate::picture::{Level, index_in, places};
 use app_scene::scene::Intrinsics;
@@ -123,8 +123,7 @@ fn hypotheses(matches: &[Match]) -> Vec<DQuat> {
 }
 
 fn ray(k: &Intrinsics, at: IVec2) -> DVec3 {
-    let at = at.as_dvec2() + DVec2::splat(0.5);
-    DVec3::new((at.x - k.cx_px) / k.fx_px, -(at.y - k.cy_px) / k.fy_px, -1.0).normalize()
+    k.ray(at.as_dvec2() + 0.5).normalize()
 }
 
 /// The rotation from the second pair of directions to the first; `None` if the directions of a pair

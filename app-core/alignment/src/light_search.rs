@@ -196,7 +196,8 @@ impl Aligner {
                 lights = self.find_lights(Arc::clone(&given), clear.as_ref().unwrap_or(as_it_is))?;
             }
         }
-        let are_settled = are_kept && lights.in_use() == &*known;
+        // In the first view planes are still to be found, on things.
+        let are_settled = lights.in_use() == &*known && (are_kept || things.is_none());
         let things = if !are_trusted || are_settled {
             things
         } else {

@@ -37,12 +37,7 @@ impl Observer {
                 && latest.lights == input.lights
         });
         let observed = match latest {
-            Some(latest) => input
-                .clone()
-                .with_things(latest.things.clone())
-                .with_sharpness(latest.sharpness)
-                .with_reflection(latest.reflection)
-                .with_gloss(latest.gloss),
+            Some(latest) => input.clone().with_observations(latest.observations()),
             None => self.look(scene, input)?,
         };
         self.latest = Some(observed.clone());

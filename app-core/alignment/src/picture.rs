@@ -199,21 +199,16 @@ impl Pyramid {
             level = level.halved();
             picture_px *= 2.0;
         }
-        let mut levels = vec![level];
-        for above in 0..Self::SMALLEST {
-            levels.push(levels[above].halved());
+        Self {
+            levels: Self::levels_of(level),
+            picture_px,
         }
-        Self { levels, picture_px }
     }
 
     /// With the plate blurred by a Gaussian, with its standard deviation in pixels of the largest
     /// level; `None` without a plate.
     pub(super) fn with_plate_spread(&self, deviation_px: f64) -> Option<Self> {
-        let mut levels = vec![self.levels[0].with_plate_spread(deviation_px)?];
-        for above in 0..Self::SMALLEST {
-            levels.push(levels[above].halved());
-        }
-        Some(Self { levels, ..*self })
+        Some(self.with_largest(self.levels[0].with_plate_spread(deviation_px)?))
     }
 
     /// With unknown pixels at marks of the largest level, in either picture.
@@ -224,20 +219,24 @@ impl Pyramid {
                 *pixel = UNKNOWN;
             }
         }
-        let mut levels = vec![level];
-        for above in 0..Self::SMALLEST {
-            levels.push(levels[above].halved());
-        }
-        Self { levels, ..*self }
+        self.with_largest(level)
     }
 
     /// With another largest level, of the same size.
     pub(super) fn with_largest(&self, level: Level) -> Self {
-        let mut levels = vec![level];
+        Self {
+            levels: Self::levels_of(level),
+            ..*self
+        }
+    }
+
+    /// All levels, from the largest.
+    fn levels_of(largest: Level) -> Vec<Level> {
+        let mut levels = vec![largest];
         for above in 0..Self::SMALLEST {
             levels.push(levels[above].halved());
         }
-        Self { levels, ..*self }
+        levels
     }
 
     /// Pixels of the photograph per pixel of the largest level.
@@ -256,15 +255,17 @@ impl Pyramid {
 
     /// The largest level of at most that many pixels, or a smaller copy of the smallest.
     pub(super) fn at_most(&self, n_pixels: i32) -> Level {
-        let is_small = |level: &Level| level.frame.size_px.x * level.frame.size_px.y <= n_pixels;
-        if let Some(level) = self.levels.iter().find(|level| is_small(level)) {
-            return level.clone();
-        }
-        let mut level = self.levels[Self::SMALLEST].clone();
-        while !is_small(&level) {
+        let mut level = self.largest_within(n_pixels).clone();
+        while !level.is_within(n_pixels) {
             level = level.halved();
         }
         level
+    }
+
+    /// The largest level of at most that many pixels, or else the smallest level.
+    pub(super) fn largest_within(&self, n_pixels: i32) -> &Level {
+        let found = self.levels.iter().find(|level| level.is_within(n_pixels));
+        found.unwrap_or(&self.levels[Self::SMALLEST])
     }
 
     /// A level from 0, the largest, to [`Pyramid::SMALLEST`].
@@ -274,6 +275,10 @@ impl Pyramid {
 }
 
 impl Level {
+    fn is_within(&self, n_pixels: i32) -> bool {
+        self.frame.size_px.element_product() <= n_pixels
+    }
+
     /// With the plate blurred by a Gaussian, with its standard deviation in pixels; `None` without
     /// a plate.
     pub(super) fn with_plate_spread(&self, deviation_px: f64) -> Option<Self> {

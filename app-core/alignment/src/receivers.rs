@@ -101,12 +101,7 @@ pub(super) fn up(receivers: &[SeenReceiver]) -> DVec3 {
 
 /// Through a pixel's centre, of depth 1.
 fn ray(k: &Intrinsics, at: IVec2) -> DVec3 {
-    let centre = at.as_dvec2() + 0.5;
-    DVec3::new(
-        (centre.x - k.cx_px) / k.fx_px,
-        -(centre.y - k.cy_px) / k.fy_px,
-        -1.0,
-    )
+    k.ray(at.as_dvec2() + 0.5)
 }
 
 /// The nearest receiver that a pixel shows: its index, and the point in camera space.

@@ -14,9 +14,10 @@ use glam::{DMat4, DVec2, DVec3, IVec2};
 use crate::camera::{Finder, corrected};
 use crate::error::{AlignError, check};
 use crate::photograph::Photograph;
-use crate::picture::{Level, places};
+use crate::picture::{Level, Mask};
 use crate::pose::{self, Standing};
 use crate::shape::Shape;
+use crate::things::groups::{groups, place_of};
 use crate::toy_search::{Followed, FoundToy, Search, distinguished};
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
@@ -74,12 +75,7 @@ impl NewObject {
 
 /// Intersection of a pixel's ray with the first receiver, in the world; `None` above its horizon.
 fn on_receiver(scene: &Scene, input: &FrameInput, pixel: DVec2) -> Option<DVec3> {
-    let k = &input.camera.intrinsics;
-    let ray = DVec3::new(
-        (pixel.x - k.cx_px) / k.fx_px,
-        -(pixel.y - k.cy_px) / k.fy_px,
-        -1.0,
-    );
+    let ray = input.camera.intrinsics.ray(pixel);
     let world_from_camera = input.camera.world_from_camera;
     let (eye, ray) = (
         world_from_camera.w_axis.truncate(),
@@ -94,28 +90,16 @@ fn on_receiver(scene: &Scene, input: &FrameInput, pixel: DVec2) -> Option<DVec3>
 /// Groups of neighbouring pixels that differ from the plate and do not touch the border.
 fn within(level: &Level) -> Vec<Vec<IVec2>> {
     let size_px = level.frame.size_px;
-    let mut is_open = vec![false; (size_px.x * size_px.y) as usize];
-    let index = |at: IVec2| (at.y * size_px.x + at.x) as usize;
+    let mut changed = Mask::new(size_px);
     for at in pose::changed(level) {
-        is_open[index(at)] = true;
+        changed.mark(at);
     }
-    let mut groups = Vec::new();
-    for start in places(size_px) {
-        let (mut group, mut waiting, mut is_at_border) = (Vec::new(), vec![start], false);
-        while let Some(at) = waiting.pop() {
-            let is_inside = at.cmpge(IVec2::ZERO).all() && at.cmplt(size_px).all();
-            if !is_inside || !std::mem::take(&mut is_open[index(at)]) {
-                continue;
-            }
-            is_at_border |= at.cmpeq(IVec2::ZERO).any() || at.cmpeq(size_px - 1).any();
-            group.push(at);
-            waiting.extend([IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y].map(|step| at + step));
-        }
-        if !group.is_empty() && !is_at_border {
-            groups.push(group);
-        }
-    }
-    groups
+    let is_at_border = |at: &IVec2| at.cmpeq(IVec2::ZERO).any() || at.cmpeq(size_px - 1).any();
+    groups(size_px, |index| changed.has(place_of(index, size_px)))
+        .into_iter()
+        .map(|group| group.into_iter().map(|index| place_of(index, size_px)).collect())
+        .filter(|group: &Vec<IVec2>| !group.iter().any(is_at_border))
+        .collect()
 }
 
 /// A possible pose of the toy.

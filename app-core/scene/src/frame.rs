@@ -65,6 +65,15 @@ pub struct FrameInput {
     pub shadow_style: ShadowStyle,
 }
 
+/// Properties of a picture other than camera, toy pose and lights.
+#[derive(Clone, Debug)]
+pub struct Observations {
+    things: Option<Things>,
+    sharpness: Sharpness,
+    reflection: Option<Reflection>,
+    gloss: Gloss,
+}
+
 impl FrameInput {
     /// A frame of unknown exposure in the scene's light, which shows the authored pose with the
     /// whole effect.
@@ -129,6 +138,26 @@ impl FrameInput {
     pub fn with_light_estimate(mut self, estimate: Option<LightEstimate>) -> Self {
         self.light_estimate = estimate;
         self
+    }
+
+    /// All observations of the picture, for another input with the same picture.
+    #[must_use]
+    pub fn observations(&self) -> Observations {
+        Observations {
+            things: self.things.clone(),
+            sharpness: self.sharpness,
+            reflection: self.reflection,
+            gloss: self.gloss,
+        }
+    }
+
+    /// Sets all observations of the picture.
+    #[must_use]
+    pub fn with_observations(self, observations: Observations) -> Self {
+        self.with_things(observations.things)
+            .with_sharpness(observations.sharpness)
+            .with_reflection(observations.reflection)
+            .with_gloss(observations.gloss)
     }
 
     /// Sets the things in the picture beside the toy.

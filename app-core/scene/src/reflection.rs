@@ -40,12 +40,7 @@ impl Reflection {
     /// and the receiver's normal.
     #[must_use]
     pub fn reflectance(&self, cosine: f64) -> f64 {
-        let roughness = self.roughness.sqrt();
-        let x = 1.0 - roughness;
-        let y = 0.0425 - 0.0275 * roughness;
-        let [z, w] = [1.04 - 0.572 * roughness, 0.022 * roughness - 0.04];
-        let grazing = (x * x).min((-9.28 * cosine).exp2()) * x + y;
-        FROM_ABOVE * (z - 1.04 * grazing) + w + 1.04 * grazing
+        reflectance(self.roughness, cosine)
     }
 
     /// Mirror images of an eye that looks at a foot on the plane y = 0, one for each slope of the
@@ -87,6 +82,18 @@ impl Reflection {
         }
         Ok(())
     }
+}
+
+/// Reflectance of a dielectric of a roughness, for the cosine between the direction of view and the
+/// normal, in light from all around.
+#[must_use]
+pub fn reflectance(roughness: f64, cosine: f64) -> f64 {
+    let root = roughness.sqrt();
+    let x = 1.0 - root;
+    let y = 0.0425 - 0.0275 * root;
+    let [z, w] = [1.04 - 0.572 * root, 0.022 * root - 0.04];
+    let grazing = (x * x).min((-9.28 * cosine).exp2()) * x + y;
+    FROM_ABOVE * (z - 1.04 * grazing) + w + 1.04 * grazing
 }
 
 /// Normal of one of the lobe's slopes, which are all equally likely.

@@ -7,15 +7,11 @@ use std::time::Instant;
 use app_core::alignment::{
     Aligner, Alignment, AlignmentReport, EstimatedLight, LensAlignment, Observer, RatioAlignment,
 };
-use app_core::frame::FrameInput;
-use app_core::gloss::Gloss;
+use app_core::frame::{FrameInput, Observations};
 use app_core::preset::Preset;
 use app_core::probe::TrackedLight;
-use app_core::reflection::Reflection;
 use app_core::scene::{Camera, Light, Receiver, Scene};
 use app_core::session::{Session, SessionFrame};
-use app_core::sharpness::Sharpness;
-use app_core::things::Things;
 use glam::{DMat4, DVec3};
 use serde::Serialize;
 
@@ -66,10 +62,7 @@ pub struct Alignments {
 /// The observation of a frame that stays as it was recorded.
 struct Observed {
     index: usize,
-    things: Option<Things>,
-    sharpness: Sharpness,
-    gloss: Gloss,
-    reflection: Option<Reflection>,
+    observations: Observations,
 }
 
 /// The alignment of one frame.
@@ -274,10 +267,7 @@ impl Alignments {
         })?;
         self.observed.push(Observed {
             index,
-            things: observed.things,
-            sharpness: observed.sharpness,
-            gloss: observed.gloss,
-            reflection: observed.reflection,
+            observations: observed.observations(),
         });
         self.receivers = other_receivers(scene, &self.observer.scene(scene));
         Ok(())
@@ -368,11 +358,7 @@ impl Alignments {
             None => {
                 let observed = self.observed.iter().find(|observed| observed.index == index);
                 observed.map_or(input.clone(), |observed| {
-                    input
-                        .with_things(observed.things.clone())
-                        .with_sharpness(observed.sharpness)
-                        .with_gloss(observed.gloss)
-                        .with_reflection(observed.reflection)
+                    input.with_observations(observed.observations.clone())
                 })
             }
         }

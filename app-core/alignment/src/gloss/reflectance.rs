@@ -3,6 +3,7 @@
 //! Source: Blinn 1977, Walter et al. 2007, Schlick 1994, Hammon 2017, Karis 2014; the same as in
 //! `common/gloss.wgsl`.
 
+use app_scene::reflection::reflectance;
 use glam::DVec3;
 
 /// Reflectance at normal incidence, for refractive index 1.5.
@@ -37,15 +38,7 @@ pub(super) fn of_light(lobe: f64, normal: DVec3, to_camera: DVec3, to_light: DVe
 /// Reflected radiance of the ambient light from above and from below.
 pub(super) fn of_ambient(roughness: f64, normal: DVec3, to_camera: DVec3, up: DVec3) -> [f64; 2] {
     let cosine = normal.dot(to_camera).max(LEAST_COSINE);
-    let root = roughness.sqrt();
-    let [x, y, z, w] = [
-        1.0 - root,
-        0.0425 - 0.0275 * root,
-        1.04 - 0.572 * root,
-        0.022 * root - 0.04,
-    ];
-    let grazing = (x * x).min((-9.28 * cosine).exp2()) * x + y;
-    let reflectance = STRAIGHT * (z - 1.04 * grazing) + 1.04 * grazing + w;
+    let reflectance = reflectance(roughness, cosine);
     let mirrored = 2.0 * normal.dot(to_camera) * normal - to_camera;
     let above = (0.5 + HORIZON_SLOPE * mirrored.dot(up)).clamp(0.0, 1.0);
     [reflectance * above, reflectance * (1.0 - above)]

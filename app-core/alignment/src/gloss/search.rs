@@ -1,5 +1,7 @@
 //! Search for the roughness and the strengths with the smallest residual.
 
+use std::rc::Rc;
+
 use app_scene::gloss::N_GLOSSES;
 
 use super::columns::{Columns, N_COLUMNS};
@@ -77,20 +79,27 @@ struct Trial {
     roughness: f64,
     strengths: [f64; N_GLOSSES],
     loss: f64,
-    reflected: Vec<Columns>,
+    /// Shared by trials of the same roughness.
+    reflected: Rc<[Columns]>,
 }
 
 impl Trial {
     fn new(look: &Look, roughness: f64, strengths: [f64; N_GLOSSES]) -> Self {
-        Self::of(look, &look.reflected(roughness), (roughness, strengths))
+        Self::of(look, look.reflected(roughness).into(), (roughness, strengths))
     }
 
-    fn of(look: &Look, reflected: &[Columns], (roughness, strengths): (f64, [f64; N_GLOSSES])) -> Self {
+    fn of(look: &Look, reflected: Rc<[Columns]>, (roughness, strengths): (f64, [f64; N_GLOSSES])) -> Self {
         Self {
             roughness,
             strengths,
-            loss: loss(look, &Glossy { reflected, strengths }),
-            reflected: reflected.to_vec(),
+            loss: loss(
+                look,
+                &Glossy {
+                    reflected: &reflected,
+                    strengths,
+                },
+            ),
+            reflected,
         }
     }
 
@@ -103,7 +112,7 @@ impl Trial {
     }
 
     fn with_strengths(&self, look: &Look, strengths: [f64; N_GLOSSES]) -> Self {
-        Self::of(look, &self.reflected, (self.roughness, strengths))
+        Self::of(look, Rc::clone(&self.reflected), (self.roughness, strengths))
     }
 
     fn scale_strengths(&mut self, look: &Look) {
@@ -133,9 +142,9 @@ impl Trial {
 
     /// The best uniform gloss at a roughness.
     fn best_at(look: &Look, roughness: f64) -> Self {
-        let reflected = look.reflected(roughness);
-        let [first, rest @ ..] =
-            STRENGTHS.map(|strength| Self::of(look, &reflected, (roughness, [strength; N_GLOSSES])));
+        let reflected: Rc<[Columns]> = look.reflected(roughness).into();
+        let [first, rest @ ..] = STRENGTHS
+            .map(|strength| Self::of(look, Rc::clone(&reflected), (roughness, [strength; N_GLOSSES])));
         let mut best = first;
         for other in rest {
             best.take_if_better(other, LEAST_STEP);
@@ -157,9 +166,10 @@ impl Trial {
             reflected
                 .iter_mut()
                 .for_each(|columns| columns.rows_mut(2, N_COLUMNS - 2).fill(0.0));
+            let reflected: Rc<[Columns]> = reflected.into();
             for factor in WITHOUT_HIGHLIGHTS {
                 let strengths = self.strengths.map(|strength| factor * strength);
-                least = least.min(Self::of(look, &reflected, (roughness, strengths)).loss);
+                least = least.min(Self::of(look, Rc::clone(&reflected), (roughness, strengths)).loss);
             }
         }
         least

@@ -74,7 +74,7 @@ pub(crate) fn reflection(
     pyramid: &Pyramid,
     world_from_camera: &DMat4,
 ) -> Option<FoundReflection> {
-    let level = level_of(pyramid);
+    let level = pyramid.largest_within(MOST_PIXELS);
     level.plate.as_ref()?;
     let camera_from_world = world_from_camera.inverse();
     let lamps = lights
@@ -112,13 +112,6 @@ pub(crate) fn reflection(
         &trials[best]
     };
     best.found(&without)
-}
-
-/// The largest level within the limit.
-fn level_of(pyramid: &Pyramid) -> &Level {
-    let mut levels = (0..=Pyramid::SMALLEST).map(|level| pyramid.level(level));
-    let fits = |level: &&Level| level.frame.size_px.element_product() <= MOST_PIXELS;
-    levels.find(fits).unwrap_or(pyramid.level(Pyramid::SMALLEST))
 }
 
 /// A width of the lobe that is tried.

@@ -218,11 +218,7 @@ impl<'a> Regions<'a> {
 
     /// The point of a plane at a pixel; `None` above its horizon.
     fn seen_at(&self, standing: Standing, at_px: DVec2) -> Option<DVec3> {
-        let ray = DVec3::new(
-            (at_px.x - self.k.cx_px) / self.k.fx_px,
-            -(at_px.y - self.k.cy_px) / self.k.fy_px,
-            -1.0,
-        );
+        let ray = self.k.ray(at_px);
         let toward = ray.dot(standing.normal);
         let depth = standing.point.dot(standing.normal) / toward;
         (toward.abs() > LEAST_SLOPE * ray.length() && depth > 0.0).then_some(depth * ray)

@@ -29,9 +29,8 @@ impl Viewpoint {
 
     /// Unit vector along the line of sight through a pixel.
     pub(super) fn sight(&self, at_px: DVec2) -> DVec3 {
-        let k = &self.intrinsics;
-        let in_camera = DVec3::new((at_px.x - k.cx_px) / k.fx_px, (k.cy_px - at_px.y) / k.fy_px, -1.0);
-        self.probe_from_camera.transform_vector3(in_camera).normalize()
+        let ray = self.intrinsics.ray(at_px);
+        self.probe_from_camera.transform_vector3(ray).normalize()
     }
 
     /// The image of a point, in pixels; `None` behind the camera.

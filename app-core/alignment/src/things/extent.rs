@@ -1,6 +1,6 @@
 //! Estimates the extent of a thing's plane: the smallest rectangle around its visible part.
 
-use glam::{DMat4, DVec2, DVec3};
+use glam::{DMat4, DVec2, DVec3, Vec3Swizzles};
 
 use super::grown::Grown;
 use crate::picture::{Level, places};
@@ -51,10 +51,7 @@ impl Outline<'_> {
         let points = pixels.filter_map(|at| endless.point_at(k, at));
         points
             .filter(|point| !is_level || is_over_thing(*point))
-            .map(|point| {
-                let at = plane_from_camera.transform_point3(point);
-                DVec2::new(at.x, at.z)
-            })
+            .map(|point| plane_from_camera.transform_point3(point).xz())
             .collect()
     }
 

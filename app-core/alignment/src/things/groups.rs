@@ -8,7 +8,7 @@ use crate::picture::index_in;
 pub(super) const STEPS: [IVec2; 4] = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
 
 /// Indices of connected pixels.
-pub(super) fn groups(size_px: IVec2, is_in: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
+pub(crate) fn groups(size_px: IVec2, is_in: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
     let n_pixels = (size_px.x * size_px.y) as usize;
     let mut is_known = vec![false; n_pixels];
     let mut groups = Vec::new();
@@ -49,6 +49,6 @@ pub(super) fn most_around(at: IVec2, is_so: impl Fn(IVec2) -> bool) -> bool {
     clippy::cast_possible_wrap,
     reason = "a place in a picture"
 )]
-pub(super) fn place_of(index: usize, size_px: IVec2) -> IVec2 {
+pub(crate) fn place_of(index: usize, size_px: IVec2) -> IVec2 {
     IVec2::new(index as i32 % size_px.x, index as i32 / size_px.x)
 }

@@ -11,7 +11,7 @@
 mod codes;
 mod colors;
 mod extent;
-mod groups;
+pub(crate) mod groups;
 mod grown;
 pub(crate) mod planes;
 mod seeds;
@@ -224,12 +224,7 @@ fn filled(mask: &Mask, size_px: IVec2) -> Mask {
 
 impl Sight<'_> {
     fn level(&self) -> &Level {
-        let levels = (0..=Pyramid::SMALLEST).map(|level| self.pyramid.level(level));
-        let fits = |level: &&Level| level.frame.size_px.x * level.frame.size_px.y <= MOST_PIXELS;
-        levels
-            .into_iter()
-            .find(fits)
-            .unwrap_or(self.pyramid.level(Pyramid::SMALLEST))
+        self.pyramid.largest_within(MOST_PIXELS)
     }
 
     /// For each pixel of a level, whether it is in a part of a thing with few seeds, but shows

@@ -4,7 +4,7 @@
 //! until the predicted shadow matches the photograph. The remaining loss decides whether the thing
 //! has a plane at all: a cup, a cloth or a hand has none.
 
-use glam::{DMat4, DQuat, DVec2, DVec3, IVec2};
+use glam::{DMat4, DQuat, DVec2, DVec3, IVec2, Vec3Swizzles};
 
 use super::extent::{Extent, Outline};
 use super::grown::Grown;
@@ -115,10 +115,8 @@ fn pixels<'a>(comparison: &'a Comparison, grown: &Grown, thing: usize) -> Vec<&'
     let steps = [IVec2::ZERO, IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
     let is_within = |at: IVec2| steps.iter().all(|step| grown.of_pixel(at + *step) == Some(thing));
     let all = comparison.pixels.iter();
-    let all: Vec<&Compared> = all
-        .filter(|pixel| pixel.noise < NOISIEST && is_within(pixel.at))
-        .collect();
-    all
+    all.filter(|pixel| pixel.noise < NOISIEST && is_within(pixel.at))
+        .collect()
 }
 
 /// The receiver behind most of the pixels; `None` for too few pixels.
@@ -200,10 +198,7 @@ impl<'a> Search<'a> {
             .iter()
             .filter_map(|pixel| table.point_at(&level.intrinsics, pixel.at));
         let ground: Vec<DVec2> = ground
-            .map(|point| {
-                let at = table.plane_from_camera.transform_point3(point);
-                DVec2::new(at.x, at.z)
-            })
+            .map(|point| table.plane_from_camera.transform_point3(point).xz())
             .collect();
         let n = ground.len().max(1) as f64;
         let middle = ground.iter().sum::<DVec2>() / n;

@@ -114,13 +114,7 @@ impl Ghost {
 
     /// The ring's corners and its knob, in front of the toy, in pixels.
     pub(super) fn ring_px(&self, camera: &Camera) -> Option<(Vec<DVec2>, DVec2)> {
-        let pixel = |at_m: DVec2| {
-            let at = self
-                .world_from_plane
-                .transform_point3(DVec3::new(at_m.x, 0.0, at_m.y));
-            let in_camera = camera.world_from_camera.inverse().transform_point3(at);
-            camera.intrinsics.pixel_of(in_camera)
-        };
+        let pixel = |at_m: DVec2| pixel_of(&self.world_from_plane, camera, at_m);
         let corners = circle(self.place_m, self.ring_m, N_CORNERS).filter_map(pixel);
         let front = DVec2::new(self.yaw_rad.sin(), self.yaw_rad.cos());
         Some((corners.collect(), pixel(self.place_m + self.ring_m * front)?))
@@ -156,21 +150,24 @@ fn sizes(toy: &Toy) -> Result<[f64; 2], ToyError> {
 /// The place of a plane at `pixel`, as its x and z; `None` above the horizon, from below, or far
 /// away.
 pub(super) fn seen_at(world_from_plane: &DMat4, camera: &Camera, pixel: DVec2) -> Option<DVec2> {
-    let k = &camera.intrinsics;
-    let direction = DVec3::new(
-        (pixel.x - k.cx_px) / k.fx_px,
-        -(pixel.y - k.cy_px) / k.fy_px,
-        -1.0,
-    );
     let plane_from_camera = world_from_plane.inverse() * camera.world_from_camera;
     let eye = plane_from_camera.w_axis.truncate();
-    let ray = plane_from_camera.transform_vector3(direction).try_normalize()?;
+    let ray = plane_from_camera
+        .transform_vector3(camera.intrinsics.ray(pixel))
+        .try_normalize()?;
     if eye.y <= 0.0 || ray.y > -LEAST_SLOPE {
         return None;
     }
     let distance_m = eye.y / -ray.y;
     let place = eye + distance_m * ray;
     (distance_m <= FARTHEST_M).then_some(DVec2::new(place.x, place.z))
+}
+
+/// The image of a place of a plane, given as its x and z, in pixels; `None` behind the camera.
+pub(super) fn pixel_of(world_from_plane: &DMat4, camera: &Camera, place_m: DVec2) -> Option<DVec2> {
+    let at = world_from_plane.transform_point3(DVec3::new(place_m.x, 0.0, place_m.y));
+    let in_camera = camera.world_from_camera.inverse().transform_point3(at);
+    camera.intrinsics.pixel_of(in_camera)
 }
 
 /// Corners of a circle, starting on the first axis.

@@ -1,10 +1,10 @@
 //! The sign that a table was found: a reticle on it, and a grid of dots around the reticle.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use super::App;
 use super::event::{PlatformCommand, ShellCommand};
-use super::ghost::{circle, seen_at};
+use super::ghost::{circle, pixel_of, seen_at};
 use super::step::Step;
 use super::table::table_at;
 use app_scene::camera_frame::{CameraFrame, FoundPlane};
@@ -34,13 +34,7 @@ impl App {
         let latest = self.latest.as_ref().filter(|_| self.step == Step::FindTable)?;
         let camera = latest.camera()?;
         let (plane, place_m) = hit(latest, &camera)?;
-        let pixel = |at_m: DVec2| {
-            let at = plane
-                .world_from_plane
-                .transform_point3(DVec3::new(at_m.x, 0.0, at_m.y));
-            let in_camera = camera.world_from_camera.inverse().transform_point3(at);
-            camera.intrinsics.pixel_of(in_camera)
-        };
+        let pixel = |at_m: DVec2| pixel_of(&plane.world_from_plane, &camera, at_m);
         let ring = circle(place_m, RADIUS_M, N_CORNERS).filter_map(pixel);
         let dots = grid(place_m, plane.half_extent_m).filter_map(|at_m| {
             let seen = 1.0 - at_m.distance(place_m) / REACH_M;
@@ -55,10 +49,10 @@ impl App {
     /// Gives a haptic pulse when the reticle reaches a table.
     pub(super) fn follow_reticle(&mut self, commands: &mut Vec<ShellCommand>) {
         let has_reticle = self.step == Step::FindTable && self.reticle_px().is_some();
-        if has_reticle && !std::mem::replace(&mut self.had_reticle, has_reticle) {
+        let had_reticle = std::mem::replace(&mut self.had_reticle, has_reticle);
+        if has_reticle && !had_reticle {
             commands.push(PlatformCommand::Knock.into());
         }
-        self.had_reticle = has_reticle;
     }
 
     /// The pixel at which the reticle points.

@@ -272,6 +272,16 @@ impl Intrinsics {
         }
     }
 
+    /// The ray through a pixel, in camera space: its point at a depth of 1.
+    #[must_use]
+    pub fn ray(&self, pixel: DVec2) -> DVec3 {
+        DVec3::new(
+            (pixel.x - self.cx_px) / self.fx_px,
+            -(pixel.y - self.cy_px) / self.fy_px,
+            -1.0,
+        )
+    }
+
     /// The image of a point in camera space, in pixels; `None` behind the camera.
     #[must_use]
     pub fn pixel_of(&self, point: DVec3) -> Option<DVec2> {

@@ -9,7 +9,7 @@ use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Recorder, cleared_to};
 use crate::gpu::shader::{Shader, shader};
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::gbuffer;
 use crate::model::plan::Plan;
 use crate::model::state::solution::{SEEN_SLOTS, SeenScene};
@@ -54,6 +54,10 @@ impl Targets {
         Self {
             reflected: is_needed(plan).then(target),
         }
+    }
+
+    pub(crate) fn view(&self) -> Option<&TextureView> {
+        self.reflected.as_ref().map(|texture| &texture.view)
     }
 }
 

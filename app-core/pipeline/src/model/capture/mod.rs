@@ -410,13 +410,7 @@ impl CapturePath<'_> {
             seen: self.seen(),
             validity: self.validity(),
             gbuffer: &self.captured.by_pass.gbuffer,
-            reflected: self
-                .captured
-                .by_pass
-                .gloss
-                .reflected
-                .as_ref()
-                .map(|texture| &texture.view),
+            reflected: self.captured.by_pass.gloss.view(),
         }
     }
 

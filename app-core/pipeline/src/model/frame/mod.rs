@@ -125,13 +125,7 @@ impl FramePath<'_> {
             self_shadow: [&self.drawn.light.self_shadow, &self.captured.light.self_shadow],
             tints: &self.state.tints,
             rim: self.captured.by_pass.rim.mixed.as_ref().map(|mixed| &mixed.view),
-            reflected: self
-                .captured
-                .by_pass
-                .gloss
-                .reflected
-                .as_ref()
-                .map(|texture| &texture.view),
+            reflected: self.captured.by_pass.gloss.view(),
             specular: &self.region.specular,
         }
     }
