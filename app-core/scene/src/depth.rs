@@ -48,7 +48,9 @@ impl Depth {
     pub fn points(&self, camera: Intrinsics, picture_px: UVec2) -> impl Iterator<Item = DVec3> {
         let per_px = picture_px.as_dvec2() / self.size_px.as_dvec2();
         let pixels = (0..self.size_px.y).flat_map(|y| (0..self.size_px.x).map(move |x| UVec2::new(x, y)));
-        let known = pixels.zip(self.depths_mm.iter()).filter(|(_, depth_mm)| **depth_mm > 0);
+        let known = pixels
+            .zip(self.depths_mm.iter())
+            .filter(|(_, depth_mm)| **depth_mm > 0);
         known.map(move |(at, depth_mm)| {
             let at_px: DVec2 = (at.as_dvec2() + 0.5) * per_px;
             1e-3 * f64::from(*depth_mm) * camera.ray(at_px)

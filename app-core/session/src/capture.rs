@@ -151,7 +151,9 @@ impl Capture {
         if let Some((_, depth)) = last.as_ref().filter(|(of_last, _)| of_last == path) {
             return Ok(Some(depth.clone()));
         }
-        let depth = self.store.read(path, &frame_field(index, ".depth"), decode_depth)?;
+        let depth = self
+            .store
+            .read(path, &frame_field(index, ".depth"), decode_depth)?;
         *last = Some((path.clone(), depth.clone()));
         Ok(Some(depth))
     }
@@ -203,8 +205,13 @@ impl Session for Capture {
                     self.store.read(path, &frame_field(index, field), check)?;
                 }
             }
-            if let Some(path) = frame.depth.as_ref().filter(|path| known.insert((path.as_str(), false))) {
-                self.store.read(path, &frame_field(index, ".depth"), check_depth)?;
+            if let Some(path) = frame
+                .depth
+                .as_ref()
+                .filter(|path| known.insert((path.as_str(), false)))
+            {
+                self.store
+                    .read(path, &frame_field(index, ".depth"), check_depth)?;
             }
         }
         Ok(())

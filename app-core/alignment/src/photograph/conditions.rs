@@ -122,10 +122,12 @@ impl Photograph {
         };
         let in_scene = nearest_to_toy(scene, &input.world_from_object);
         let planes = found.planes.into_iter().map(|found| {
-            let receiver = found.plane.receiver(
-                format!("{:.0} mm up", 1e3 * found.report.height_m),
-                &input.camera.world_from_camera,
-            );
+            let name = if found.report.is_upright() {
+                "a side".to_owned()
+            } else {
+                format!("{:.0} mm up", 1e3 * found.report.height_m)
+            };
+            let receiver = found.plane.receiver(name, &input.camera.world_from_camera);
             FoundReceiver {
                 receiver,
                 instead_of: found.instead_of.and_then(|index| in_scene.get(index).copied()),

@@ -15,7 +15,9 @@ pub fn corners_in_world(toy_in_object: &toy::Bounds, world_from_object: &DMat4) 
         max: toy_in_object.max.as_dvec3(),
     };
     let corners = bounds.corners();
-    corners.map(|corner| world_from_object.transform_point3(corner)).collect()
+    corners
+        .map(|corner| world_from_object.transform_point3(corner))
+        .collect()
 }
 
 /// Indices of a scene's receivers, the one nearest to the toy in a place first.

@@ -59,7 +59,15 @@ fn a_good_capture_is_read_as_written() {
         Arc::ptr_eq(&first.image, &second.image),
         "a repeated picture is shared"
     );
-    assert_eq!(n_reads.load(Ordering::Relaxed), before + 1, "and read once");
+    let n_files = 2;
+    assert_eq!(
+        n_reads.load(Ordering::Relaxed),
+        before + n_files,
+        "a picture and depths, each read once"
+    );
+    let depth = first.depth.unwrap();
+    assert_eq!((depth.size_px().to_array(), depth.known()), ([4, 4], 0.0));
+    assert!(second.depth.is_none());
     assert_eq!(first.light_estimate, None);
     let estimate = second.light_estimate.unwrap();
     assert_eq!(estimate.direction_to_light_in_world, Some(glam::DVec3::Y));

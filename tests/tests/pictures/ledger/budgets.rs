@@ -142,9 +142,9 @@ fn soft_pictures_stay_within_their_budgets() {
 /// With the top and two sides of a box beside the toy, as planes that are found or delivered.
 #[test]
 fn other_planes_stay_within_their_budgets() {
-    const TRIANGLES: [u64; 3] = [1, 1, 1];
-    const COPIES: [f64; 3] = [1.0, 1.0, 1.0];
-    const PEAK_MIB: f64 = 1.0;
+    const TRIANGLES: [u64; 3] = [1_310_000, 1_310_000, 2_460_000];
+    const COPIES: [f64; 3] = [1.58, 1.93, 2.91];
+    const PEAK_MIB: f64 = 33.5;
     let (mut scene, input) = scene_of(ball(100, 51), 1);
     scene.receivers.extend(box_beside());
     let counted = count(&scene, (Preset::Balanced, &[]), &input).unwrap();
