@@ -43,8 +43,6 @@ const OF_OTHERS: f64 = 0.35;
 /// others for noise.
 const OF_MEASURED: f64 = 0.003;
 const NOISE: f64 = 1e-4;
-/// Loss of a side without a shadow, by the error of its ambient light.
-const OF_AMBIENT: f64 = 0.002;
 /// Loss of a squared deviation from the plane of a depth sensor.
 const OFF_MEASURED: f64 = 1e-4;
 /// If these leave a smaller loss, there is nothing to explain.
@@ -389,13 +387,13 @@ impl<'a> Search<'a> {
         (is_significant && n_shadowed >= least).then_some([of_receiver, loss])
     }
 
-    /// Losses of the known receivers and of an upright side; `None` if the pixels show those, or no
-    /// shadow at all where the side should have one.
+    /// Losses of the known receivers and of an upright side; `None` if those, or no shadow at all,
+    /// explain the pixels better.
     fn agreed_losses(&self, raster: &mut Rasterizer, plane: &SeenReceiver) -> Option<[f64; 2]> {
         let loss = self.loss_of(&self.on_plane.ratios(raster, plane, &self.pixels));
         let of_receiver = self.loss_of(&self.expected);
         let of_light = self.loss_of(&vec![Some([1.0; 3]); self.seen.len()]);
-        (loss < of_receiver && loss < of_light + OF_AMBIENT).then_some([of_receiver, loss])
+        (loss < of_receiver.min(of_light) + NOISE).then_some([of_receiver, loss])
     }
 
     /// The best of some tries, with their losses.
