@@ -128,10 +128,14 @@ enum Stage {
 pub struct StandingSearch {
     scene: Arc<Scene>,
     input: FrameInput,
+    /// Point of the world that the toy's image is at, if it is known.
+    at: Option<DVec3>,
     stage: Stage,
     /// The search, once the first guesses are made.
     search: Option<Search>,
     guesses: Vec<DMat4>,
+    /// Whether the best guesses are the first.
+    are_ranked: bool,
     followed: Vec<Followed>,
     found: Vec<FoundToy>,
     best: Option<StandingPose>,
@@ -139,18 +143,31 @@ pub struct StandingSearch {
 
 impl StandingSearch {
     /// Begins a search. `input.world_from_object` stands on the first receiver, in any turn: at the
-    /// toy's place if there is no plate, and anywhere if there is one.
+    /// toy's place if there is no plate, and anywhere if there is one: the search then begins where
+    /// the picture differs from the plate.
     #[must_use]
     pub fn new(scene: Arc<Scene>, input: FrameInput) -> Self {
         Self {
             scene,
             input,
+            at: None,
             stage: Stage::Guess,
             search: None,
             guesses: Vec::new(),
+            are_ranked: false,
             followed: Vec::new(),
             found: Vec::new(),
             best: None,
+        }
+    }
+
+    /// The same beside a plate where the toy's image is at this point of the world, whatever else
+    /// in the picture differs from the plate.
+    #[must_use]
+    pub fn at(self, point: DVec3) -> Self {
+        Self {
+            at: Some(point),
+            ..self
         }
     }
 
@@ -185,33 +202,43 @@ impl StandingSearch {
     fn guess(&mut self) -> Result<Stage, AlignError> {
         check(&self.scene, &self.input)?;
         let search = Search::new(Arc::clone(&self.scene), self.input.clone())?;
-        self.guesses = match self.scene.receivers.first() {
-            Some(receiver) if !self.scene.plates.is_empty() => {
-                let normal = receiver.world_from_plane.y_axis.truncate();
-                let world_from_camera = self.input.camera.world_from_camera;
-                let camera_from_world = world_from_camera.inverse();
-                let (_, tiny) = search.tiny();
-                let shape = Shape::new(&self.scene, &(camera_from_world * self.input.world_from_object))?;
-                let standing = Standing {
-                    point: shape.centre,
-                    normal: camera_from_world.transform_vector3(normal).normalize(),
-                };
-                let coarse = shape.merged_in_px(0.5, &tiny);
-                let guesses = pose::standing_guesses(&coarse, &tiny, (standing, &turns()));
-                let in_world = |guess: &DMat4| world_from_camera * *guess * camera_from_world;
-                let poses = guesses
-                    .iter()
-                    .map(|guess| in_world(&guess.camera_from_upright) * self.input.world_from_object);
-                poses.collect()
-            }
-            _ => self.turned_in_place(),
-        };
+        self.guesses = self.ranked(&search)?;
+        self.are_ranked = !self.guesses.is_empty();
+        if !self.are_ranked {
+            self.guesses = self.turned_in_place();
+        }
         self.best = self.guesses.first().map(|world_from_object| StandingPose {
             world_from_object: *world_from_object,
             outline_px: None,
         });
         self.search = Some(search);
         Ok(Stage::Register)
+    }
+
+    /// The best place of each turn beside a plate, ranked by the picture; none without a plate.
+    fn ranked(&self, search: &Search) -> Result<Vec<DMat4>, AlignError> {
+        let receiver = self.scene.receivers.first();
+        let Some(receiver) = receiver.filter(|_| !self.scene.plates.is_empty()) else {
+            return Ok(Vec::new());
+        };
+        let normal = receiver.world_from_plane.y_axis.truncate();
+        let world_from_camera = self.input.camera.world_from_camera;
+        let camera_from_world = world_from_camera.inverse();
+        let (_, tiny) = search.tiny();
+        let shape = Shape::new(&self.scene, &(camera_from_world * self.input.world_from_object))?;
+        let standing = Standing {
+            point: shape.centre,
+            normal: camera_from_world.transform_vector3(normal).normalize(),
+        };
+        let coarse = shape.merged_in_px(0.5, &tiny);
+        let pixel = |at: DVec3| tiny.intrinsics.pixel_of(camera_from_world.transform_point3(at));
+        let tapped_px = self.at.and_then(pixel);
+        let guesses = pose::standing_guesses(&coarse, &tiny, (standing, &turns()), tapped_px);
+        let in_world = |guess: &DMat4| world_from_camera * *guess * camera_from_world;
+        let poses = guesses
+            .iter()
+            .map(|guess| in_world(&guess.camera_from_upright) * self.input.world_from_object);
+        Ok(poses.collect())
     }
 
     /// All turns at the given place, starting with that of the input.
@@ -247,10 +274,10 @@ impl StandingSearch {
             self.input.camera = camera;
             self.search = Some(Search::new(Arc::clone(&self.scene), self.input.clone())?);
         }
-        let n_followed = if plates.is_empty() {
-            self.guesses.len()
-        } else {
+        let n_followed = if self.are_ranked {
             N_FOLLOWED
+        } else {
+            self.guesses.len()
         };
         let mut waiting: Vec<DMat4> = self.guesses.iter().take(n_followed).copied().collect();
         waiting.reverse();

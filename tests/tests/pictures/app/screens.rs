@@ -2,9 +2,11 @@
 
 use app_core::app::{App, GraphicsState, Language, Permission, ShellEvent, Step, UserAction};
 use app_core::camera_frame::Tracking;
+use app_core::interface::accesskit::{Action, ActionRequest, Role, TreeId};
 use app_core::interface::{Insets, Interface, Screen, Touch, TouchPhase, Widget, all_words};
 use glam::DVec2;
 
+use super::orders::{happen, straight};
 use crate::app::world;
 
 /// Smallest height of a touch target, in points.
@@ -176,6 +178,45 @@ fn a_finger_presses_the_button_below_it() {
         [UserAction::Begin]
     );
     assert_eq!(press([5.0, 5.0]), []);
+}
+
+/// A screen reader's request for an action of the widget with this role.
+fn requested(interface: &Interface, role: Role, action: Action) -> ActionRequest {
+    let tree = interface.accessibility_tree().expect("a tree");
+    let node = tree.nodes.iter().find(|(_, node)| node.role() == role && node.supports_action(action));
+    ActionRequest {
+        action,
+        target_tree: TreeId::ROOT,
+        target_node: node.expect("a widget").0,
+        data: None,
+    }
+}
+
+#[test]
+fn a_screen_reader_presses_buttons_and_moves_the_time() {
+    let mut app = world::app();
+    let _ = app.event(ShellEvent::Foreground(true));
+    let mut interface = Interface::default();
+    assert!(interface.accessibility_tree().is_none());
+    interface.actions(&app, &PORTRAIT);
+    interface.actions(&app, &PORTRAIT);
+    let press = requested(&interface, Role::Button, Action::Click);
+    interface.request(press);
+    assert_eq!(interface.actions(&app, &PORTRAIT), [UserAction::Begin]);
+    assert_eq!(interface.actions(&app, &PORTRAIT), [], "once");
+    let app = happen(straight());
+    let length_s = app.playback().length_s();
+    assert!(length_s > 0.0);
+    interface.actions(&app, &PORTRAIT);
+    for (action, at) in [(Action::Increment, 0.05), (Action::Decrement, 0.0)] {
+        let request = requested(&interface, Role::Slider, action);
+        interface.request(request);
+        let moved = interface.actions(&app, &PORTRAIT);
+        let is_moved = |action: &UserAction| {
+            matches!(action, UserAction::Scrub(time_s) if (time_s - at * length_s).abs() < 0.1 * length_s)
+        };
+        assert!(moved.iter().any(is_moved), "{action:?}: {moved:?}");
+    }
 }
 
 /// The flaw of a text, given in each language.
