@@ -70,6 +70,12 @@ impl Remedy {
 /// A text in each language of [`Language`](app_core::app::Language), in their order.
 pub type InEachLanguage = [&'static str; 2];
 
+/// The disclosure that Google requires of apps with ARCore.
+pub const DISCLOSURE: InEachLanguage = [
+    "This application runs on Google Play Services for AR (ARCore), which is provided by Google and governed by the Google Privacy Policy (policies.google.com/privacy).",
+    "Diese Anwendung läuft mit Google Play-Diensten für AR (ARCore). Diese werden von Google bereitgestellt und unterliegen der Datenschutzerklärung von Google (policies.google.com/privacy).",
+];
+
 /// Every `ArStatus` but success: its number, its name in C, the message, and the remedy.
 #[rustfmt::skip]
 pub const STATUSES: &[(ArStatus, &str, InEachLanguage, Remedy)] = &[
@@ -131,7 +137,10 @@ impl Failure {
             Some((_, _, message, _)) => message.map(str::to_owned),
             None => [
                 self.to_string(),
-                format!("ARCore ist auf eine Weise ausgefallen, die diese App nicht kennt ({}).", self.0),
+                format!(
+                    "ARCore ist auf eine Weise ausgefallen, die diese App nicht kennt ({}).",
+                    self.0
+                ),
             ],
         };
         let [english, german] = self.remedy().words();

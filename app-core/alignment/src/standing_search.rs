@@ -47,30 +47,56 @@ pub struct NewObject {
     pub share: f64,
 }
 
-impl NewObject {
-    /// The largest new region of a picture that does not reach the picture's border, as an arm
-    /// does; `None` without a plate.
+/// Difference between a picture and its plate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TableChange {
+    /// There is none, or there is no plate.
+    None,
+    /// The largest new region that does not reach the picture's border.
+    Object(NewObject),
+    /// All new regions reach the border, as an arm does.
+    AtBorder,
+}
+
+impl TableChange {
+    /// Compares a picture with its plate.
     ///
     /// # Errors
     ///
     /// As [`Aligner::align`](crate::Aligner::align).
-    pub fn of(scene: &Scene, input: &FrameInput) -> Result<Option<Self>, AlignError> {
+    pub fn of(scene: &Scene, input: &FrameInput) -> Result<Self, AlignError> {
         check(scene, input)?;
         let photograph = Photograph::new(scene, input, None);
         let tiny = photograph.pyramid().at_most(pose::TINY_PIXELS);
         if tiny.plate.is_none() {
-            return Ok(None);
+            return Ok(Self::None);
         }
-        let to_picture = f64::from(scene.width_px) / f64::from(tiny.frame.size_px.x.max(1));
-        let Some(changed) = within(&tiny).into_iter().max_by_key(Vec::len) else {
-            return Ok(None);
-        };
-        let n = changed.len() as f64;
-        let sum: DVec2 = changed.iter().map(|at| at.as_dvec2() + 0.5).sum();
-        let share = n / f64::from(tiny.frame.size_px.x * tiny.frame.size_px.y);
-        let at = on_receiver(scene, input, to_picture * sum / n);
-        Ok(at.filter(|_| share >= LEAST_SHARE).map(|at| Self { at, share }))
+        let size_px = tiny.frame.size_px;
+        let n_least = LEAST_SHARE * f64::from(size_px.x * size_px.y);
+        let mut regions = changed_regions(&tiny);
+        regions.retain(|region| region.len() as f64 >= n_least);
+        let is_any = !regions.is_empty();
+        let is_at_border = |at: &IVec2| at.cmpeq(IVec2::ZERO).any() || at.cmpeq(size_px - 1).any();
+        regions.retain(|region| !region.iter().any(is_at_border));
+        let largest = regions.into_iter().max_by_key(Vec::len);
+        let object = largest.and_then(|region| object(&region, scene, (input, size_px)));
+        Ok(match object {
+            Some(object) => Self::Object(object),
+            None if is_any => Self::AtBorder,
+            None => Self::None,
+        })
     }
+}
+
+/// A region of a reduced picture as an object on the first receiver; `None` above its horizon.
+fn object(region: &[IVec2], scene: &Scene, (input, size_px): (&FrameInput, IVec2)) -> Option<NewObject> {
+    let to_picture = f64::from(scene.width_px) / f64::from(size_px.x.max(1));
+    let n = region.len() as f64;
+    let sum: DVec2 = region.iter().map(|at| at.as_dvec2() + 0.5).sum();
+    Some(NewObject {
+        at: on_receiver(scene, input, to_picture * sum / n)?,
+        share: n / f64::from(size_px.x * size_px.y),
+    })
 }
 
 /// Intersection of a pixel's ray with the first receiver, in the world; `None` above its horizon.
@@ -87,18 +113,16 @@ fn on_receiver(scene: &Scene, input: &FrameInput, pixel: DVec2) -> Option<DVec3>
     (height > 0.0 && slope < 0.0).then(|| eye - height / slope * ray)
 }
 
-/// Groups of neighbouring pixels that differ from the plate and do not touch the border.
-fn within(level: &Level) -> Vec<Vec<IVec2>> {
+/// Groups of neighbouring pixels that differ from the plate.
+fn changed_regions(level: &Level) -> Vec<Vec<IVec2>> {
     let size_px = level.frame.size_px;
     let mut changed = Mask::new(size_px);
     for at in pose::changed(level) {
         changed.mark(at);
     }
-    let is_at_border = |at: &IVec2| at.cmpeq(IVec2::ZERO).any() || at.cmpeq(size_px - 1).any();
     groups(size_px, |index| changed.has(place_of(index, size_px)))
         .into_iter()
         .map(|group| group.into_iter().map(|index| place_of(index, size_px)).collect())
-        .filter(|group: &Vec<IVec2>| !group.iter().any(is_at_border))
         .collect()
 }
 
@@ -204,7 +228,8 @@ impl StandingSearch {
         let search = Search::new(Arc::clone(&self.scene), self.input.clone())?;
         self.guesses = self.ranked(&search)?;
         self.are_ranked = !self.guesses.is_empty();
-        if !self.are_ranked {
+        // What differs from the plate is no toy if no turn of it fits there.
+        if self.scene.plates.is_empty() || (self.at.is_some() && !self.are_ranked) {
             self.guesses = self.turned_in_place();
         }
         self.best = self.guesses.first().map(|world_from_object| StandingPose {

@@ -250,19 +250,28 @@ mod tests {
     #[test]
     fn the_systems_questions_are_there_in_each_language() {
         let properties = shell("Info.plist");
-        let in_language = LANGUAGES.map(|language| shell(&format!("words/{language}.lproj/InfoPlist.strings")));
+        let in_language =
+            LANGUAGES.map(|language| shell(&format!("words/{language}.lproj/InfoPlist.strings")));
         let [english, german] = in_language.each_ref().map(|strings| questions(strings));
-        assert_eq!(english.len(), properties.matches("UsageDescription</key>").count());
+        assert_eq!(
+            english.len(),
+            properties.matches("UsageDescription</key>").count()
+        );
         for ((key, text), (german_key, german)) in english.iter().zip(&german) {
             assert_eq!(key, german_key);
             assert!(properties.contains(&format!("<key>{key}</key>\n    <string>{text}</string>")));
             assert!(german != text && !german.is_empty(), "{key}");
         }
         assert_eq!(english.len(), german.len());
-        let (_, list) = properties.split_once("<key>CFBundleLocalizations</key>").expect("languages");
+        let (_, list) = properties
+            .split_once("<key>CFBundleLocalizations</key>")
+            .expect("languages");
         let (list, _) = list.split_once("</array>").expect("their end");
         for language in LANGUAGES {
-            assert!(list.contains(&format!("<string>{language}</string>")), "{language}");
+            assert!(
+                list.contains(&format!("<string>{language}</string>")),
+                "{language}"
+            );
         }
         assert!(questions("A = \"b\";\n/* c */") == [("A", "b")]);
     }

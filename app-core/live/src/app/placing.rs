@@ -99,8 +99,11 @@ impl App {
         if self.step != Step::PlaceToy {
             return;
         }
-        if self.search.is_found() {
-            self.knock_for_toy(commands);
+        match self.search.placing() {
+            Placing::Asked { is_searching: false } => self.knock_for_toy(commands),
+            // Also after a false alarm.
+            Placing::Waiting { .. } => self.owes_knock = true,
+            _ => {}
         }
         if !is_better {
             return;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use app_alignment::{NewObject, StandingPose, StandingSearch};
+use app_alignment::{NewObject, StandingPose, StandingSearch, TableChange};
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 
@@ -17,6 +17,8 @@ const STILL_SHARE: f64 = 0.25;
 /// The same for a thing that was searched in vain: beyond, it is gone, or it is another thing.
 const GONE_M: f64 = 0.05;
 const GONE_SHARE: f64 = 0.5;
+/// Number of consecutive examinations of an empty table after which a thing is gone.
+const N_EMPTY: u32 = 2;
 /// Waiting time after which the person gets more advice.
 const LONG_S: f64 = 6.0;
 /// Largest distance between the outlines of a found pose and the picture, in pixels.
@@ -59,7 +61,9 @@ impl SearchJob {
     #[must_use]
     pub fn run(self) -> SearchedJob {
         let result = match self.part {
-            Part::Look(scene, input) => SearchResult::Looked(NewObject::of(&scene, &input).ok().flatten()),
+            Part::Look(scene, input) => {
+                SearchResult::Looked(TableChange::of(&scene, &input).unwrap_or(TableChange::None))
+            }
             Part::Step(mut search) => match search.step() {
                 Ok(()) => SearchResult::Stepped(search),
                 Err(_) => SearchResult::Refused,
@@ -81,7 +85,7 @@ pub struct SearchedJob {
 
 #[derive(Debug)]
 enum SearchResult {
-    Looked(Option<NewObject>),
+    Looked(TableChange),
     Stepped(Box<StandingSearch>),
     Refused,
 }
@@ -109,8 +113,8 @@ enum Stage {
     Step(Start, Box<StandingSearch>),
     /// The search is at a step.
     AtWork(Start),
-    /// The search has ended. If it was for a new thing in vain, the table is examined from time to
-    /// time.
+    /// The search has ended. If it was for a new thing, the table is examined from time to time: it
+    /// may have been a false alarm.
     Ended(Start),
     /// The person moves the ghost.
     #[default]
@@ -129,6 +133,8 @@ pub(super) struct Search {
     /// Seconds since the last examination, and since the start of the search.
     looked_s: f64,
     waited_s: f64,
+    /// Number of latest examinations that showed an empty table.
+    n_empty: u32,
     pub(super) best: Option<StandingPose>,
 }
 
@@ -181,7 +187,7 @@ impl Search {
     }
 
     /// Whether the search has ended with a pose that matches the picture.
-    pub(super) fn is_found(&self) -> bool {
+    fn is_found(&self) -> bool {
         self.placing() == Placing::Asked { is_searching: false }
     }
 
@@ -192,12 +198,13 @@ impl Search {
             (Stage::Ended(_), Some(best)) if best.outline_px.is_some_and(|px| px <= FOUND_PX) => {
                 Placing::Asked { is_searching: false }
             }
+            // A thing that no turn of the toy fits is none.
+            (Stage::Watch(_) | Stage::Ended(Start::Noticed(_)), None) => Placing::Waiting {
+                is_long: self.waited_s > LONG_S,
+            },
             // No pose matches the outline: the person turns the best start.
             (Stage::Ended(_), _) => Placing::ByHand,
             (_, Some(_)) => Placing::Asked { is_searching: true },
-            (Stage::Watch(_), None) => Placing::Waiting {
-                is_long: self.waited_s > LONG_S,
-            },
             (_, None) => Placing::Looking,
         }
     }
@@ -249,11 +256,19 @@ impl Search {
 
     /// Whether the table is examined from time to time.
     fn watches(&self) -> bool {
-        match self.stage {
-            Stage::Watch(_) => true,
-            Stage::Ended(Start::Noticed(_)) => !self.is_found(),
-            _ => false,
-        }
+        matches!(self.stage, Stage::Watch(_) | Stage::Ended(Start::Noticed(_)))
+    }
+
+    /// Whether a thing that was searched is no longer there. A found toy may also look different, as
+    /// from another side.
+    fn is_gone(&mut self, before: NewObject, change: TableChange) -> bool {
+        self.n_empty = match change {
+            TableChange::None => self.n_empty + 1,
+            TableChange::Object(_) | TableChange::AtBorder => 0,
+        };
+        let is_other = |now| !is_same([before, now], (GONE_M, GONE_SHARE));
+        let is_replaced = !self.is_found() && object_of(change).is_some_and(is_other);
+        is_replaced || self.n_empty >= N_EMPTY
     }
 
     /// Adopts the result of a part. Returns whether there is a better pose.
@@ -263,7 +278,8 @@ impl Search {
             return false;
         }
         match (done.result, &self.stage) {
-            (SearchResult::Looked(seen), Stage::Watch(before)) => {
+            (SearchResult::Looked(change), Stage::Watch(before)) => {
+                let seen = object_of(change);
                 self.stage = match (*before, seen) {
                     (Some(before), Some(now)) if is_same([before, now], (STILL_M, STILL_SHARE)) => {
                         Stage::Begin(Start::Noticed(now))
@@ -271,10 +287,9 @@ impl Search {
                     _ => Stage::Watch(seen),
                 };
             }
-            (SearchResult::Looked(seen), Stage::Ended(Start::Noticed(missed))) => {
-                let stays = seen.is_some_and(|now| is_same([*missed, now], (GONE_M, GONE_SHARE)));
-                if !stays {
-                    self.turn_to(Stage::Watch(seen));
+            (SearchResult::Looked(change), &Stage::Ended(Start::Noticed(before))) => {
+                if self.is_gone(before, change) {
+                    self.turn_to(Stage::Watch(object_of(change)));
                 }
             }
             (SearchResult::Stepped(search), &Stage::AtWork(start)) => {
@@ -290,6 +305,13 @@ impl Search {
             _ => {}
         }
         false
+    }
+}
+
+fn object_of(change: TableChange) -> Option<NewObject> {
+    match change {
+        TableChange::Object(object) => Some(object),
+        TableChange::None | TableChange::AtBorder => None,
     }
 }
 

@@ -52,8 +52,14 @@ fn frame_at(app: &mut App, id: u64, tenths: u32, tracking: Tracking) -> Vec<Shel
 #[test]
 fn every_sheet_has_a_way_out() {
     let troubles = [
-        ShellEvent::ArTrouble(ArSession::Unsupported, ["This phone cannot run ARCore.", "Auf Deutsch."].into()),
-        ShellEvent::ArTrouble(ArSession::Installing, ["It is being installed.", "Auf Deutsch."].into()),
+        ShellEvent::ArTrouble(
+            ArSession::Unsupported,
+            ["This phone cannot run ARCore.", "Auf Deutsch."].into(),
+        ),
+        ShellEvent::ArTrouble(
+            ArSession::Installing,
+            ["It is being installed.", "Auf Deutsch."].into(),
+        ),
         ShellEvent::ArTrouble(ArSession::Failed, ["ARCore failed.", "Auf Deutsch."].into()),
         ShellEvent::ArSession(ArSession::Interrupted),
         ShellEvent::Permission(Permission::Denied),
@@ -93,7 +99,10 @@ fn what_the_platform_says_of_ar_is_read_and_it_can_be_tried_again() {
     let mut app = looking();
     let words = "Google Play Services for AR is too old.";
     let german = "Google Play-Dienste für AR sind zu alt.";
-    let _ = app.event(ShellEvent::ArTrouble(ArSession::Unsupported, [words, german].into()));
+    let _ = app.event(ShellEvent::ArTrouble(
+        ArSession::Unsupported,
+        [words, german].into(),
+    ));
     let mut interface = Interface::default();
     interface.actions(&app, &world::screen(844, 390));
     interface.actions(&app, &world::screen(844, 390));

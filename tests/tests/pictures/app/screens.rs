@@ -1,5 +1,7 @@
 //! The interface without a device: its labels and touch targets, on every screen.
 
+use std::collections::BTreeSet;
+
 use app_core::app::{App, GraphicsState, Language, Permission, ShellEvent, Step, UserAction};
 use app_core::camera_frame::Tracking;
 use app_core::interface::accesskit::{Action, ActionRequest, Role, TreeId};
@@ -139,6 +141,30 @@ fn whatever_is_touched_is_large_enough_read_out_and_on_the_screen() {
 }
 
 #[test]
+fn with_large_letters_the_next_step_needs_no_scrolling() {
+    let low = Screen {
+        text_scale: 1.6,
+        ..world::screen(844, 390)
+    };
+    let mut found = BTreeSet::new();
+    for app in &apps(Language::English) {
+        for Widget { label, bounds_px, .. } in widgets(app, &low) {
+            if ["Begin", "Here"].contains(&label.as_str()) {
+                // A sheet has 12 points around it, and 16 within.
+                let [_, top, _, bottom] = bounds_px;
+                let margin_px = 28.0 * low.text_scale - 1.0;
+                assert!(
+                    top > margin_px && bottom < 390.0 - margin_px,
+                    "{label}: {bounds_px:?}"
+                );
+                found.insert(label);
+            }
+        }
+    }
+    assert_eq!(found.len(), 2, "{found:?}");
+}
+
+#[test]
 fn a_sheet_is_the_same_whichever_came_before() {
     for (name, screen) in screens() {
         let mut interface = Interface::default();
@@ -183,7 +209,10 @@ fn a_finger_presses_the_button_below_it() {
 /// A screen reader's request for an action of the widget with this role.
 fn requested(interface: &Interface, role: Role, action: Action) -> ActionRequest {
     let tree = interface.accessibility_tree().expect("a tree");
-    let node = tree.nodes.iter().find(|(_, node)| node.role() == role && node.supports_action(action));
+    let node = tree
+        .nodes
+        .iter()
+        .find(|(_, node)| node.role() == role && node.supports_action(action));
     ActionRequest {
         action,
         target_tree: TreeId::ROOT,
@@ -212,9 +241,7 @@ fn a_screen_reader_presses_buttons_and_moves_the_time() {
         let request = requested(&interface, Role::Slider, action);
         interface.request(request);
         let moved = interface.actions(&app, &PORTRAIT);
-        let is_moved = |action: &UserAction| {
-            matches!(action, UserAction::Scrub(time_s) if (time_s - at * length_s).abs() < 0.1 * length_s)
-        };
+        let is_moved = |action: &UserAction| matches!(action, UserAction::Scrub(time_s) if (time_s - at * length_s).abs() < 0.1 * length_s);
         assert!(moved.iter().any(is_moved), "{action:?}: {moved:?}");
     }
 }

@@ -3,7 +3,9 @@
 
 use std::sync::Arc;
 
-use app_core::app::{App, Placing, PlatformCommand, ShellCommand, ShellEvent, Show, Step, UserAction, Verdict, WorkCommand};
+use app_core::app::{
+    App, Placing, PlatformCommand, ShellCommand, ShellEvent, Show, Step, UserAction, Verdict, WorkCommand,
+};
 use app_core::recording::RecordingJob;
 use app_core::scene::{Camera, Image};
 use desk::files::BUNDLED_SESSION;
@@ -62,10 +64,10 @@ impl Person {
         }
     }
 
-    /// Waits until the question about the toy's place is in this state.
-    pub(crate) fn wait_for(&mut self, placing: Placing) {
+    /// Waits until the question about the toy's place is in such a state.
+    pub(crate) fn wait_until(&mut self, is_so: impl Fn(Placing) -> bool) {
         for _ in 0..90 {
-            if self.app.placing() == placing {
+            if is_so(self.app.placing()) {
                 return;
             }
             self.frames(1);
@@ -179,9 +181,9 @@ fn a_toy_that_is_put_down_is_found_without_a_touch() {
     assert!(person.app.ghost().is_none(), "nobody knows where the toy will be");
     person.feed.is_toy_there = true;
     person.n_knocks = 0;
-    person.wait_for(Placing::Asked { is_searching: true });
+    person.wait_until(|placing| placing == Placing::Asked { is_searching: true });
     assert_eq!(person.n_knocks, 0, "a guess is no toy");
-    person.wait_for(Placing::Asked { is_searching: false });
+    person.wait_until(|placing| placing == Placing::Asked { is_searching: false });
     assert_eq!(person.n_knocks, 1);
     let silhouette = person.app.ghost().expect("a ghost");
     let [low, high] = silhouette.corners_px;
