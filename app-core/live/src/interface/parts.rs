@@ -1,7 +1,7 @@
 //! Widgets of the sheets.
 
 use egui::accesskit::Action;
-use egui::{Button, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Button, RichText, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2};
 
 use super::style;
 
@@ -32,14 +32,18 @@ pub(super) fn other(ui: &mut Ui, label: &str) -> bool {
 }
 
 /// A knob on a line over the remaining width, at `value` of `most`; returns the part of the line to
-/// which a person moves it. A screen reader reads `value` and `label`, and moves it by steps. egui's
-/// own slider includes fields of numbers and of text.
-pub(super) fn slider(ui: &mut Ui, [value, most]: [f64; 2], label: &str) -> Option<f64> {
+/// which a person moves it. A screen reader reads `label`, and `value` unless that runs, since it
+/// would be told of each change; it moves the knob by steps. egui's own slider includes fields of
+/// numbers and of text.
+pub(super) fn slider(ui: &mut Ui, [value, most]: [f64; 2], (label, runs): (&str, bool)) -> Option<f64> {
     let part = if most > 0.0 { value / most } else { 0.0 };
     let width = ui.available_width().max(LEAST_SLIDER_POINTS);
     let size = vec2(width, style::TOUCH_POINTS);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::slider(true, value, label));
+    response.widget_info(|| match runs {
+        true => WidgetInfo::labeled(WidgetType::Slider, true, label),
+        false => WidgetInfo::slider(true, value, label),
+    });
     ui.ctx().accesskit_node_builder(response.id, |node| {
         node.set_min_numeric_value(0.0);
         node.set_max_numeric_value(most);

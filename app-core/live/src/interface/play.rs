@@ -83,7 +83,7 @@ fn clip(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
             actions.push(UserAction::Play(!playback.is_playing()));
         }
         let times_s = [playback.time_s(), playback.length_s()];
-        if let Some(part) = slider(ui, times_s, say(app, text::TIME)) {
+        if let Some(part) = slider(ui, times_s, (say(app, text::TIME), playback.is_playing())) {
             let time_s = part * playback.length_s();
             actions.extend([UserAction::Play(false), UserAction::Scrub(time_s)]);
         }

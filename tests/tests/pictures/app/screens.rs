@@ -4,10 +4,11 @@ use std::collections::BTreeSet;
 
 use app_core::app::{App, GraphicsState, Language, Permission, ShellEvent, Step, UserAction};
 use app_core::camera_frame::Tracking;
-use app_core::interface::accesskit::{Action, ActionRequest, Role, TreeId};
+use app_core::interface::accesskit::{Action, ActionRequest, Role, TreeId, TreeUpdate};
 use app_core::interface::{Insets, Interface, Screen, Touch, TouchPhase, Widget, all_words};
 use glam::DVec2;
 
+use super::happenings::Happening;
 use super::orders::{happen, straight};
 use crate::app::world;
 
@@ -244,6 +245,25 @@ fn a_screen_reader_presses_buttons_and_moves_the_time() {
         let is_moved = |action: &UserAction| matches!(action, UserAction::Scrub(time_s) if (time_s - at * length_s).abs() < 0.1 * length_s);
         assert!(moved.iter().any(is_moved), "{action:?}: {moved:?}");
     }
+}
+
+/// The tree of a playing clip after a number of frames, and the clip's time.
+fn playing(n_frames: u8) -> (TreeUpdate, f64) {
+    let frames = Happening::Frames(n_frames, 33, Tracking::Normal);
+    let app = happen(straight().into_iter().chain([frames]).collect());
+    let mut interface = Interface::default();
+    for _ in 0..3 {
+        interface.actions(&app, &PORTRAIT);
+    }
+    let tree = interface.accessibility_tree().expect("a tree").clone();
+    (tree, app.playback().time_s())
+}
+
+#[test]
+fn a_playing_clip_does_not_disturb_a_screen_reader() {
+    let [(early, early_s), (late, late_s)] = [2, 6].map(playing);
+    assert!(late_s > early_s, "{early_s} {late_s}");
+    assert_eq!(early, late);
 }
 
 /// The flaw of a text, given in each language.
