@@ -259,16 +259,18 @@ impl Search {
         matches!(self.stage, Stage::Watch(_) | Stage::Ended(Start::Noticed(_)))
     }
 
-    /// Whether a thing that was searched is no longer there. A found toy may also look different, as
-    /// from another side.
-    fn is_gone(&mut self, before: NewObject, change: TableChange) -> bool {
+    /// Waits for the toy as before if a thing that was searched is no longer there. A found toy may
+    /// also look different, as from another side.
+    fn follow_searched(&mut self, before: NewObject, change: TableChange) {
         self.n_empty = match change {
             TableChange::None => self.n_empty + 1,
             TableChange::Object(_) | TableChange::AtBorder => 0,
         };
         let is_other = |now| !is_same([before, now], (GONE_M, GONE_SHARE));
         let is_replaced = !self.is_found() && object_of(change).is_some_and(is_other);
-        is_replaced || self.n_empty >= N_EMPTY
+        if is_replaced || self.n_empty >= N_EMPTY {
+            self.turn_to(Stage::Watch(object_of(change)));
+        }
     }
 
     /// Adopts the result of a part. Returns whether there is a better pose.
@@ -288,9 +290,7 @@ impl Search {
                 };
             }
             (SearchResult::Looked(change), &Stage::Ended(Start::Noticed(before))) => {
-                if self.is_gone(before, change) {
-                    self.turn_to(Stage::Watch(object_of(change)));
-                }
+                self.follow_searched(before, change);
             }
             (SearchResult::Stepped(search), &Stage::AtWork(start)) => {
                 let before = std::mem::replace(&mut self.best, search.best());

@@ -1,7 +1,7 @@
 //! Widgets of the sheets.
 
-use egui::accesskit::Action;
-use egui::{Button, RichText, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2};
+use egui::accesskit::{Action, Role};
+use egui::{Button, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use super::style;
 
@@ -41,7 +41,7 @@ pub(super) fn slider(ui: &mut Ui, [value, most]: [f64; 2], (label, runs): (&str,
     let size = vec2(width, style::TOUCH_POINTS);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     response.widget_info(|| match runs {
-        true => WidgetInfo::labeled(WidgetType::Slider, true, label),
+        true => WidgetInfo::labeled(Role::Slider, true, label),
         false => WidgetInfo::slider(true, value, label),
     });
     ui.ctx().accesskit_node_builder(response.id, |node| {
