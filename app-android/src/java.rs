@@ -100,6 +100,14 @@ fn with_java<T>(app: &AndroidApp, act: impl FnOnce(&mut Env<'_>, &JObject<'_>) -
     })
 }
 
+/// The phone's language.
+pub(crate) fn language(app: &AndroidApp) -> Language {
+    let language = app.config().language();
+    language
+        .as_deref()
+        .map_or_else(Language::default, Language::of_tag)
+}
+
 /// Scale of letters that the person has set.
 pub(crate) fn font_scale(app: &AndroidApp) -> f32 {
     with_java(app, display::font_scale).unwrap_or(1.0)
@@ -184,10 +192,7 @@ impl Phone for Activity {
     }
 
     fn language(&self) -> Language {
-        let language = self.app.config().language();
-        language
-            .as_deref()
-            .map_or_else(Language::default, Language::of_tag)
+        language(&self.app)
     }
 
     fn say(&mut self, words: String) {

@@ -47,6 +47,6 @@ mod tests;
 fn android_main(app: android_activity::AndroidApp) {
     if let Err(error) = lifecycle::run(&app) {
         eprintln!("app-android: closing the activity: {error}");
-        java::say(&app, error.words());
+        java::say(&app, error.words(java::language(&app)));
     }
 }

@@ -23,8 +23,6 @@ use crate::phone::{self, Phone};
 
 /// Frame rate of the camera; each of its pictures gives a frame.
 const CAMERA_HZ: u32 = 30;
-/// The disclosure that Google requires of apps with ARCore.
-const DISCLOSURE: &str = "This application runs on Google Play Services for AR (ARCore), which is provided by Google and governed by the Google Privacy Policy (policies.google.com/privacy).";
 /// File with the size of the camera's pictures, if larger ones fail.
 const CAMERA_FILE: &str = "camera.txt";
 /// Time between reads of the display's rotation: Android does not report half a turn.
@@ -68,7 +66,7 @@ impl<P: Phone> Shell<P> {
     pub fn new(mut live: Live, phone: P, feed: Feed) -> Self {
         live.set_clock(record::clock());
         live.set_target_fps(CAMERA_HZ);
-        live.disclose(DISCLOSURE);
+        live.disclose(arcore::status::DISCLOSURE.into());
         let platform = Platform {
             app: concat!("app-android ", env!("CARGO_PKG_VERSION")),
             videos: VIDEOS,

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use android_activity::AndroidApp;
-use app_core::app::{LaunchHistory, Panics, ShellEvent};
-use app_core::interface::{CLOSED, Touch, of_no_graphics};
+use app_core::app::{Language, LaunchHistory, Panics, ShellEvent};
+use app_core::interface::{Touch, of_closed, of_no_graphics};
 use app_core::live::Live;
 use app_core::preset::Preset;
 use app_core::toy::ToyError;
@@ -42,10 +42,10 @@ pub(crate) enum StageError {
 
 impl StageError {
     /// Text for the person, who no longer sees a picture.
-    pub(crate) fn words(&self) -> &'static str {
+    pub(crate) fn words(&self, language: Language) -> &'static str {
         match self {
-            Self::Core(error) => of_no_graphics(error),
-            Self::Surface(_) | Self::Toy(_) | Self::Panics => CLOSED,
+            Self::Core(error) => of_no_graphics(error, language),
+            Self::Surface(_) | Self::Toy(_) | Self::Panics => of_closed(language),
         }
     }
 }

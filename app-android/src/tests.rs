@@ -343,7 +343,11 @@ fn back_leads_back_and_out_at_last() {
     shell.tell(ShellEvent::User(UserAction::Begin));
     shell.set_foreground(true);
     let words = shell.live().app().ar_words().unwrap_or_default().to_owned();
-    assert!(words.starts_with("This phone cannot run ARCore."), "{words}");
+    // The phone's language is German.
+    assert!(
+        words.starts_with("Dieses Telefon kann ARCore nicht ausführen."),
+        "{words}"
+    );
     shell.back();
     assert_eq!(shell.live().app().step(), Step::Welcome);
     assert!(!shell.phone().is_left);

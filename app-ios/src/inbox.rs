@@ -5,6 +5,7 @@ use std::cell::RefCell;
 
 use app_core::app::ShellEvent;
 use app_core::interface::Touch;
+use app_core::interface::accesskit::ActionRequest;
 
 /// A message of a callback.
 #[derive(Debug)]
@@ -13,6 +14,8 @@ pub enum CallbackMessage {
     Event(ShellEvent),
     /// A touch for its interface.
     Touch(Touch),
+    /// An action of VoiceOver.
+    Request(ActionRequest),
 }
 
 /// Unread messages, in their order.
@@ -33,6 +36,11 @@ impl Inbox {
     /// Leaves a touch.
     pub fn touch(&self, touch: Touch) {
         self.0.borrow_mut().push(CallbackMessage::Touch(touch));
+    }
+
+    /// Leaves an action of VoiceOver.
+    pub fn request(&self, request: ActionRequest) {
+        self.0.borrow_mut().push(CallbackMessage::Request(request));
     }
 
     /// Returns all messages; those that arrive meanwhile wait for the next call.

@@ -6,7 +6,7 @@
 //! of `app_shell` for files and threads. `convert` knows UIKit's points and the system's numbers,
 //! `arkit::convert` ARKit's axes and pixel rules; the core knows neither.
 //!
-//! It has touches, safe area and letter size; the camera's permission and locked exposure; world
+//! It has touches, VoiceOver, safe area and letter size; the camera's permission and locked exposure; world
 //! tracking with level planes, interruptions and one anchor; the card and its lens; alignments on a
 //! thread; photos and videos, also in Photos; recordings, times and the log in Files and the share
 //! sheet; heat, memory and free space. A rate of 30 pictures per second does not slow the camera.

@@ -19,6 +19,7 @@ use arkit::camera;
 use arkit::session::{Finds, Session};
 use ios_media::jpeg;
 use ios_media::video::H264;
+use ios_media::voice_over::VoiceOver;
 use objc2::MainThreadMarker;
 use objc2_foundation::{NSDictionary, NSHomeDirectory, NSProcessInfo, NSURL};
 use objc2_quartz_core::CALayer;
@@ -174,6 +175,13 @@ impl Shell {
         self.session.coach_over(view);
     }
 
+    /// Gives VoiceOver the widgets of the latest picture.
+    pub(crate) fn show_to(&mut self, voice_over: &VoiceOver) {
+        if let Some(tree) = self.stage.live().and_then(|live| live.accessibility_tree()) {
+            voice_over.update(tree);
+        }
+    }
+
     /// Files that wait for the share sheet.
     pub(crate) fn take_shared(&mut self) -> Vec<PathBuf> {
         std::mem::take(&mut self.shared)
@@ -239,6 +247,7 @@ impl Shell {
                         self.obey(commands);
                     }
                     CallbackMessage::Touch(touch) => live.touch(touch),
+                    CallbackMessage::Request(request) => live.request(request),
                 }
             }
         }

@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use app_core::app::ShellEvent;
 use app_core::interface::{Insets, Screen, Touch, TouchPhase};
+use ios_media::voice_over::VoiceOver;
 use objc2::rc::{Retained, autoreleasepool};
 use objc2::runtime::{AnyClass, NSObject};
 use objc2::{ClassType, DefinedClass, MainThreadMarker, MainThreadOnly, define_class, msg_send, sel};
@@ -28,6 +29,8 @@ pub(crate) struct ViewState {
     shell: RefCell<Shell>,
     inbox: Rc<Inbox>,
     in_foreground: Cell<bool>,
+    /// Retains the view, too.
+    voice_over: RefCell<Option<VoiceOver>>,
     /// Frame rate of the clock.
     frames_per_s: Cell<u32>,
     /// Retains the view, as the view retains it: [`MetalView::retire`] breaks the circle.
@@ -105,6 +108,7 @@ impl MetalView {
             shell: RefCell::new(Shell::new(main_thread, Rc::clone(&inbox))),
             inbox,
             in_foreground: Cell::new(false),
+            voice_over: RefCell::default(),
             frames_per_s: Cell::default(),
             display_link: OnceCell::new(),
         };
@@ -112,6 +116,9 @@ impl MetalView {
         // SAFETY: initWithFrame: is UIView's designated initialiser and takes a CGRect.
         let this: Retained<Self> = unsafe { msg_send![super(this), initWithFrame: frame] };
         this.setMultipleTouchEnabled(true);
+        let inbox = Rc::clone(&this.ivars().inbox);
+        let voice_over = VoiceOver::over(&this, move |request| inbox.request(request));
+        this.ivars().voice_over.replace(Some(voice_over));
         this.ivars().shell.borrow().coach_over(&this);
         // SAFETY: the view answers memoryIsLow:, which takes the notification as its only argument; the centre keeps no
         // reference to it and forgets it when it goes.
@@ -156,6 +163,7 @@ impl MetalView {
     /// Ends the clock for good, and with it the view's last reference from UIKit's run loop.
     pub(crate) fn retire(&self) {
         self.enter_background();
+        self.ivars().voice_over.take();
         if let Some(link) = self.ivars().display_link.get() {
             link.invalidate();
         }
@@ -179,6 +187,9 @@ impl MetalView {
             self.fit(shell)?;
         }
         shell.present(&self.layer(), &screen)?;
+        if let Some(voice_over) = &*self.ivars().voice_over.borrow() {
+            shell.show_to(voice_over);
+        }
         self.set_rate(shell.frames_per_s());
         Ok(())
     }

@@ -133,7 +133,7 @@ impl Feed {
             Step::Waiting(wait) => {
                 self.waiting = Some(wait);
                 let is_news = was_waiting != Some(wait);
-                is_news.then(|| ShellEvent::ArTrouble(ArSession::Installing, wait.to_string()))
+                is_news.then(|| ShellEvent::ArTrouble(ArSession::Installing, wait.words().into()))
             }
             Step::Refused(failure) => Some(self.fail(failure)),
         }
@@ -194,8 +194,11 @@ impl Feed {
             Err(FrameError::Failed(failure)) => Some(self.fail(failure)),
             Err(error) => {
                 eprintln!("arcore: no frame: {error}");
-                let words = format!("{}. Close other apps, then start over.", sentence(&error));
-                Some(ShellEvent::ArTrouble(ArSession::Failed, words))
+                let words = [
+                    "The camera's pictures cannot be used. Close other apps, then start over.",
+                    "Die Bilder der Kamera sind nicht brauchbar. Schließe andere Apps und beginne von vorn.",
+                ];
+                Some(ShellEvent::ArTrouble(ArSession::Failed, words.into()))
             }
         }
     }
@@ -254,8 +257,11 @@ impl Feed {
 
 /// The event for a package without ARCore's library.
 fn without_library() -> ShellEvent {
-    let words = "This package was made without ARCore, or with one of another version.";
-    ShellEvent::ArTrouble(ArSession::Unsupported, words.to_owned())
+    let words = [
+        "This package was made without ARCore, or with one of another version.",
+        "Dieses Paket wurde ohne ARCore gebaut, oder mit einer anderen Version.",
+    ];
+    ShellEvent::ArTrouble(ArSession::Unsupported, words.into())
 }
 
 fn able() -> ShellEvent {
@@ -268,12 +274,4 @@ fn again(run: Run) -> Run {
         is_new_world: false,
         ..run
     }
-}
-
-/// The error's text with a capital letter.
-fn sentence(error: &FrameError) -> String {
-    let words = error.to_string();
-    let mut letters = words.chars();
-    let first = letters.next().map(|first| first.to_ascii_uppercase());
-    first.into_iter().chain(letters).collect()
 }

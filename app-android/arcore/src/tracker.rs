@@ -11,7 +11,6 @@
 //! The camera's permission is the app's concern: it requests frames only if the permission was
 //! given.
 
-use std::fmt;
 use std::time::Duration;
 
 use app_core::camera_frame::{CameraFrame, Stamp};
@@ -20,7 +19,7 @@ use glam::DMat4;
 use super::ffi::Functions;
 use super::frame::FrameError;
 use super::session::{Finds, Session};
-use super::status::{Availability, Failure, availability};
+use super::status::{Availability, Failure, InEachLanguage, availability};
 use crate::java::{Java, JavaHost};
 
 /// `AR_INSTALL_STATUS_INSTALLED`.
@@ -399,11 +398,19 @@ impl Tracker {
     }
 }
 
-impl fmt::Display for Wait {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Answer => "Looking for Google Play Services for AR.",
-            Self::Install => "Google Play Services for AR is being installed.",
-        })
+impl Wait {
+    /// Text for the person.
+    #[must_use]
+    pub fn words(self) -> InEachLanguage {
+        match self {
+            Self::Answer => [
+                "Looking for Google Play Services for AR.",
+                "Google Play-Dienste für AR werden gesucht.",
+            ],
+            Self::Install => [
+                "Google Play Services for AR is being installed.",
+                "Google Play-Dienste für AR werden installiert.",
+            ],
+        }
     }
 }

@@ -104,7 +104,7 @@ pub use report::{
     RatioOutcome, Stand,
 };
 pub use silhouette::Silhouette;
-pub use standing_search::{NewObject, StandingPose, StandingSearch};
+pub use standing_search::{NewObject, StandingPose, StandingSearch, TableChange};
 pub use toy_search::{FoundToy, ToySearch, ViewDirection, find_toy};
 pub use warning::AlignmentWarning;
 

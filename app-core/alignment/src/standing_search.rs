@@ -47,30 +47,56 @@ pub struct NewObject {
     pub share: f64,
 }
 
-impl NewObject {
-    /// The largest new region of a picture that does not reach the picture's border, as an arm
-    /// does; `None` without a plate.
+/// Difference between a picture and its plate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TableChange {
+    /// There is none, or there is no plate.
+    None,
+    /// The largest new region that does not reach the picture's border.
+    Object(NewObject),
+    /// All new regions reach the border, as an arm does.
+    AtBorder,
+}
+
+impl TableChange {
+    /// Compares a picture with its plate.
     ///
     /// # Errors
     ///
     /// As [`Aligner::align`](crate::Aligner::align).
-    pub fn of(scene: &Scene, input: &FrameInput) -> Result<Option<Self>, AlignError> {
+    pub fn of(scene: &Scene, input: &FrameInput) -> Result<Self, AlignError> {
         check(scene, input)?;
         let photograph = Photograph::new(scene, input, None);
         let tiny = photograph.pyramid().at_most(pose::TINY_PIXELS);
         if tiny.plate.is_none() {
-            return Ok(None);
+            return Ok(Self::None);
         }
-        let to_picture = f64::from(scene.width_px) / f64::from(tiny.frame.size_px.x.max(1));
-        let Some(changed) = within(&tiny).into_iter().max_by_key(Vec::len) else {
-            return Ok(None);
-        };
-        let n = changed.len() as f64;
-        let sum: DVec2 = changed.iter().map(|at| at.as_dvec2() + 0.5).sum();
-        let share = n / f64::from(tiny.frame.size_px.x * tiny.frame.size_px.y);
-        let at = on_receiver(scene, input, to_picture * sum / n);
-        Ok(at.filter(|_| share >= LEAST_SHARE).map(|at| Self { at, share }))
+        let size_px = tiny.frame.size_px;
+        let n_least = LEAST_SHARE * f64::from(size_px.x * size_px.y);
+        let mut regions = changed_regions(&tiny);
+        regions.retain(|region| region.len() as f64 >= n_least);
+        let is_any = !regions.is_empty();
+        let is_at_border = |at: &IVec2| at.cmpeq(IVec2::ZERO).any() || at.cmpeq(size_px - 1).any();
+        regions.retain(|region| !region.iter().any(is_at_border));
+        let largest = regions.into_iter().max_by_key(Vec::len);
+        let object = largest.and_then(|region| object(&region, scene, (input, size_px)));
+        Ok(match object {
+            Some(object) => Self::Object(object),
+            None if is_any => Self::AtBorder,
+            None => Self::None,
+        })
     }
+}
+
+/// A region of a reduced picture as an object on the first receiver; `None` above its horizon.
+fn object(region: &[IVec2], scene: &Scene, (input, size_px): (&FrameInput, IVec2)) -> Option<NewObject> {
+    let to_picture = f64::from(scene.width_px) / f64::from(size_px.x.max(1));
+    let n = region.len() as f64;
+    let sum: DVec2 = region.iter().map(|at| at.as_dvec2() + 0.5).sum();
+    Some(NewObject {
+        at: on_receiver(scene, input, to_picture * sum / n)?,
+        share: n / f64::from(size_px.x * size_px.y),
+    })
 }
 
 /// Intersection of a pixel's ray with the first receiver, in the world; `None` above its horizon.
@@ -87,18 +113,16 @@ fn on_receiver(scene: &Scene, input: &FrameInput, pixel: DVec2) -> Option<DVec3>
     (height > 0.0 && slope < 0.0).then(|| eye - height / slope * ray)
 }
 
-/// Groups of neighbouring pixels that differ from the plate and do not touch the border.
-fn within(level: &Level) -> Vec<Vec<IVec2>> {
+/// Groups of neighbouring pixels that differ from the plate.
+fn changed_regions(level: &Level) -> Vec<Vec<IVec2>> {
     let size_px = level.frame.size_px;
     let mut changed = Mask::new(size_px);
     for at in pose::changed(level) {
         changed.mark(at);
     }
-    let is_at_border = |at: &IVec2| at.cmpeq(IVec2::ZERO).any() || at.cmpeq(size_px - 1).any();
     groups(size_px, |index| changed.has(place_of(index, size_px)))
         .into_iter()
         .map(|group| group.into_iter().map(|index| place_of(index, size_px)).collect())
-        .filter(|group: &Vec<IVec2>| !group.iter().any(is_at_border))
         .collect()
 }
 
@@ -128,10 +152,14 @@ enum Stage {
 pub struct StandingSearch {
     scene: Arc<Scene>,
     input: FrameInput,
+    /// Point of the world that the toy's image is at, if it is known.
+    at: Option<DVec3>,
     stage: Stage,
     /// The search, once the first guesses are made.
     search: Option<Search>,
     guesses: Vec<DMat4>,
+    /// Whether the best guesses are the first.
+    are_ranked: bool,
     followed: Vec<Followed>,
     found: Vec<FoundToy>,
     best: Option<StandingPose>,
@@ -139,18 +167,31 @@ pub struct StandingSearch {
 
 impl StandingSearch {
     /// Begins a search. `input.world_from_object` stands on the first receiver, in any turn: at the
-    /// toy's place if there is no plate, and anywhere if there is one.
+    /// toy's place if there is no plate, and anywhere if there is one: the search then begins where
+    /// the picture differs from the plate.
     #[must_use]
     pub fn new(scene: Arc<Scene>, input: FrameInput) -> Self {
         Self {
             scene,
             input,
+            at: None,
             stage: Stage::Guess,
             search: None,
             guesses: Vec::new(),
+            are_ranked: false,
             followed: Vec::new(),
             found: Vec::new(),
             best: None,
+        }
+    }
+
+    /// The same beside a plate where the toy's image is at this point of the world, whatever else
+    /// in the picture differs from the plate.
+    #[must_use]
+    pub fn at(self, point: DVec3) -> Self {
+        Self {
+            at: Some(point),
+            ..self
         }
     }
 
@@ -185,33 +226,44 @@ impl StandingSearch {
     fn guess(&mut self) -> Result<Stage, AlignError> {
         check(&self.scene, &self.input)?;
         let search = Search::new(Arc::clone(&self.scene), self.input.clone())?;
-        self.guesses = match self.scene.receivers.first() {
-            Some(receiver) if !self.scene.plates.is_empty() => {
-                let normal = receiver.world_from_plane.y_axis.truncate();
-                let world_from_camera = self.input.camera.world_from_camera;
-                let camera_from_world = world_from_camera.inverse();
-                let (_, tiny) = search.tiny();
-                let shape = Shape::new(&self.scene, &(camera_from_world * self.input.world_from_object))?;
-                let standing = Standing {
-                    point: shape.centre,
-                    normal: camera_from_world.transform_vector3(normal).normalize(),
-                };
-                let coarse = shape.merged_in_px(0.5, &tiny);
-                let guesses = pose::standing_guesses(&coarse, &tiny, (standing, &turns()));
-                let in_world = |guess: &DMat4| world_from_camera * *guess * camera_from_world;
-                let poses = guesses
-                    .iter()
-                    .map(|guess| in_world(&guess.camera_from_upright) * self.input.world_from_object);
-                poses.collect()
-            }
-            _ => self.turned_in_place(),
-        };
+        self.guesses = self.ranked(&search)?;
+        self.are_ranked = !self.guesses.is_empty();
+        // What differs from the plate is no toy if no turn of it fits there.
+        if self.scene.plates.is_empty() || (self.at.is_some() && !self.are_ranked) {
+            self.guesses = self.turned_in_place();
+        }
         self.best = self.guesses.first().map(|world_from_object| StandingPose {
             world_from_object: *world_from_object,
             outline_px: None,
         });
         self.search = Some(search);
         Ok(Stage::Register)
+    }
+
+    /// The best place of each turn beside a plate, ranked by the picture; none without a plate.
+    fn ranked(&self, search: &Search) -> Result<Vec<DMat4>, AlignError> {
+        let receiver = self.scene.receivers.first();
+        let Some(receiver) = receiver.filter(|_| !self.scene.plates.is_empty()) else {
+            return Ok(Vec::new());
+        };
+        let normal = receiver.world_from_plane.y_axis.truncate();
+        let world_from_camera = self.input.camera.world_from_camera;
+        let camera_from_world = world_from_camera.inverse();
+        let (_, tiny) = search.tiny();
+        let shape = Shape::new(&self.scene, &(camera_from_world * self.input.world_from_object))?;
+        let standing = Standing {
+            point: shape.centre,
+            normal: camera_from_world.transform_vector3(normal).normalize(),
+        };
+        let coarse = shape.merged_in_px(0.5, &tiny);
+        let pixel = |at: DVec3| tiny.intrinsics.pixel_of(camera_from_world.transform_point3(at));
+        let tapped_px = self.at.and_then(pixel);
+        let guesses = pose::standing_guesses(&coarse, &tiny, (standing, &turns()), tapped_px);
+        let in_world = |guess: &DMat4| world_from_camera * *guess * camera_from_world;
+        let poses = guesses
+            .iter()
+            .map(|guess| in_world(&guess.camera_from_upright) * self.input.world_from_object);
+        Ok(poses.collect())
     }
 
     /// All turns at the given place, starting with that of the input.
@@ -247,10 +299,10 @@ impl StandingSearch {
             self.input.camera = camera;
             self.search = Some(Search::new(Arc::clone(&self.scene), self.input.clone())?);
         }
-        let n_followed = if plates.is_empty() {
-            self.guesses.len()
-        } else {
+        let n_followed = if self.are_ranked {
             N_FOLLOWED
+        } else {
+            self.guesses.len()
         };
         let mut waiting: Vec<DMat4> = self.guesses.iter().take(n_followed).copied().collect();
         waiting.reverse();

@@ -4,13 +4,14 @@
 //! whenever the screen wants one, and executes the returned commands.
 
 mod profiler;
+mod screen_reader;
 
 use std::sync::Arc;
 
 use wgpu::LoadOp;
 
-use crate::app::{App, GraphicsState, ShellCommand, ShellEvent, Show, WorkCommand};
-use crate::interface::{Interface, Painter, Painting, Screen, Touch, Widget};
+use crate::app::{App, GraphicsState, ShellCommand, ShellEvent, Show, Translated, WorkCommand};
+use crate::interface::{Interface, Painter, Painting, Screen, Touch};
 use crate::self_test;
 use app_pipeline::core::{Canvas, Core, CoreError, WarmUp};
 use app_pipeline::frame::{Clock, Warning};
@@ -216,12 +217,6 @@ impl Live {
         self.core.read_picture()
     }
 
-    /// The elements of the latest picture for a screen reader.
-    #[must_use]
-    pub fn widgets(&self) -> &[Widget] {
-        self.interface.widgets()
-    }
-
     /// The phone's own way back, such as a button or a gesture. Returns the commands; `None` if it
     /// leaves the app.
     #[must_use]
@@ -234,7 +229,7 @@ impl Live {
     }
 
     /// Shows this text on the first screen, as required by the terms of the platform's services.
-    pub fn disclose(&mut self, words: &'static str) {
+    pub fn disclose(&mut self, words: Translated) {
         self.app.disclose(words);
     }
 

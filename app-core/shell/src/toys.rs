@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use app_core::app::ShellEvent;
+use app_core::app::{ShellEvent, ToyRefusal};
 use app_core::toy::Toy;
 
 /// File of the toy that is part of the app: that of the bundled session, made by this project.
@@ -42,7 +42,7 @@ impl ToyFile {
     #[must_use]
     pub fn read(&self, folder: &Path, name: &str) -> ShellEvent {
         let read = bytes_of(folder, name).and_then(|bytes| {
-            let toy = Toy::from_glb(name, &bytes).map_err(|reason| reason.to_string())?;
+            let toy = Toy::from_glb(name, &bytes).map_err(|error| ToyRefusal::of(name, &error))?;
             *self.0.lock().unwrap_or_else(PoisonError::into_inner) = bytes;
             Ok(Arc::new(toy))
         });
@@ -76,7 +76,7 @@ pub fn scan_beside(folder: &Path, name: &str) -> Option<PathBuf> {
     (is_toy(name) && scan.is_file()).then_some(scan)
 }
 
-fn bytes_of(folder: &Path, name: &str) -> Result<Arc<[u8]>, String> {
+fn bytes_of(folder: &Path, name: &str) -> Result<Arc<[u8]>, ToyRefusal> {
     if name == BUNDLED_NAME {
         return Ok(Arc::from(BUNDLED));
     }
@@ -84,15 +84,17 @@ fn bytes_of(folder: &Path, name: &str) -> Result<Arc<[u8]>, String> {
     let opened = File::open(folder.join(name));
     opened
         .and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes))
-        .map_err(|reason| format!("{name}: {reason}"))?;
+        .map_err(|error| ToyRefusal::unreadable(name, error))?;
     if bytes.len() as u64 > MAX_BYTES {
-        return Err(format!("{name}: more than {} MiB", MAX_BYTES >> 20));
+        return Err(ToyRefusal::too_large(name, MAX_BYTES >> 20));
     }
     Ok(bytes.into())
 }
 
 #[cfg(test)]
 mod tests {
+    use app_core::app::RefusalKind;
+
     use super::*;
 
     /// The same toy in another file: its binary chunk is longer by a word. Source: glTF 2.0, section 4.4.
@@ -137,18 +139,18 @@ mod tests {
         assert!(list(&folder).contains(&"c.usdz".to_owned()));
         let usdz = ToyFile::default().read(&folder, "c.usdz");
         assert!(
-            matches!(&usdz, ShellEvent::Toy(Err(reason)) if reason.contains("USDZ") && reason.contains("Blender")),
+            matches!(&usdz, ShellEvent::Toy(Err(refusal)) if refusal.kind == RefusalKind::Foreign && refusal.reason.contains("USDZ")),
             "{usdz:?}"
         );
         let file = ToyFile::default();
         let refused = file.read(&folder, "a.GLB");
         assert!(
-            matches!(&refused, ShellEvent::Toy(Err(reason)) if reason.contains("a.GLB")),
+            matches!(&refused, ShellEvent::Toy(Err(refusal)) if refusal.reason.contains("a.GLB")),
             "{refused:?}"
         );
         let missing = file.read(&folder, "c.glb");
         assert!(
-            matches!(&missing, ShellEvent::Toy(Err(reason)) if reason.contains("c.glb")),
+            matches!(&missing, ShellEvent::Toy(Err(refusal)) if refusal.kind == RefusalKind::Unreadable),
             "{missing:?}"
         );
         assert_eq!(file.bytes()[..], *BUNDLED, "it stays");

@@ -22,7 +22,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use app_core::app::{AlignJob, Recorded, Saved, ShellEvent, WorkCommand};
+use app_core::app::{AlignJob, Recorded, Saved, ShellEvent, ToyRefusal, WorkCommand};
 use app_core::live::Live;
 use app_core::recording::{PictureCodec, RecordingJob, RecordingOutcome};
 
@@ -174,7 +174,8 @@ impl Worker {
 
     /// Reads the file of a toy that a person has chosen.
     pub fn read_toy(&self, folder: PathBuf, name: String) {
-        let (file, died) = (self.toy_file.clone(), "it could not be read".to_owned());
+        let died = ToyRefusal::unreadable(&name, "its thread ended");
+        let file = self.toy_file.clone();
         let read = move |outcomes: &Sender<Outcome>| {
             let read = file.read(&folder, &name);
             if let ShellEvent::Toy(Ok(_)) = &read {

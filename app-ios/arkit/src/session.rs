@@ -13,8 +13,8 @@ use objc2::{
     AnyThread, ClassType, DefinedClass, MainThreadMarker, MainThreadOnly, define_class, msg_send, sel,
 };
 use objc2_ar_kit::{
-    ARAnchor, ARFrame, ARPlaneDetection, ARReferenceImage, ARReferenceObject, ARSession, ARSessionDelegate,
-    ARSessionObserver, ARSessionRunOptions, ARWorldTrackingConfiguration,
+    ARAnchor, ARFrame, ARObjectAnchor, ARPlaneDetection, ARReferenceImage, ARReferenceObject, ARSession,
+    ARSessionDelegate, ARSessionObserver, ARSessionRunOptions, ARWorldTrackingConfiguration,
 };
 use objc2_foundation::{NSError, NSObjectProtocol, NSProcessInfo, NSSet};
 use objc2_ui_kit::UIView;
@@ -242,6 +242,8 @@ pub struct Session {
     /// The session does not retain it.
     _delegate: Retained<Delegate>,
     shared: Rc<Shared>,
+    /// Whether the app wants it to run.
+    is_running: Cell<bool>,
 }
 
 impl Session {
@@ -270,6 +272,7 @@ impl Session {
             session,
             _delegate: delegate,
             shared,
+            is_running: Cell::new(false),
         }
     }
 
@@ -284,9 +287,34 @@ impl Session {
         self.shared.coach.replace(Some(coach));
     }
 
-    /// Detects the toy by this scan from the next run on; `None` ends that.
+    /// Detects the toy by this scan, at once if the session runs; `None` ends that. The world and
+    /// all other anchors stay.
     pub fn recognise(&self, scan: Option<&Path>) {
-        self.shared.scan.replace(scan.and_then(scan::reference_object));
+        let scan = scan.and_then(scan::reference_object);
+        let has_scan = scan.is_some();
+        let had_scan = self.shared.scan.replace(scan).is_some();
+        if !(has_scan || had_scan) {
+            return;
+        }
+        self.forget_toys();
+        if self.is_running.get() {
+            self.shared.run(&self.session, ARSessionRunOptions::empty());
+        }
+    }
+
+    /// Removes the anchors of toys that were recognised by another scan, which stay otherwise.
+    fn forget_toys(&self) {
+        // SAFETY: properties of a session and of its latest frame, and an anchor of that frame is removed.
+        unsafe {
+            let Some(frame) = self.session.currentFrame() else {
+                return;
+            };
+            for anchor in &frame.anchors() {
+                if anchor.downcast_ref::<ARObjectAnchor>().is_some() {
+                    self.session.removeAnchor(&anchor);
+                }
+            }
+        }
     }
 
     /// Whether this phone has world tracking.
@@ -317,12 +345,14 @@ impl Session {
                 .set(NSProcessInfo::processInfo().systemUptime());
             self.shared.held.replace(None);
         }
+        self.is_running.set(true);
         self.shared.run(&self.session, options);
     }
 
     /// Pauses. An interrupted session has paused already, and reports its end only if it is left
     /// alone.
     pub fn pause(&self) {
+        self.is_running.set(false);
         if !self.shared.is_interrupted.get() {
             // SAFETY: pausing has no requirements.
             unsafe { self.session.pause() };

@@ -1,5 +1,5 @@
 //! Pictures as Apple's pixel buffers, and the phone's own encoders: `jpeg` for recordings, `video`
-//! for videos.
+//! for videos; and `voice_over`, which reads the interface.
 
 #[cfg(target_os = "ios")]
 pub mod jpeg;
@@ -7,5 +7,7 @@ pub mod jpeg;
 pub mod pixels;
 #[cfg(target_os = "ios")]
 pub mod video;
+#[cfg(target_os = "ios")]
+pub mod voice_over;
 
 pub mod order;

@@ -20,11 +20,14 @@ const LICENCES: [&str; 5] = ["MIT", "Apache-2.0", "ISC", "Unicode-3.0", "Zlib"];
 const DESKTOP_LICENCES: [&str; 2] = ["BSD-2-Clause", "BSD-3-Clause"];
 const CRATES_IO: &str = "registry+https://github.com/rust-lang/crates.io-index";
 /// Packages of which more than one version is compiled, and the packages that cause it.
-const TWICE: [(&str, &str); 9] = [
+const TWICE: [(&str, &str); 12] = [
     ("hashbrown", "gpu-allocator is one behind wgpu"),
     ("jni-sys", "jni-sys 0.3 is a shim over 0.4"),
     ("linux-raw-sys", "follows rustix"),
     ("miniz_oxide", "png is one behind flate2"),
+    ("objc2", "accesskit_ios is one behind"),
+    ("objc2-foundation", "follows objc2"),
+    ("objc2-ui-kit", "follows objc2"),
     ("rustc-hash", "naga is one behind egui-wgpu"),
     ("rustix", "winit is one behind x11rb"),
     ("syn", "derive macros move to 3 one by one"),
@@ -57,7 +60,7 @@ const CORE: [&str; 6] = [
     "app-scene",
     "app-session",
 ];
-/// Packages for a phone that compile C or declare functions of C, each with its reason.
+/// Packages for an Android phone that compile C or declare functions of C, each with its reason.
 const C_ON_PHONES: [(&str, &str); 5] = [
     ("cc", "android-activity compiles the platform's own glue with it"),
     ("jni-sys", "declares Java's interface alone"),
@@ -65,6 +68,8 @@ const C_ON_PHONES: [(&str, &str); 5] = [
     ("ndk-sys", "declares the platform's libraries alone"),
     ("renderdoc-sys", "declares a header alone"),
 ];
+/// The same for an iPhone: it declares the runtime of Objective-C alone, for `accesskit_ios`.
+const C_ON_IPHONES: [&str; 1] = ["objc-sys"];
 
 /// The part of the output of `cargo metadata` that is used.
 #[derive(Deserialize)]
@@ -255,7 +260,7 @@ fn phones_compile_no_c_but_what_is_known() {
     };
     let known: BTreeSet<String> = C_ON_PHONES.iter().map(|(name, _)| (*name).to_owned()).collect();
     assert_eq!(of_c("app-android", android), known);
-    assert_eq!(of_c("app-ios", ios), BTreeSet::new());
+    assert_eq!(of_c("app-ios", ios), C_ON_IPHONES.map(str::to_owned).into());
     assert!(["cmake", "zstd-sys", "cc"].into_iter().all(is_of_c) && !is_of_c("accesskit"));
 }
 

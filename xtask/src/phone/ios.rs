@@ -32,6 +32,8 @@ const TOOLS: [Tool; 2] = [
     Tool { program: CLANG, package: "clang-19" },
     Tool { program: LINKER, package: "lld-19" },
 ];
+/// Languages of the app, each with the system's questions in a folder of `words`.
+const LANGUAGES: [&str; 2] = ["en", "de"];
 /// Loaded although no name of it is imported: its classes are looked up at run time.
 const ARKIT: &str = "/System/Library/Frameworks/ARKit.framework/ARKit";
 
@@ -172,6 +174,10 @@ fn pack(shell: &Path, folder: &Path, program: Vec<u8>) -> Result<()> {
             fs::read(shell.join("PrivacyInfo.xcprivacy"))?,
         ),
     ];
+    for language in LANGUAGES {
+        let name = format!("{language}.lproj/InfoPlist.strings");
+        entries.push(entry(&name, fs::read(shell.join("words").join(&name))?));
+    }
     for size in ["60x60@2x", "60x60@3x"] {
         let name = format!("AppIcon{size}.png");
         entries.push(entry(&name, fs::read(shell.join("icon").join(&name))?));
@@ -231,6 +237,43 @@ mod tests {
         let filled = properties(&shell("Info.plist")).expect("a property list");
         assert!(filled.contains(&format!("<string>{BUNDLE}</string>")));
         assert!(properties("$(PRODUCT_NAME) $(OTHER)").is_err());
+    }
+
+    /// Keys and texts of a file of the system's questions.
+    fn questions(strings: &str) -> Vec<(&str, &str)> {
+        let entries = strings.lines().filter_map(|line| line.split_once(" = \""));
+        entries
+            .map(|(key, text)| (key, text.strip_suffix("\";").expect("the end of a text")))
+            .collect()
+    }
+
+    #[test]
+    fn the_systems_questions_are_there_in_each_language() {
+        let properties = shell("Info.plist");
+        let in_language =
+            LANGUAGES.map(|language| shell(&format!("words/{language}.lproj/InfoPlist.strings")));
+        let [english, german] = in_language.each_ref().map(|strings| questions(strings));
+        assert_eq!(
+            english.len(),
+            properties.matches("UsageDescription</key>").count()
+        );
+        for ((key, text), (german_key, german)) in english.iter().zip(&german) {
+            assert_eq!(key, german_key);
+            assert!(properties.contains(&format!("<key>{key}</key>\n    <string>{text}</string>")));
+            assert!(german != text && !german.is_empty(), "{key}");
+        }
+        assert_eq!(english.len(), german.len());
+        let (_, list) = properties
+            .split_once("<key>CFBundleLocalizations</key>")
+            .expect("languages");
+        let (list, _) = list.split_once("</array>").expect("their end");
+        for language in LANGUAGES {
+            assert!(
+                list.contains(&format!("<string>{language}</string>")),
+                "{language}"
+            );
+        }
+        assert!(questions("A = \"b\";\n/* c */") == [("A", "b")]);
     }
 
     #[test]

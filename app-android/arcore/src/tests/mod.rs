@@ -227,8 +227,12 @@ fn the_camera_is_set_to_the_largest_picture_that_is_not_too_large_and_then_to_sm
 #[test]
 fn every_status_has_a_message_of_its_own() {
     for (index, (number, name, message, _)) in STATUSES.iter().enumerate() {
-        assert!(message.ends_with('.') && message.len() > 15, "{name}");
-        assert!(Failure(*number).to_string().starts_with(message));
+        let [english, german] = message;
+        for text in message {
+            assert!(text.ends_with('.') && text.len() > 15, "{name}");
+        }
+        assert!(english != german, "{name}");
+        assert!(Failure(*number).to_string().starts_with(english));
         for (other, other_name, other_message, _) in &STATUSES[..index] {
             assert!(
                 number != other && name != other_name && message != other_message,
@@ -330,7 +334,9 @@ fn what_ends_tracking_is_told_by_what_helps() {
             panic!("{number}");
         };
         assert_eq!(told, expected, "{number}");
-        assert!(said.contains(words), "{said}");
+        let [english, german] = &said.0;
+        assert!(english.contains(words), "{english}");
+        assert!(german != english && german.ends_with('.'), "{german}");
     }
     let denied = event_of(Failure(-9));
     assert!(

@@ -294,7 +294,7 @@ fn a_package_without_arcore_says_so() {
         feed.run(&mut Desk, ANEW),
     ] {
         assert!(
-            matches!(&told, Some(ShellEvent::ArTrouble(ArSession::Unsupported, words)) if words.contains("without ARCore")),
+            matches!(&told, Some(ShellEvent::ArTrouble(ArSession::Unsupported, words)) if words.0[0].contains("without ARCore")),
             "{told:?}"
         );
     }
@@ -321,7 +321,7 @@ fn an_install_in_the_middle_is_told_and_waited_for() {
     });
     let mut feed = Feed::new(Some(FUNCTIONS));
     let said = |told: Option<ShellEvent>| match told {
-        Some(ShellEvent::ArTrouble(ArSession::Installing, words)) => words,
+        Some(ShellEvent::ArTrouble(ArSession::Installing, words)) => words.0[0].clone(),
         Some(ShellEvent::ArSession(ArSession::Able)) => "able".to_owned(),
         None => String::new(),
         other => panic!("{other:?}"),
@@ -397,7 +397,7 @@ fn live(feed: &mut Feed, from_s: u64, n_s: u64) -> (bool, Option<ArSession>) {
                     state = None;
                 }
                 ShellEvent::ArTrouble(ar_session, words) => {
-                    assert!(words.ends_with('.'), "{words}");
+                    assert!(words.0.iter().all(|text| text.ends_with('.')), "{words:?}");
                     state = Some(ar_session);
                     if ar_session != ArSession::Installing {
                         // The app pauses a camera that does not continue.

@@ -41,6 +41,9 @@ const STRIDE_PX: i32 = 2;
 const MARGIN: f64 = 0.35;
 /// Number of moves of a standing toy to its best place.
 const N_STANDING: usize = 4;
+/// Reach of a tap around the rectangle of a silhouette, over the sides of that rectangle: a finger
+/// is no pointer.
+const BESIDE: f64 = 0.25;
 /// Smallest sine of the angle between a line of sight and a plane: 3 degrees.
 const LEAST_SLOPE: f64 = 0.052;
 
@@ -93,13 +96,18 @@ pub(crate) struct Standing {
 
 /// The best place for each turn of a toy that stands on a plane, best first. The shape is upright,
 /// in camera space; the turns are about the plane's normal, in radians. The plane fixes the toy's
-/// distance, and with it its size.
+/// distance, and with it its size. If a pixel was tapped, all places are at that pixel; otherwise
+/// they are where the picture differs from its plate.
 pub(crate) fn standing_guesses(
     shape: &Shape,
     level: &Level,
     (standing, turns_rad): (Standing, &[f64]),
+    tapped_px: Option<DVec2>,
 ) -> Vec<Guess> {
-    let regions = Regions::new(level);
+    let regions = match tapped_px {
+        Some(tapped_px) => Regions::tapped(level, tapped_px),
+        None => Regions::new(level),
+    };
     let guesses = turns_rad
         .iter()
         .filter_map(|turn_rad| regions.best_standing(shape, (standing, *turn_rad)));
@@ -125,12 +133,25 @@ struct Regions<'a> {
     /// Corner of the searched rectangle.
     from_px: IVec2,
     to_px: IVec2,
+    /// The pixel that all places are at, if there is one.
+    tapped_px: Option<DVec2>,
 }
 
 impl<'a> Regions<'a> {
     fn new(level: &'a Level) -> Self {
+        Self::within(level, extent(level))
+    }
+
+    /// Places at a pixel of the whole picture, wherever it differs from its plate.
+    fn tapped(level: &'a Level, tapped_px: DVec2) -> Self {
+        Self {
+            tapped_px: Some(tapped_px),
+            ..Self::within(level, (Vec::new(), IVec2::ZERO, level.frame.size_px))
+        }
+    }
+
+    fn within(level: &'a Level, (areas_px, from_px, to_px): (Vec<f64>, IVec2, IVec2)) -> Self {
         let size_px = level.frame.size_px;
-        let (areas_px, from_px, to_px) = extent(level);
         let is_within = |at: IVec2| at.cmpge(from_px).all() && at.cmplt(to_px).all();
         let mut known: [BTreeMap<[i32; 3], u32>; 2] = [BTreeMap::new(), BTreeMap::new()];
         let mut bin_of = |which: usize, color: Color| {
@@ -160,6 +181,7 @@ impl<'a> Regions<'a> {
             areas_px,
             from_px,
             to_px,
+            tapped_px: None,
         }
     }
 
@@ -193,7 +215,8 @@ impl<'a> Regions<'a> {
     fn best_standing(&self, shape: &Shape, (standing, turn_rad): (Standing, f64)) -> Option<Guess> {
         let turn = DMat4::from_quat(DQuat::from_axis_angle(standing.normal, turn_rad));
         let turned = turn * DMat4::from_translation(-shape.centre);
-        let mut at_px = 0.5 * (self.from_px + self.to_px).as_dvec2();
+        let middle_px = 0.5 * (self.from_px + self.to_px).as_dvec2();
+        let mut at_px = self.tapped_px.unwrap_or(middle_px);
         let mut best: Option<Guess> = None;
         // Each move brings the silhouette nearer to the view of its place.
         for _ in 0..N_STANDING {
@@ -266,9 +289,27 @@ impl<'a> Regions<'a> {
     /// The shift with the lowest cost of a silhouette around a pixel.
     fn best_place_from(&self, silhouette: &[IVec2], from_px: IVec2) -> Option<(IVec2, f64)> {
         let span = (self.to_px - self.from_px) / STRIDE_PX;
+        let is_tapped = self.is_tapped(silhouette);
         let coarse = places(span + 1).map(|at| self.from_px + STRIDE_PX * at - from_px);
-        let (best, _) = self.best_of(silhouette, coarse)?;
-        self.best_of(silhouette, beside(best))
+        let (best, _) = self.best_of(silhouette, coarse.filter(|shift| is_tapped(*shift)))?;
+        self.best_of(silhouette, beside(best).filter(|shift| is_tapped(*shift)))
+    }
+
+    /// Whether the tapped pixel is in a shifted silhouette's rectangle or little beside it; always
+    /// if none was tapped.
+    fn is_tapped(&self, silhouette: &[IVec2]) -> impl Fn(IVec2) -> bool + use<> {
+        let tapped_px = self.tapped_px;
+        let corners = silhouette.iter().copied();
+        let from_px = corners.clone().reduce(IVec2::min).unwrap_or_default() + self.middle();
+        let to_px = corners.reduce(IVec2::max).unwrap_or_default() + self.middle() + 1;
+        let (from_px, to_px) = (from_px.as_dvec2(), to_px.as_dvec2());
+        let reach_px = BESIDE * (to_px - from_px);
+        move |shift| {
+            tapped_px.is_none_or(|tapped_px| {
+                let at_px = tapped_px - shift.as_dvec2();
+                at_px.cmpge(from_px - reach_px).all() && at_px.cmple(to_px + reach_px).all()
+            })
+        }
     }
 
     fn middle(&self) -> IVec2 {

@@ -1,10 +1,13 @@
 //! Reactions to the person's actions and to changes of the platform.
 
+use glam::DVec2;
+
 use super::App;
 use super::event::{
     ArSession, GraphicsState, Permission, PlatformCommand, Saved, ShellCommand, UserAction, WorkCommand,
 };
-use super::ghost::Ghost;
+use super::ghost::{Ghost, point_at};
+use super::language::Translated;
 use super::notice::Notice;
 use super::platform::Obstacle;
 use super::search::Placing;
@@ -39,7 +42,7 @@ impl App {
             UserAction::ByHand => self.by_hand(|_, _| {}),
             UserAction::LookAgain => {
                 if let (Step::PlaceToy, Some(ghost)) = (self.step, &self.ghost) {
-                    self.search.look_again(ghost.world_from_object());
+                    self.look_again(ghost.world_from_object().w_axis.truncate());
                 }
             }
             UserAction::TakeLens => self.take_lens(),
@@ -150,7 +153,7 @@ impl App {
         }
     }
 
-    fn tap(&mut self, pixel: glam::DVec2) {
+    fn tap(&mut self, pixel: DVec2) {
         match (self.step, &self.camera, &self.latest) {
             (Step::FindTable, Some(camera), Some(latest)) => {
                 let Some(plane) = table_at(latest, camera, pixel) else {
@@ -160,22 +163,29 @@ impl App {
                 self.table = Some(plane);
                 self.go(Cause::TableChosen);
             }
-            (Step::PlaceToy, Some(camera), _) => {
-                let is_by_hand = self.placing() == Placing::ByHand;
-                match (&mut self.ghost, &self.table) {
-                    // A touch of the ring is a turn that did not begin.
-                    (Some(ghost), _) if is_by_hand => return ghost.move_beyond_ring(camera, pixel),
-                    (Some(ghost), _) => ghost.move_to(camera, pixel),
-                    (ghost, Some(table)) => {
-                        *ghost = Ghost::at(&self.toy, table, (camera, pixel)).ok().flatten();
-                    }
-                    _ => {}
-                }
-                if let Some(ghost) = &self.ghost {
-                    self.search.look_again(ghost.world_from_object());
+            (Step::PlaceToy, ..) => self.tap_toy(pixel),
+            _ => {}
+        }
+    }
+
+    /// Moves the ghost to a tapped pixel, and searches there unless the person turns the ghost.
+    fn tap_toy(&mut self, pixel: DVec2) {
+        let has_ring = self.placing() == Placing::ByHand;
+        let (Some(camera), Some(table)) = (&self.camera, &self.table) else {
+            return;
+        };
+        match &mut self.ghost {
+            Some(ghost) if has_ring => {
+                // A touch of the ring is a turn that did not begin.
+                if !ghost.move_beyond_ring(camera, pixel) || self.search.is_by_hand() {
+                    return;
                 }
             }
-            _ => {}
+            Some(ghost) => ghost.move_to(camera, pixel),
+            ghost => *ghost = Ghost::at(&self.toy, table, (camera, pixel)).ok().flatten(),
+        }
+        if let Some(at) = point_at(&table.world_from_plane, camera, pixel) {
+            self.look_again(at);
         }
     }
 
@@ -201,7 +211,7 @@ impl App {
         }
     }
 
-    pub(super) fn ar_session(&mut self, ar_session: ArSession, words: Option<String>) {
+    pub(super) fn ar_session(&mut self, ar_session: ArSession, words: Option<Translated>) {
         if let Some(words) = &words {
             self.note(&(ar_session, words));
         }

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::aligning::{AlignJob, AlignedJob};
-use super::language::Language;
+use super::language::{Language, Translated};
 use super::launch_history::LaunchHistory;
 use super::plates::{PlateJob, PlatedJob};
 use super::search::{SearchJob, SearchedJob};
 use super::step::Step;
+use super::toy_refusal::ToyRefusal;
 use app_scene::camera_frame::CameraFrame;
 use app_scene::toy::{ClipId, Toy};
 use app_session::recording::{RecordingJob, RecordingOutcome};
@@ -164,7 +165,7 @@ pub enum ShellEvent {
     /// The state of the AR session.
     ArSession(ArSession),
     /// The state of the AR session, with the platform's description of one or two sentences.
-    ArTrouble(ArSession, String),
+    ArTrouble(ArSession, Translated),
     /// The platform does not detect the printed card, though it was asked to.
     CardRefused,
     /// A camera frame.
@@ -182,7 +183,7 @@ pub enum ShellEvent {
     /// Names of available toy files, in answer to [`WorkCommand::PickToy`].
     ToyFiles(Vec<String>),
     /// A toy was read, or could not be read for this reason.
-    Toy(Result<Arc<Toy>, String>),
+    Toy(Result<Arc<Toy>, ToyRefusal>),
     /// The outcome of saving a photo, a video or files to share.
     Saved(Saved),
     /// The recording of [`WorkCommand::Record`] has ended.

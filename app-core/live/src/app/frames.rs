@@ -195,7 +195,7 @@ impl App {
         Some(input)
     }
 
-    pub(super) fn aligned(&mut self, done: Option<Box<AlignedJob>>) {
+    pub(super) fn aligned(&mut self, done: Option<Box<AlignedJob>>, commands: &mut Vec<ShellCommand>) {
         let Some(place) = &mut self.place else { return };
         let Some(done) = done else {
             return place.begin_anew();
@@ -206,18 +206,21 @@ impl App {
                 place.tell(recorder);
             }
             self.note(&verdict);
-            self.judge(verdict);
+            self.judge(verdict, commands);
         }
     }
 
-    fn judge(&mut self, verdict: Option<Verdict>) {
+    fn judge(&mut self, verdict: Option<Verdict>, commands: &mut Vec<ShellCommand>) {
         if self.step != Step::Align {
             return;
         }
         let outline_px = match verdict {
             Some(Verdict::Found {
                 outline_px: Some(_), ..
-            }) => return self.go(Cause::ToyFound),
+            }) => {
+                self.knock_for_toy(commands);
+                return self.go(Cause::ToyFound);
+            }
             Some(Verdict::Missed { outline_px }) => Some(outline_px),
             Some(Verdict::Found { outline_px: None, .. } | Verdict::Failed(_)) | None => None,
         };

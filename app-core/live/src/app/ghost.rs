@@ -87,14 +87,17 @@ impl Ghost {
         }
     }
 
-    /// The same for a place outside the ring and its knob; a place inside changes nothing.
-    pub(super) fn move_beyond_ring(&mut self, camera: &Camera, pixel: DVec2) {
+    /// The same for a place outside the ring and its knob; a place inside changes nothing. Returns
+    /// whether it moved.
+    pub(super) fn move_beyond_ring(&mut self, camera: &Camera, pixel: DVec2) -> bool {
         const BEYOND: f64 = 1.2;
         let place_m = seen_at(&self.world_from_plane, camera, pixel);
         let is_beyond = |place_m: &DVec2| place_m.distance(self.place_m) > BEYOND * self.ring_m;
-        if let Some(place_m) = place_m.filter(is_beyond) {
-            self.place_m = place_m;
-        }
+        let Some(place_m) = place_m.filter(is_beyond) else {
+            return false;
+        };
+        self.place_m = place_m;
+        true
     }
 
     /// Moves it if a finger drags within the ring, and turns it if one drags around it elsewhere.
@@ -161,6 +164,21 @@ pub(super) fn seen_at(world_from_plane: &DMat4, camera: &Camera, pixel: DVec2) -
     let distance_m = eye.y / -ray.y;
     let place = eye + distance_m * ray;
     (distance_m <= FARTHEST_M).then_some(DVec2::new(place.x, place.z))
+}
+
+/// The world's point at `pixel`: of the plane, or as far away as the plane's origin if the pixel
+/// does not show the plane, as at the head of a toy.
+pub(super) fn point_at(world_from_plane: &DMat4, camera: &Camera, pixel: DVec2) -> Option<DVec3> {
+    if let Some(place_m) = seen_at(world_from_plane, camera, pixel) {
+        return Some(world_from_plane.transform_point3(DVec3::new(place_m.x, 0.0, place_m.y)));
+    }
+    let eye = camera.world_from_camera.w_axis.truncate();
+    let ray = camera
+        .world_from_camera
+        .transform_vector3(camera.intrinsics.ray(pixel))
+        .try_normalize()?;
+    let distance_m = eye.distance(world_from_plane.w_axis.truncate());
+    Some(eye + distance_m * ray)
 }
 
 /// The image of a place of a plane, given as its x and z, in pixels; `None` behind the camera.

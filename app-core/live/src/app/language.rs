@@ -10,6 +10,28 @@ pub enum Language {
     German,
 }
 
+/// A text in each language, in their order.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Translated(pub [String; Language::ALL.len()]);
+
+impl Translated {
+    /// The text in a language.
+    #[must_use]
+    pub fn in_language(&self, language: Language) -> &str {
+        let Self([english, german]) = self;
+        match language {
+            Language::English => english,
+            Language::German => german,
+        }
+    }
+}
+
+impl From<[&str; Language::ALL.len()]> for Translated {
+    fn from(texts: [&str; Language::ALL.len()]) -> Self {
+        Self(texts.map(str::to_owned))
+    }
+}
+
 impl Language {
     /// All languages.
     pub const ALL: [Self; 2] = [Self::English, Self::German];

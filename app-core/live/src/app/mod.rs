@@ -31,6 +31,7 @@ mod show;
 mod start;
 mod step;
 mod table;
+mod toy_refusal;
 mod toys;
 
 use std::sync::Arc;
@@ -59,7 +60,7 @@ pub use event::{
     ArSession, GraphicsState, Permission, PlatformCommand, Recorded, Saved, ShellCommand, ShellEvent,
     Thermal, UserAction, WorkCommand,
 };
-pub use language::Language;
+pub use language::{Language, Translated};
 pub use launch_history::{LaunchHistory, MAX_FAILED_LAUNCHES, N_GOOD_FRAMES, Simplified};
 pub use log::Log;
 pub use notice::{LensFailure, Notice};
@@ -72,6 +73,7 @@ pub use reticle::Reticle;
 pub use search::{Placing, SearchJob, SearchedJob};
 pub use show::Show;
 pub use step::{Cause, Step};
+pub use toy_refusal::{RefusalKind, ToyRefusal};
 
 use notice::Notices;
 
@@ -93,10 +95,10 @@ pub struct App {
     /// Whether a person uses the printed card.
     uses_card: bool,
     /// The platform's description of its AR session.
-    ar_words: Option<String>,
+    ar_words: Option<Translated>,
     language: Language,
     /// Disclosure on the first screen that the platform's terms require.
-    disclosure: Option<&'static str>,
+    disclosure: Option<Translated>,
     /// Time since the tracker began to relocalise with nothing placed.
     relocalising_s: f64,
     shows_profile: bool,
@@ -120,6 +122,8 @@ pub struct App {
     ghost: Option<Ghost>,
     ghost_shape: GhostShape,
     search: Search,
+    /// Whether the toy is searched for, and no haptic pulse has told that it was found.
+    owes_knock: bool,
     /// The place at which the platform has recognised the toy.
     scanned_at: Option<DVec3>,
     /// Whether the reticle was on a table in the previous frame.
@@ -170,6 +174,7 @@ impl App {
             plate_exposure: None,
             ghost: None,
             search: Search::default(),
+            owes_knock: false,
             scanned_at: None,
             had_reticle: false,
             lens: Lens::default(),
@@ -199,7 +204,7 @@ impl App {
             ShellEvent::MemoryLow => self.memory_low(),
             ShellEvent::Plated(done) => self.plated(done),
             ShellEvent::Searched(done) => self.searched(done, &mut commands),
-            ShellEvent::Aligned(done) => self.aligned(done),
+            ShellEvent::Aligned(done) => self.aligned(done, &mut commands),
             ShellEvent::ToyFiles(files) => self.toy_files = Some(files),
             ShellEvent::Toy(read) => self.take_toy(read),
             ShellEvent::Saved(saved) => self.saved(saved),
@@ -244,7 +249,7 @@ impl App {
     /// able.
     #[must_use]
     pub fn ar_words(&self) -> Option<&str> {
-        self.ar_words.as_deref()
+        Some(self.ar_words.as_ref()?.in_language(self.language))
     }
 
     /// Whether a person uses the printed card, which is detected up to [`Step::PlaceToy`].
@@ -260,14 +265,14 @@ impl App {
     }
 
     /// Sets the disclosure on the first screen that the platform's terms require.
-    pub fn disclose(&mut self, words: &'static str) {
+    pub fn disclose(&mut self, words: Translated) {
         self.disclosure = Some(words);
     }
 
     /// The disclosure.
     #[must_use]
-    pub fn disclosure(&self) -> Option<&'static str> {
-        self.disclosure
+    pub fn disclosure(&self) -> Option<&str> {
+        Some(self.disclosure.as_ref()?.in_language(self.language))
     }
 
     /// The current notice, which is shown for some seconds.
@@ -396,6 +401,7 @@ impl App {
     /// down, and the person places one that was detected before.
     fn enter_ghost(&mut self, cause: Cause) {
         let place = self.place.take();
+        self.owes_knock = true;
         match cause {
             Cause::PlateTaken | Cause::PlateSkipped => self.search.begin(!self.plates.is_empty()),
             _ => self.search.give_up(),

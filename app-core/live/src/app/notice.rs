@@ -2,6 +2,7 @@
 
 use super::event::{Recorded, Saved};
 use super::launch_history::Simplified;
+use super::toy_refusal::ToyRefusal;
 
 /// Duration of a notice, in seconds.
 const SHOWN_S: f64 = 6.0;
@@ -34,7 +35,7 @@ pub enum Notice {
     /// This phone does not detect the printed card.
     CardRefused,
     /// A file is not a toy; with the reason.
-    ToyRefused(String),
+    ToyRefused(ToyRefusal),
     /// The tracker has lost the place.
     WorldLost,
     /// Graphics had to be set up again.

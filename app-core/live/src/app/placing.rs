@@ -1,5 +1,7 @@
 //! The toy's pose and the plate: the app's use of results from threads.
 
+use glam::DVec3;
+
 use super::App;
 use super::event::{PlatformCommand, ShellCommand, WorkCommand};
 use super::ghost::Ghost;
@@ -54,8 +56,22 @@ impl App {
         if is_lost {
             self.go(Cause::Replace);
         }
-        self.search.look_again(ghost.world_from_object());
         self.ghost = Some(ghost);
+        self.look_again(at);
+    }
+
+    /// Searches at a point of the world; the ghost is shown until a better pose is known.
+    pub(super) fn look_again(&mut self, at: DVec3) {
+        let ghost = self.ghost.as_ref().map(Ghost::world_from_object);
+        self.search.look_again(at, ghost);
+        self.owes_knock = true;
+    }
+
+    /// Gives one haptic pulse for a toy that was found.
+    pub(super) fn knock_for_toy(&mut self, commands: &mut Vec<ShellCommand>) {
+        if std::mem::take(&mut self.owes_knock) {
+            commands.push(PlatformCommand::Knock.into());
+        }
     }
 
     pub(super) fn search(&mut self, is_trusted: bool, elapsed_s: f64, commands: &mut Vec<ShellCommand>) {
@@ -79,12 +95,18 @@ impl App {
         let Some(done) = done else {
             return self.search.die();
         };
-        let was_known = self.search.best.is_some();
-        if !self.search.take(*done) || self.step != Step::PlaceToy {
+        let is_better = self.search.take(*done);
+        if self.step != Step::PlaceToy {
             return;
         }
-        if !was_known {
-            commands.push(PlatformCommand::Knock.into());
+        match self.search.placing() {
+            Placing::Asked { is_searching: false } => self.knock_for_toy(commands),
+            // Also after a false alarm.
+            Placing::Waiting { .. } => self.owes_knock = true,
+            _ => {}
+        }
+        if !is_better {
+            return;
         }
         let (Some(best), Some(table)) = (self.search.best, &self.table) else {
             return;

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
-use app_alignment::{NewObject, StandingPose, StandingSearch};
+use app_alignment::{NewObject, StandingPose, StandingSearch, TableChange};
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
 
@@ -14,6 +14,11 @@ const LOOK_S: f64 = 0.4;
 /// counts as standing still: a hand holds the phone.
 const STILL_M: f64 = 0.015;
 const STILL_SHARE: f64 = 0.25;
+/// The same for a thing that was searched in vain: beyond, it is gone, or it is another thing.
+const GONE_M: f64 = 0.05;
+const GONE_SHARE: f64 = 0.5;
+/// Number of consecutive examinations of an empty table after which a thing is gone.
+const N_EMPTY: u32 = 2;
 /// Waiting time after which the person gets more advice.
 const LONG_S: f64 = 6.0;
 /// Largest distance between the outlines of a found pose and the picture, in pixels.
@@ -56,7 +61,9 @@ impl SearchJob {
     #[must_use]
     pub fn run(self) -> SearchedJob {
         let result = match self.part {
-            Part::Look(scene, input) => SearchResult::Looked(NewObject::of(&scene, &input).ok().flatten()),
+            Part::Look(scene, input) => {
+                SearchResult::Looked(TableChange::of(&scene, &input).unwrap_or(TableChange::None))
+            }
             Part::Step(mut search) => match search.step() {
                 Ok(()) => SearchResult::Stepped(search),
                 Err(_) => SearchResult::Refused,
@@ -78,9 +85,21 @@ pub struct SearchedJob {
 
 #[derive(Debug)]
 enum SearchResult {
-    Looked(Option<NewObject>),
+    Looked(TableChange),
     Stepped(Box<StandingSearch>),
     Refused,
+}
+
+/// Cause and place of a search.
+#[derive(Clone, Copy, Debug)]
+enum Start {
+    /// The ghost's place on a table without a plate.
+    Given,
+    /// A new thing on the table.
+    Noticed(NewObject),
+    /// A point of the world that the person has tapped, or at which the platform has recognised the
+    /// toy.
+    At(DVec3),
 }
 
 /// Stage of the search.
@@ -89,11 +108,14 @@ enum Stage {
     /// The table is examined from time to time; holds the new thing of the last examination.
     Watch(Option<NewObject>),
     /// A search begins with the next frame that has a pose.
-    Begin,
+    Begin(Start),
     /// The search waits for its next step.
-    Step(Box<StandingSearch>),
-    /// The search has ended.
-    Ended,
+    Step(Start, Box<StandingSearch>),
+    /// The search is at a step.
+    AtWork(Start),
+    /// The search has ended. If it was for a new thing, the table is examined from time to time: it
+    /// may have been a false alarm.
+    Ended(Start),
     /// The person moves the ghost.
     #[default]
     ByHand,
@@ -105,10 +127,14 @@ pub(super) struct Search {
     /// Number of the search: results of another search are dropped.
     number: u64,
     stage: Stage,
-    is_at_work: bool,
+    /// Number of the search that a thread works for: there is one thread at most, also for a search
+    /// that was dropped.
+    at_work: Option<u64>,
     /// Seconds since the last examination, and since the start of the search.
     looked_s: f64,
     waited_s: f64,
+    /// Number of latest examinations that showed an empty table.
+    n_empty: u32,
     pub(super) best: Option<StandingPose>,
 }
 
@@ -119,7 +145,7 @@ impl Search {
         let stage = if has_plate {
             Stage::Watch(None)
         } else {
-            Stage::Begin
+            Stage::Begin(Start::Given)
         };
         self.turn_to(stage);
     }
@@ -129,10 +155,10 @@ impl Search {
         self.turn_to(Stage::ByHand);
     }
 
-    /// Starts at once, at a ghost's place.
-    pub(super) fn look_again(&mut self, world_from_object: DMat4) {
-        self.turn_to(Stage::Begin);
-        self.best = Some(StandingPose {
+    /// Starts at once, at a point of the world, with a ghost's pose until a better one is known.
+    pub(super) fn look_again(&mut self, at: DVec3, ghost: Option<DMat4>) {
+        self.turn_to(Stage::Begin(Start::At(at)));
+        self.best = ghost.map(|world_from_object| StandingPose {
             world_from_object,
             outline_px: None,
         });
@@ -140,7 +166,7 @@ impl Search {
 
     /// Handles a thread that did not end: the person goes on by hand.
     pub(super) fn die(&mut self) {
-        if self.is_at_work {
+        if self.at_work.take() == Some(self.number) {
             self.give_up();
         }
     }
@@ -149,24 +175,36 @@ impl Search {
         *self = Self {
             number: self.number + 1,
             stage,
-            // A thread that works on an earlier place is not waited for.
+            // Its result is dropped.
+            at_work: self.at_work,
             ..Self::default()
         };
+    }
+
+    /// Whether the ghost was left to the person.
+    pub(super) fn is_by_hand(&self) -> bool {
+        matches!(self.stage, Stage::ByHand)
+    }
+
+    /// Whether the search has ended with a pose that matches the picture.
+    fn is_found(&self) -> bool {
+        self.placing() == Placing::Asked { is_searching: false }
     }
 
     /// The state of the question.
     pub(super) fn placing(&self) -> Placing {
         match (&self.stage, self.best) {
             (Stage::ByHand, _) => Placing::ByHand,
-            (Stage::Ended, Some(best)) if best.outline_px.is_some_and(|px| px <= FOUND_PX) => {
+            (Stage::Ended(_), Some(best)) if best.outline_px.is_some_and(|px| px <= FOUND_PX) => {
                 Placing::Asked { is_searching: false }
             }
-            // No pose matches the outline: the person turns the best start.
-            (Stage::Ended, _) => Placing::ByHand,
-            (_, Some(_)) => Placing::Asked { is_searching: true },
-            (Stage::Watch(_), None) => Placing::Waiting {
+            // A thing that no turn of the toy fits is none.
+            (Stage::Watch(_) | Stage::Ended(Start::Noticed(_)), None) => Placing::Waiting {
                 is_long: self.waited_s > LONG_S,
             },
+            // No pose matches the outline: the person turns the best start.
+            (Stage::Ended(_), _) => Placing::ByHand,
+            (_, Some(_)) => Placing::Asked { is_searching: true },
             (_, None) => Placing::Looking,
         }
     }
@@ -179,74 +217,106 @@ impl Search {
     ) -> Option<SearchJob> {
         self.looked_s += elapsed_s;
         self.waited_s += elapsed_s;
-        if self.is_at_work {
+        if self.at_work.is_some() {
             return None;
         }
-        let part = match std::mem::take(&mut self.stage) {
-            Stage::Watch(seen) => {
-                self.stage = Stage::Watch(seen);
-                if self.looked_s < LOOK_S {
-                    return None;
-                }
-                let (scene, input) = frame()?;
-                self.looked_s = 0.0;
-                Part::Look(Arc::new(scene), Box::new(input))
-            }
-            Stage::Begin => {
-                self.stage = Stage::Begin;
-                let (scene, input) = frame()?;
-                Part::Step(Box::new(StandingSearch::new(Arc::new(scene), input)))
-            }
-            Stage::Step(search) => {
-                self.stage = Stage::Begin;
-                Part::Step(search)
-            }
-            ended => {
-                self.stage = ended;
+        let part = if self.watches() {
+            if self.looked_s < LOOK_S {
                 return None;
             }
+            let (scene, input) = frame()?;
+            self.looked_s = 0.0;
+            Part::Look(Arc::new(scene), Box::new(input))
+        } else if let Stage::Begin(start) = self.stage {
+            let (scene, input) = frame()?;
+            let search = StandingSearch::new(Arc::new(scene), input);
+            self.stage = Stage::AtWork(start);
+            Part::Step(Box::new(match start {
+                Start::At(at) => search.at(at),
+                Start::Given | Start::Noticed(_) => search,
+            }))
+        } else {
+            match std::mem::take(&mut self.stage) {
+                Stage::Step(start, search) => {
+                    self.stage = Stage::AtWork(start);
+                    Part::Step(search)
+                }
+                stage => {
+                    self.stage = stage;
+                    return None;
+                }
+            }
         };
-        self.is_at_work = true;
+        self.at_work = Some(self.number);
         Some(SearchJob {
             number: self.number,
             part,
         })
     }
 
+    /// Whether the table is examined from time to time.
+    fn watches(&self) -> bool {
+        matches!(self.stage, Stage::Watch(_) | Stage::Ended(Start::Noticed(_)))
+    }
+
+    /// Waits for the toy as before if a thing that was searched is no longer there. A found toy may
+    /// also look different, as from another side.
+    fn follow_searched(&mut self, before: NewObject, change: TableChange) {
+        self.n_empty = match change {
+            TableChange::None => self.n_empty + 1,
+            TableChange::Object(_) | TableChange::AtBorder => 0,
+        };
+        let is_other = |now| !is_same([before, now], (GONE_M, GONE_SHARE));
+        let is_replaced = !self.is_found() && object_of(change).is_some_and(is_other);
+        if is_replaced || self.n_empty >= N_EMPTY {
+            self.turn_to(Stage::Watch(object_of(change)));
+        }
+    }
+
     /// Adopts the result of a part. Returns whether there is a better pose.
     pub(super) fn take(&mut self, done: SearchedJob) -> bool {
+        self.at_work = None;
         if done.number != self.number {
             return false;
         }
-        self.is_at_work = false;
-        match done.result {
-            SearchResult::Looked(seen) => {
-                if let Stage::Watch(before) = std::mem::take(&mut self.stage) {
-                    self.stage = match (before, seen) {
-                        (Some(before), Some(now)) if is_still([before, now]) => Stage::Begin,
-                        _ => Stage::Watch(seen),
-                    };
-                }
-                false
+        match (done.result, &self.stage) {
+            (SearchResult::Looked(change), Stage::Watch(before)) => {
+                let seen = object_of(change);
+                self.stage = match (*before, seen) {
+                    (Some(before), Some(now)) if is_same([before, now], (STILL_M, STILL_SHARE)) => {
+                        Stage::Begin(Start::Noticed(now))
+                    }
+                    _ => Stage::Watch(seen),
+                };
             }
-            SearchResult::Stepped(search) => {
+            (SearchResult::Looked(change), &Stage::Ended(Start::Noticed(before))) => {
+                self.follow_searched(before, change);
+            }
+            (SearchResult::Stepped(search), &Stage::AtWork(start)) => {
                 let before = std::mem::replace(&mut self.best, search.best());
                 self.stage = if search.is_done() {
-                    Stage::Ended
+                    Stage::Ended(start)
                 } else {
-                    Stage::Step(search)
+                    Stage::Step(start, search)
                 };
-                before != self.best
+                return before != self.best;
             }
-            SearchResult::Refused => {
-                self.stage = Stage::Ended;
-                false
-            }
+            (SearchResult::Refused, &Stage::AtWork(start)) => self.stage = Stage::Ended(start),
+            _ => {}
         }
+        false
     }
 }
 
-/// Whether the new thing is the same, at the same place.
-fn is_still([before, now]: [NewObject; 2]) -> bool {
-    before.at.distance(now.at) < STILL_M && (now.share - before.share).abs() < STILL_SHARE * before.share
+fn object_of(change: TableChange) -> Option<NewObject> {
+    match change {
+        TableChange::Object(object) => Some(object),
+        TableChange::None | TableChange::AtBorder => None,
+    }
+}
+
+/// Whether a new thing is the same as before, within a distance in metres and a relative change of
+/// its size.
+fn is_same([before, now]: [NewObject; 2], (within_m, within_share): (f64, f64)) -> bool {
+    before.at.distance(now.at) < within_m && (now.share - before.share).abs() < within_share * before.share
 }

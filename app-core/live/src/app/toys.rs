@@ -9,6 +9,7 @@ use super::ghost_shape::GhostShape;
 use super::notice::Notice;
 use super::playback::Playback;
 use super::step::{Cause, Step};
+use super::toy_refusal::ToyRefusal;
 use app_scene::toy::Toy;
 
 impl App {
@@ -26,7 +27,7 @@ impl App {
     }
 
     /// Adopts a toy of the person's own; the photograph of the place stays.
-    pub(super) fn take_toy(&mut self, read: Result<Arc<Toy>, String>) {
+    pub(super) fn take_toy(&mut self, read: Result<Arc<Toy>, ToyRefusal>) {
         match read {
             Ok(toy) => {
                 self.playback = Playback::of(&toy);

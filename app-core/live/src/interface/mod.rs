@@ -21,9 +21,10 @@ use egui::{CentralPanel, Context, Frame};
 
 use crate::app::{App, Step, UserAction};
 
+pub use egui::accesskit;
 pub use input::{Insets, Screen, Touch, TouchPhase};
 pub(crate) use painter::Painter;
-pub use text::{CLOSED, announced, of_no_graphics};
+pub use text::{announced, of_closed, of_no_graphics};
 pub use words::all_words;
 
 /// A font of 18 KB: Roboto Medium, Copyright 2015 Google, Apache License 2.0, reduced to Latin
@@ -67,6 +68,9 @@ pub struct Widget {
 pub struct Interface {
     context: Context,
     widgets: Vec<Widget>,
+    tree: Option<accesskit::TreeUpdate>,
+    /// Actions of a screen reader since the last picture.
+    requests: Vec<accesskit::ActionRequest>,
     textures: Textures,
     touches: input::Touches,
     is_menu_open: bool,
@@ -81,6 +85,8 @@ impl Default for Interface {
         Self {
             context,
             widgets: Vec::new(),
+            tree: None,
+            requests: Vec::new(),
             textures: Textures::default(),
             touches: input::Touches::default(),
             is_menu_open: false,
@@ -143,12 +149,16 @@ impl Interface {
         self.time_s = time_s;
         let mut actions = Vec::new();
         let wheel_steps = self.touches.take_wheel();
-        let input = self.touches.input(screen, time_s);
+        let mut input = self.touches.input(screen, time_s);
+        let requests = self.requests.drain(..);
+        input
+            .events
+            .extend(requests.map(egui::Event::AccessKitActionRequest));
         let is_menu_open = &mut self.is_menu_open;
         if app.step() != Step::Play {
             *is_menu_open = false;
         }
-        let output = self.context.run_ui(input, |ui| {
+        let mut output = self.context.run_ui(input, |ui| {
             CentralPanel::default().frame(Frame::NONE).show(ui, |ui| {
                 picture::show(ui, app, screen, wheel_steps, &mut actions);
                 let notice = screens::notice(ui, app);
@@ -159,8 +169,20 @@ impl Interface {
             });
         });
         self.widgets = widgets(&output.platform_output, output.pixels_per_point);
+        self.tree = output.platform_output.accesskit_update.take();
         self.textures.add(output.textures_delta);
         (actions, output.shapes, output.pixels_per_point)
+    }
+
+    /// The whole tree of the latest picture for a screen reader; `None` before the first one.
+    #[must_use]
+    pub fn accessibility_tree(&self) -> Option<&accesskit::TreeUpdate> {
+        self.tree.as_ref()
+    }
+
+    /// An action of a screen reader.
+    pub fn request(&mut self, request: accesskit::ActionRequest) {
+        self.requests.push(request);
     }
 
     /// The widgets for a screen reader in the latest picture.

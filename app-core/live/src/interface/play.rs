@@ -82,8 +82,8 @@ fn clip(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
         if other(ui, label) {
             actions.push(UserAction::Play(!playback.is_playing()));
         }
-        let part = playback.time_s() / playback.length_s();
-        if let Some(part) = slider(ui, part, (playback.time_s(), say(app, text::TIME))) {
+        let times_s = [playback.time_s(), playback.length_s()];
+        if let Some(part) = slider(ui, times_s, (say(app, text::TIME), playback.is_playing())) {
             let time_s = part * playback.length_s();
             actions.extend([UserAction::Play(false), UserAction::Scrub(time_s)]);
         }

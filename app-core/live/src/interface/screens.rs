@@ -4,8 +4,12 @@ use egui::{Align2, Area, Id, Order, ProgressBar, Rect, RichText, ScrollArea, Ui,
 
 use super::parts::{lead, other, words};
 use super::text::{self, say};
+use super::words::Words;
 use super::{check, play, style};
 use crate::app::{App, Obstacle, Placing, Step, UserAction};
+
+/// Height of a screen below which a sheet is low.
+const LOW_POINTS: f32 = 300.0;
 
 /// The sheet at the bottom, or at the right of a wide screen; the toy is mostly in the middle.
 pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, actions: &mut Vec<UserAction>) {
@@ -25,7 +29,16 @@ pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, actions: &m
                 // 16 points of margin within, 12 without, on either side.
                 let tallest = area.height() - 56.0;
                 // Without a minimum height a sheet would stay as low as the previous one.
+                // A new sheet begins at its top.
+                let shown = format!(
+                    "{:?} {:?} {:?} {:?}",
+                    app.step(),
+                    app.obstacle(),
+                    app.phone_question(),
+                    app.toy_files().is_some()
+                );
                 let scrolled = ScrollArea::vertical()
+                    .id_salt(shown)
                     .max_height(tallest)
                     .min_scrolled_height(tallest);
                 scrolled.show(ui, |ui| match app.obstacle() {
@@ -40,14 +53,11 @@ pub(super) fn sheet(ui: &mut Ui, app: &App, is_menu_open: &mut bool, actions: &m
 }
 
 fn step(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
-    if let Some((title, hint)) = text::of_step(app) {
-        words(ui, say(app, title), say(app, hint));
+    if let Some(told) = text::of_step(app) {
+        head(ui, app, told, actions);
     }
     match app.step() {
         Step::Welcome => {
-            if lead(ui, say(app, text::BEGIN)) {
-                actions.push(UserAction::Begin);
-            }
             if let Some(disclosure) = app.disclosure() {
                 ui.label(RichText::new(disclosure).small().color(style::MUTED));
             }
@@ -72,9 +82,6 @@ fn step(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
             }
         }
         Step::FindTable => {
-            if app.reticle().is_some() && lead(ui, say(app, text::HERE)) {
-                actions.push(UserAction::TapReticle);
-            }
             let words = if app.uses_card() {
                 text::NO_CARD
             } else {
@@ -93,27 +100,42 @@ fn step(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     }
 }
 
+/// Title and instructions of a step, and the button for the next one: a low sheet, as with large
+/// letters, has the button before the instructions, so that it needs no scrolling.
+fn head(ui: &mut Ui, app: &App, (title, hint): (Words, Words), actions: &mut Vec<UserAction>) {
+    let is_low = ui.ctx().content_rect().height() < LOW_POINTS;
+    ui.label(RichText::new(say(app, title)).heading());
+    let mut next = |ui: &mut Ui, is_here: bool| {
+        if let Some((label, action)) = next_step(app).filter(|_| is_here)
+            && lead(ui, say(app, label))
+        {
+            actions.push(action);
+        }
+    };
+    next(ui, is_low);
+    ui.label(RichText::new(say(app, hint)).color(style::MUTED));
+    next(ui, !is_low);
+}
+
+/// The button for the next step, if a button leads there.
+fn next_step(app: &App) -> Option<(Words, UserAction)> {
+    match app.step() {
+        Step::Welcome => Some((text::BEGIN, UserAction::Begin)),
+        Step::FindTable => app.reticle().map(|_| (text::HERE, UserAction::TapReticle)),
+        Step::PlaceToy if !app.is_taking_lens() => match app.placing() {
+            Placing::Asked { .. } => Some((text::YES, UserAction::Placed)),
+            Placing::ByHand => Some((text::PLACED, UserAction::Placed)),
+            Placing::Waiting { .. } | Placing::Looking => None,
+        },
+        _ => None,
+    }
+}
+
 /// The question about the toy's place: waiting, asking, or turning by hand.
 fn place(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
     let placing = app.placing();
-    match placing {
-        Placing::Waiting { .. } => {}
-        Placing::Looking => {
-            ui.spinner();
-        }
-        Placing::Asked { is_searching } => {
-            if lead(ui, say(app, text::YES)) {
-                actions.push(UserAction::Placed);
-            }
-            if is_searching {
-                ui.spinner();
-            }
-        }
-        Placing::ByHand => {
-            if lead(ui, say(app, text::PLACED)) {
-                actions.push(UserAction::Placed);
-            }
-        }
+    if matches!(placing, Placing::Looking | Placing::Asked { is_searching: true }) {
+        ui.spinner();
     }
     let by_hand = match placing {
         Placing::Asked { .. } => Some((text::TURN, UserAction::ByHand)),
@@ -152,7 +174,8 @@ fn toys(ui: &mut Ui, app: &App, actions: &mut Vec<UserAction>) {
 fn plate_step(ui: &mut Ui, app: &App) {
     let Some(step) = app.plate_step() else { return };
     let (part, help) = text::of_plate_step(step);
-    ui.add(ProgressBar::new(part.unwrap_or(0.0)).desired_height(12.0));
+    let bar = ProgressBar::new(part.unwrap_or(0.0)).fill(style::ACCENT);
+    ui.add(bar.desired_height(12.0));
     ui.label(say(app, help));
 }
 
@@ -190,16 +213,22 @@ fn width_at_right(area: Rect) -> Option<f32> {
     (area.width() > 1.2 * area.height()).then_some(width)
 }
 
-/// The notice at the top, beside a sheet at the right; returns its rectangle.
+/// The notice at the top, in the corner of a wide screen, where it covers no toy; returns its
+/// rectangle.
 pub(super) fn notice(ui: &Ui, app: &App) -> Option<Rect> {
     let notice = app.notice()?;
     let area = ui.ctx().content_rect();
-    let taken = width_at_right(area).map_or(0.0, |width| width + 12.0);
+    let sheet = width_at_right(area);
+    let taken = sheet.map_or(0.0, |width| width + 12.0);
     let width = (area.width() - taken - 24.0).min(style::SHEET_POINTS);
+    let (align, offset) = match sheet {
+        Some(_) => (Align2::LEFT_TOP, vec2(12.0, 12.0)),
+        None => (Align2::CENTER_TOP, vec2(0.0, 12.0)),
+    };
     let shown = Area::new(Id::unique("notice"))
         .order(Order::Foreground)
         .interactable(false)
-        .anchor(Align2::CENTER_TOP, vec2(-0.5 * taken, 12.0))
+        .anchor(align, offset)
         .show(ui.ctx(), |ui| {
             style::card().show(ui, |ui| {
                 ui.set_max_width(width - 32.0);

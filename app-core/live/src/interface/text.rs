@@ -3,8 +3,9 @@
 use super::words::Words;
 use crate::app::{
     App, Language, LensFailure, Notice, Obstacle, PhoneQuestion, Placing, PlateRefusal, PlateStep, Recorded,
-    Saved, Simplified, Step, Verdict,
+    RefusalKind, Saved, Simplified, Step, ToyRefusal, Verdict,
 };
+use app_alignment::NoLight;
 use app_pipeline::core::CoreError;
 use app_pipeline::gpu::GpuError;
 use app_scene::camera_frame::Tracking;
@@ -74,7 +75,7 @@ pub(super) fn of_notice(notice: &Notice, language: Language) -> String {
         Notice::LensFailed(LensFailure::NoLight) => LENS_NO_LIGHT,
         Notice::LensFailed(LensFailure::NotSeen) => LENS_NOT_SEEN,
         Notice::CardRefused => CARD_REFUSED,
-        Notice::ToyRefused(reason) => return TOY_REFUSED.filled(language, &[reason]),
+        Notice::ToyRefused(refusal) => return of_refusal(refusal, language),
         Notice::WorldLost => WORLD_LOST,
         Notice::DeviceRestarted => DEVICE_RESTARTED,
         Notice::Restarted => RESTARTED,
@@ -90,9 +91,7 @@ pub(super) fn of_notice(notice: &Notice, language: Language) -> String {
             return PHONE_CHECKED.filled(language, &[n_yes, &PhoneQuestion::ALL.len()]);
         }
         Notice::Simplified(Simplified::FailedLaunches) => FAILED_LAUNCHES,
-        Notice::Simplified(Simplified::SelfTest(reason)) => {
-            return SELF_TEST_FAILED.filled(language, &[reason]);
-        }
+        Notice::Simplified(Simplified::SelfTest(_)) => SELF_TEST_FAILED,
         Notice::MemoryLow => MEMORY_LOW,
     };
     words.in_language(language).to_owned()
@@ -100,20 +99,38 @@ pub(super) fn of_notice(notice: &Notice, language: Language) -> String {
 
 /// Text for the platform's own view if nothing can be drawn, in two short lines.
 #[must_use]
-pub fn of_no_graphics(error: &CoreError) -> &'static str {
-    match error {
-        CoreError::Gpu(GpuError::KnownFault { .. }) => {
-            "This app cannot run here: this phone's graphics driver has a known fault."
-        }
-        CoreError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }) => {
-            "This app cannot run here: it needs graphics with Vulkan 1.1."
-        }
-        _ => "The app was closed: this phone's graphics failed.",
-    }
+pub fn of_no_graphics(error: &CoreError, language: Language) -> &'static str {
+    let words = match error {
+        CoreError::Gpu(GpuError::KnownFault { .. }) => DRIVER_FAULT,
+        CoreError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }) => NO_VULKAN,
+        _ => GRAPHICS_FAILED,
+    };
+    words.in_language(language)
 }
 
 /// The same if the app ended unexpectedly more than once.
-pub const CLOSED: &str = "The app was closed: something went wrong again and again.";
+#[must_use]
+pub fn of_closed(language: Language) -> &'static str {
+    CLOSED.in_language(language)
+}
+
+/// The file, the kind of the reason, and the way out; the log has the reason itself.
+fn of_refusal(refusal: &ToyRefusal, language: Language) -> String {
+    let file = &refusal.file;
+    match &refusal.kind {
+        RefusalKind::Unreadable => TOY_UNREADABLE.filled(language, &[file]),
+        RefusalKind::TooLarge(most_mib) => TOY_TOO_LARGE.filled(language, &[file, most_mib]),
+        RefusalKind::Foreign => TOY_FOREIGN.filled(language, &[file]),
+        RefusalKind::Extension(name) => TOY_EXTENSION.filled(language, &[file, name]),
+        RefusalKind::TooMany { field, found, limit } => {
+            TOY_TOO_MANY.filled(language, &[file, field, found, limit])
+        }
+        RefusalKind::External => TOY_EXTERNAL.filled(language, &[file]),
+        RefusalKind::NoTriangles => TOY_EMPTY.filled(language, &[file]),
+        RefusalKind::Picture => TOY_PICTURE.filled(language, &[file]),
+        RefusalKind::Damaged { field } => TOY_DAMAGED.filled(language, &[file, field]),
+    }
+}
 
 fn of_recorded(recorded: &Recorded, language: Language) -> String {
     let RecordingOutcome {
@@ -127,7 +144,8 @@ fn of_recorded(recorded: &Recorded, language: Language) -> String {
         Ending::NoRoom => ENDED_NO_ROOM.filled(language, &[]),
         Ending::TooLarge => ENDED_TOO_LARGE.filled(language, &[]),
         Ending::NotAllowed => ENDED_NOT_ALLOWED.filled(language, &[]),
-        Ending::Failed(reason) => ENDED_FAILED.filled(language, &[reason]),
+        // The log has the reason.
+        Ending::Failed(_) => ENDED_FAILED.filled(language, &[]),
     };
     let lacks = match n_dropped {
         0 => String::new(),
@@ -143,14 +161,22 @@ pub(super) fn of_verdict(verdict: &Verdict, language: Language) -> String {
         Verdict::Found {
             no_light: Some(reason),
             ..
-        } => GUESSED.filled(language, &[reason]),
+        } => GUESSED.filled(language, &[&of_no_light(*reason).in_language(language)]),
         Verdict::Found {
             outline_px: Some(outline_px),
             ..
         } => FITTED.filled(language, &[&tenths(outline_px)]),
         Verdict::Found { outline_px: None, .. } => LITTLE_SEEN.filled(language, &[]),
         Verdict::Missed { outline_px } => TOY_LOST.filled(language, &[&tenths(outline_px)]),
-        Verdict::Failed(reason) => NOT_FITTED.filled(language, &[reason]),
+        Verdict::Failed(_) => NOT_FITTED.filled(language, &[]),
+    }
+}
+
+fn of_no_light(reason: NoLight) -> Words {
+    match reason {
+        NoLight::PoseUnknown => POSE_UNKNOWN,
+        NoLight::ReceiversUnseen => RECEIVERS_UNSEEN,
+        _ => NO_LIGHT_STANDS_OUT,
     }
 }
 

@@ -153,7 +153,7 @@ fn toys_are_listed_and_read() {
     worker.obey(&live, none);
     let event = told(&mut worker);
     assert!(
-        matches!(&event, ShellEvent::Toy(Err(reason)) if reason.contains("none.glb")),
+        matches!(&event, ShellEvent::Toy(Err(refusal)) if refusal.reason.contains("none.glb")),
         "{event:?}"
     );
 }

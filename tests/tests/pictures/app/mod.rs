@@ -8,6 +8,7 @@ mod phones;
 mod planes;
 mod recorded;
 mod screens;
+mod search;
 mod starts;
 mod table;
 mod times;

@@ -2,7 +2,7 @@
 
 use app_core::app::{
     AlignJob, AlignedJob, App, GraphicsState, Notice, Permission, PlateJob, PlatformCommand, SearchJob,
-    ShellCommand, ShellEvent, Show, Step, UserAction, WorkCommand,
+    ShellCommand, ShellEvent, Show, Step, ToyRefusal, UserAction, WorkCommand,
 };
 use app_core::camera_frame::{Exposure, Tracking};
 use app_core::frame::FrameInput;
@@ -85,7 +85,7 @@ impl Platform {
                 let read = if is_toy {
                     Ok(world::toy())
                 } else {
-                    Err("too many triangles".to_owned())
+                    Err(ToyRefusal::too_large("toy.glb", 64))
                 };
                 vec![ShellEvent::Toy(read)]
             }
@@ -140,6 +140,8 @@ impl Platform {
             ShellCommand::Platform(PlatformCommand::KeepAwake(is_on)) => *is_on == self.is_awake,
             ShellCommand::Work(WorkCommand::Video(is_on)) => *is_on == self.makes_video,
             ShellCommand::Work(WorkCommand::Record(job)) => job.is_some() == self.records,
+            // One thread searches at a time.
+            ShellCommand::Work(WorkCommand::Search(_)) => !self.searches.is_empty(),
             _ => false,
         };
         if is_wrong {

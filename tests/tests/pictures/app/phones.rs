@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use app_core::Core;
 use app_core::app::{
-    AlignJob, App, ArSession, GraphicsState, LaunchHistory, Notice, Permission, PlatformCommand,
+    AlignJob, App, ArSession, GraphicsState, Language, LaunchHistory, Notice, Permission, PlatformCommand,
     ShellCommand, ShellEvent, Step, Thermal, UserAction, WorkCommand,
 };
 use app_core::camera_frame::Tracking;
@@ -52,9 +52,15 @@ fn frame_at(app: &mut App, id: u64, tenths: u32, tracking: Tracking) -> Vec<Shel
 #[test]
 fn every_sheet_has_a_way_out() {
     let troubles = [
-        ShellEvent::ArTrouble(ArSession::Unsupported, "This phone cannot run ARCore.".to_owned()),
-        ShellEvent::ArTrouble(ArSession::Installing, "It is being installed.".to_owned()),
-        ShellEvent::ArTrouble(ArSession::Failed, "ARCore failed.".to_owned()),
+        ShellEvent::ArTrouble(
+            ArSession::Unsupported,
+            ["This phone cannot run ARCore.", "Auf Deutsch."].into(),
+        ),
+        ShellEvent::ArTrouble(
+            ArSession::Installing,
+            ["It is being installed.", "Auf Deutsch."].into(),
+        ),
+        ShellEvent::ArTrouble(ArSession::Failed, ["ARCore failed.", "Auf Deutsch."].into()),
         ShellEvent::ArSession(ArSession::Interrupted),
         ShellEvent::Permission(Permission::Denied),
         ShellEvent::Permission(Permission::Barred),
@@ -92,11 +98,18 @@ fn every_sheet_has_a_way_out() {
 fn what_the_platform_says_of_ar_is_read_and_it_can_be_tried_again() {
     let mut app = looking();
     let words = "Google Play Services for AR is too old.";
-    let _ = app.event(ShellEvent::ArTrouble(ArSession::Unsupported, words.to_owned()));
+    let german = "Google Play-Dienste für AR sind zu alt.";
+    let _ = app.event(ShellEvent::ArTrouble(
+        ArSession::Unsupported,
+        [words, german].into(),
+    ));
     let mut interface = Interface::default();
     interface.actions(&app, &world::screen(844, 390));
     interface.actions(&app, &world::screen(844, 390));
     assert!(interface.widgets().iter().any(|widget| widget.label == words));
+    let _ = app.event(ShellEvent::Language(Language::German));
+    interface.actions(&app, &world::screen(844, 390));
+    assert!(interface.widgets().iter().any(|widget| widget.label == german));
     let commands = app.event(ShellEvent::User(UserAction::TryAgain));
     let runs = commands.iter().any(|command| {
         matches!(
@@ -110,7 +123,7 @@ fn what_the_platform_says_of_ar_is_read_and_it_can_be_tried_again() {
     assert!(runs && app.ar_words().is_none(), "{commands:?}");
     // The app requests an AR service that is being installed all the same, so that it continues by
     // itself.
-    let commands = app.event(ShellEvent::ArTrouble(ArSession::Installing, String::new()));
+    let commands = app.event(ShellEvent::ArTrouble(ArSession::Installing, ["", ""].into()));
     assert!(commands.is_empty(), "{commands:?}");
     assert!(app.event(ShellEvent::ArSession(ArSession::Able)).is_empty());
 }

@@ -1,10 +1,15 @@
 //! The interface without a device: its labels and touch targets, on every screen.
 
+use std::collections::BTreeSet;
+
 use app_core::app::{App, GraphicsState, Language, Permission, ShellEvent, Step, UserAction};
 use app_core::camera_frame::Tracking;
+use app_core::interface::accesskit::{Action, ActionRequest, Role, TreeId, TreeUpdate};
 use app_core::interface::{Insets, Interface, Screen, Touch, TouchPhase, Widget, all_words};
 use glam::DVec2;
 
+use super::happenings::Happening;
+use super::orders::{happen, straight};
 use crate::app::world;
 
 /// Smallest height of a touch target, in points.
@@ -137,6 +142,30 @@ fn whatever_is_touched_is_large_enough_read_out_and_on_the_screen() {
 }
 
 #[test]
+fn with_large_letters_the_next_step_needs_no_scrolling() {
+    let low = Screen {
+        text_scale: 1.6,
+        ..world::screen(844, 390)
+    };
+    let mut found = BTreeSet::new();
+    for app in &apps(Language::English) {
+        for Widget { label, bounds_px, .. } in widgets(app, &low) {
+            if ["Begin", "Here"].contains(&label.as_str()) {
+                // A sheet has 12 points around it, and 16 within.
+                let [_, top, _, bottom] = bounds_px;
+                let margin_px = 28.0 * low.text_scale - 1.0;
+                assert!(
+                    top > margin_px && bottom < 390.0 - margin_px,
+                    "{label}: {bounds_px:?}"
+                );
+                found.insert(label);
+            }
+        }
+    }
+    assert_eq!(found.len(), 2, "{found:?}");
+}
+
+#[test]
 fn a_sheet_is_the_same_whichever_came_before() {
     for (name, screen) in screens() {
         let mut interface = Interface::default();
@@ -176,6 +205,65 @@ fn a_finger_presses_the_button_below_it() {
         [UserAction::Begin]
     );
     assert_eq!(press([5.0, 5.0]), []);
+}
+
+/// A screen reader's request for an action of the widget with this role.
+fn requested(interface: &Interface, role: Role, action: Action) -> ActionRequest {
+    let tree = interface.accessibility_tree().expect("a tree");
+    let node = tree
+        .nodes
+        .iter()
+        .find(|(_, node)| node.role() == role && node.supports_action(action));
+    ActionRequest {
+        action,
+        target_tree: TreeId::ROOT,
+        target_node: node.expect("a widget").0,
+        data: None,
+    }
+}
+
+#[test]
+fn a_screen_reader_presses_buttons_and_moves_the_time() {
+    let mut app = world::app();
+    let _ = app.event(ShellEvent::Foreground(true));
+    let mut interface = Interface::default();
+    assert!(interface.accessibility_tree().is_none());
+    interface.actions(&app, &PORTRAIT);
+    interface.actions(&app, &PORTRAIT);
+    let press = requested(&interface, Role::Button, Action::Click);
+    interface.request(press);
+    assert_eq!(interface.actions(&app, &PORTRAIT), [UserAction::Begin]);
+    assert_eq!(interface.actions(&app, &PORTRAIT), [], "once");
+    let app = happen(straight());
+    let length_s = app.playback().length_s();
+    assert!(length_s > 0.0);
+    interface.actions(&app, &PORTRAIT);
+    for (action, at) in [(Action::Increment, 0.05), (Action::Decrement, 0.0)] {
+        let request = requested(&interface, Role::Slider, action);
+        interface.request(request);
+        let moved = interface.actions(&app, &PORTRAIT);
+        let is_moved = |action: &UserAction| matches!(action, UserAction::Scrub(time_s) if (time_s - at * length_s).abs() < 0.1 * length_s);
+        assert!(moved.iter().any(is_moved), "{action:?}: {moved:?}");
+    }
+}
+
+/// The tree of a playing clip after a number of frames, and the clip's time.
+fn playing(n_frames: u8) -> (TreeUpdate, f64) {
+    let frames = Happening::Frames(n_frames, 33, Tracking::Normal);
+    let app = happen(straight().into_iter().chain([frames]).collect());
+    let mut interface = Interface::default();
+    for _ in 0..3 {
+        interface.actions(&app, &PORTRAIT);
+    }
+    let tree = interface.accessibility_tree().expect("a tree").clone();
+    (tree, app.playback().time_s())
+}
+
+#[test]
+fn a_playing_clip_does_not_disturb_a_screen_reader() {
+    let [(early, early_s), (late, late_s)] = [2, 6].map(playing);
+    assert!(late_s > early_s, "{early_s} {late_s}");
+    assert_eq!(early, late);
 }
 
 /// The flaw of a text, given in each language.

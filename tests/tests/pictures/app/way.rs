@@ -3,9 +3,11 @@
 
 use std::sync::Arc;
 
-use app_core::app::{App, Placing, ShellCommand, ShellEvent, Show, Step, UserAction, Verdict, WorkCommand};
+use app_core::app::{
+    App, Placing, PlatformCommand, ShellCommand, ShellEvent, Show, Step, UserAction, Verdict, WorkCommand,
+};
 use app_core::recording::RecordingJob;
-use app_core::scene::Camera;
+use app_core::scene::{Camera, Image};
 use desk::files::BUNDLED_SESSION;
 use desk::stored::Stored;
 use glam::{DMat4, DVec2, DVec3};
@@ -22,6 +24,10 @@ pub(crate) struct Person {
     pub(crate) feed: Feed,
     /// Recordings that are waiting to be written.
     pub(crate) recordings: Vec<RecordingJob>,
+    /// Haptic pulses so far.
+    pub(crate) n_knocks: usize,
+    /// A grey card over the camera's picture: its left, top, right and bottom, in pixels.
+    pub(crate) card_px: Option<[u32; 4]>,
 }
 
 impl Person {
@@ -38,6 +44,7 @@ impl Person {
                     self.tell(ShellEvent::Aligned(Some(Box::new(job.run()))))
                 }
                 ShellCommand::Work(WorkCommand::Record(job)) => self.recordings.extend(job.map(|job| *job)),
+                ShellCommand::Platform(PlatformCommand::Knock) => self.n_knocks += 1,
                 _ => {}
             }
         }
@@ -49,17 +56,43 @@ impl Person {
 
     pub(crate) fn frames(&mut self, n: usize) {
         for _ in 0..n {
-            let frame = self.feed.next(0.033);
+            let mut frame = self.feed.next(0.033);
+            if let Some(card_px) = self.card_px {
+                frame.image = covered(frame.image.rgba(), card_px).into();
+            }
             self.tell(ShellEvent::Frame(Box::new(frame)));
         }
     }
 
-    fn pixel_of(&self, moved_m: DVec3) -> DVec2 {
+    /// Waits until the question about the toy's place is in such a state.
+    pub(crate) fn wait_until(&mut self, is_so: impl Fn(Placing) -> bool) {
+        for _ in 0..90 {
+            if is_so(self.app.placing()) {
+                return;
+            }
+            self.frames(1);
+        }
+        panic!("{:?}", self.app.placing());
+    }
+
+    pub(crate) fn pixel_of(&self, moved_m: DVec3) -> DVec2 {
         let (world_from_object, camera) = self.feed.toy();
         let at = world_from_object.w_axis.truncate() + moved_m;
         let in_camera = camera.world_from_camera.inverse().transform_point3(at);
         camera.intrinsics.pixel_of(in_camera).unwrap()
     }
+}
+
+/// A picture with a grey card over it.
+fn covered(image: &Image, [left, top, right, bottom]: [u32; 4]) -> Image {
+    let mut image = image.clone();
+    for y in top..bottom {
+        for x in left..right {
+            let at = 4 * (y * image.width_px + x) as usize;
+            image.rgba8[at..at + 3].fill(60);
+        }
+    }
+    image
 }
 
 fn yaw_rad(pose: &DMat4) -> f64 {
@@ -72,13 +105,15 @@ fn facing_rad(world_from_object: &DMat4, camera: &Camera) -> f64 {
 }
 
 /// A person who has photographed the empty place.
-fn photographed() -> Person {
+pub(crate) fn photographed() -> Person {
     let feed = Feed::of_stored(Stored::open(BUNDLED_SESSION).unwrap()).unwrap();
     let app = App::new(Arc::clone(&feed.scene().toy));
     let mut person = Person {
         app,
         feed,
         recordings: Vec::new(),
+        n_knocks: 0,
+        card_px: None,
     };
     world::opening().into_iter().for_each(|event| person.tell(event));
     person.frames(2);
@@ -145,12 +180,11 @@ fn a_toy_that_is_put_down_is_found_without_a_touch() {
     assert_eq!(person.app.placing(), Placing::Waiting { is_long: false });
     assert!(person.app.ghost().is_none(), "nobody knows where the toy will be");
     person.feed.is_toy_there = true;
-    let mut n_frames = 0;
-    while person.app.placing() != (Placing::Asked { is_searching: false }) {
-        person.frames(1);
-        n_frames += 1;
-        assert!(n_frames < 90, "{:?}", person.app.placing());
-    }
+    person.n_knocks = 0;
+    person.wait_until(|placing| placing == Placing::Asked { is_searching: true });
+    assert_eq!(person.n_knocks, 0, "a guess is no toy");
+    person.wait_until(|placing| placing == Placing::Asked { is_searching: false });
+    assert_eq!(person.n_knocks, 1);
     let silhouette = person.app.ghost().expect("a ghost");
     let [low, high] = silhouette.corners_px;
     let toy_px = person.pixel_of(DVec3::new(0.0, 0.02, 0.0));
@@ -161,6 +195,7 @@ fn a_toy_that_is_put_down_is_found_without_a_touch() {
     person.act(UserAction::Placed);
     person.frames(1);
     assert_eq!(person.app.step(), Step::Play, "{:?}", person.app.verdict());
+    assert_eq!(person.n_knocks, 1, "once for each toy");
     person.frames(20);
     let Show::Toy { input, .. } = person.app.show() else {
         panic!("{:?}", person.app.step());

@@ -1,6 +1,7 @@
 //! Drivers with known faults are recognised by the properties of their adapters.
 
 use app_core::CoreError;
+use app_core::app::Language;
 use app_core::gpu::{GpuError, fault_on_surfaces};
 use app_core::interface::of_no_graphics;
 use app_core::wgpu::{AdapterInfo, Backend, DeviceType};
@@ -33,8 +34,8 @@ fn the_person_hears_why_nothing_is_drawn() {
     let (adapter, fault) = ("one".to_owned(), "it fails");
     let known = CoreError::Gpu(GpuError::KnownFault { adapter, fault });
     assert!(known.to_string().contains("one is not used: it fails"), "{known}");
-    assert!(of_no_graphics(&known).contains("known fault"));
+    assert!(of_no_graphics(&known, Language::English).contains("known fault"));
     let reason = "no Vulkan".to_owned();
     let none = CoreError::Gpu(GpuError::NoAdapter { reason });
-    assert!(of_no_graphics(&none).contains("Vulkan 1.1"));
+    assert!(of_no_graphics(&none, Language::English).contains("Vulkan 1.1"));
 }
