@@ -9,7 +9,7 @@ use std::error::Error;
 use app_core::preset::Preset;
 use app_core::{Core, gpu, self_test, wgpu};
 
-pub(crate) fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let instance = wgpu::Instance::default();
     let mut core = pollster::block_on(Core::headless(&instance, &gpu::AdapterChoice::Fastest))?;
     println!("{}", core.adapter_name());
