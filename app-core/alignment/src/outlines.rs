@@ -30,8 +30,7 @@ impl Outlines {
         check(scene, input)?;
         let camera_from_world = input.camera.world_from_camera.inverse();
         let shape = Shape::new(scene, &(camera_from_world * input.world_from_object))?;
-        let toy_in_world = input.world_from_object.w_axis.truncate();
-        let receivers = SeenReceiver::near(&scene.receivers, toy_in_world, &camera_from_world);
+        let receivers = SeenReceiver::near(scene, &input.world_from_object, &camera_from_world);
         let size_px = UVec2::new(scene.width_px, scene.height_px).as_ivec2();
         let (k, mut raster) = (&input.camera.intrinsics, Rasterizer::default());
         let lights = input.lights.as_deref().unwrap_or(&scene.lights);

@@ -39,8 +39,7 @@ impl Photograph {
     /// Withheld pixels are not read.
     pub(super) fn new(scene: &Scene, input: &FrameInput, withheld: Option<&Mask>) -> Self {
         let camera_from_world = input.camera.world_from_camera.inverse();
-        let toy_in_world = input.world_from_object.w_axis.truncate();
-        let receivers = SeenReceiver::near(&scene.receivers, toy_in_world, &camera_from_world);
+        let receivers = SeenReceiver::near(scene, &input.world_from_object, &camera_from_world);
         let plate = plate_for(&scene.plates, &receivers, &input.camera);
         let frame = Picture::without(input.image.rgba(), withheld);
         Self {
@@ -291,10 +290,10 @@ impl Photograph {
     ) -> Result<Option<Vec<Plate>>, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let relight = Relight::of(&shape, &self.receivers, &self.pyramid, &self.camera_from_world);
-        let toy_in_world = input.world_from_object.w_axis.truncate();
+        let place = (scene, &input.world_from_object);
         Ok(relight.map(|relight| {
             let plates = scene.plates.iter();
-            let relit = plates.map(|plate| relight.plate(plate, &scene.receivers, toy_in_world));
+            let relit = plates.map(|plate| relight.plate(plate, place));
             relit.collect()
         }))
     }

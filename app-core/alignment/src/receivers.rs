@@ -4,8 +4,8 @@ use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::picture::{Picture, UNKNOWN, places};
 use super::pose::Plane;
-use app_scene::geometry::nearest_receivers::nearest_receivers;
-use app_scene::scene::{Camera, Intrinsics, MAX_RECEIVERS, Plate, Receiver, Surface};
+use app_scene::geometry::nearest_receivers::nearest_to_toy;
+use app_scene::scene::{Camera, Intrinsics, MAX_RECEIVERS, Plate, Receiver, Scene, Surface};
 
 /// Tolerance for equal cameras' matrices.
 pub(super) const SAME_CAMERA: f64 = 1e-9;
@@ -20,10 +20,10 @@ pub(super) struct SeenReceiver {
 
 impl SeenReceiver {
     /// The receivers nearest to the toy, up to the number on which shadows are retargeted.
-    pub(super) fn near(receivers: &[Receiver], toy_in_world: DVec3, camera_from_world: &DMat4) -> Vec<Self> {
-        let nearest = nearest_receivers(receivers, &[toy_in_world]);
+    pub(super) fn near(scene: &Scene, world_from_object: &DMat4, camera_from_world: &DMat4) -> Vec<Self> {
+        let nearest = nearest_to_toy(scene, world_from_object);
         let seen = nearest.into_iter().take(MAX_RECEIVERS);
-        seen.map(|index| Self::new(&receivers[index], camera_from_world))
+        seen.map(|index| Self::new(&scene.receivers[index], camera_from_world))
             .collect()
     }
 
@@ -41,6 +41,11 @@ impl SeenReceiver {
             plane_from_camera,
             half_extent_m,
         }
+    }
+
+    /// Half its sides, in metres.
+    pub(super) fn half_extent_m(&self) -> DVec2 {
+        self.half_extent_m
     }
 
     /// The receiver in the world.

@@ -65,13 +65,25 @@ pub struct PlaneAlignment {
     pub tilt_rad: f64,
     /// Half the sides of its rectangle, in metres.
     pub half_extent_m: [f64; 2],
-    /// Mean squared difference from what the thing shows, in plates: of that receiver, and of this plane.
+    /// Mean squared difference from what the thing shows, in plates: of that receiver, and of this
+    /// plane; 0 if the toy hides it.
     pub losses: [f64; 2],
+}
+
+impl PlaneAlignment {
+    /// Whether it is a side of a thing, and not its top.
+    #[must_use]
+    pub fn is_upright(&self) -> bool {
+        self.tilt_rad >= std::f64::consts::FRAC_PI_2
+    }
 }
 
 impl fmt::Display for PlaneAlignment {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, z] = self.half_extent_m.map(|half_m| 2e2 * half_m);
+        if self.is_upright() {
+            return write!(f, "an upright plane of a thing, {x:.0} x {z:.0} cm");
+        }
         write!(f, "a plane {:.0} mm above the receiver", 1e3 * self.height_m)?;
         if self.tilt_rad > 0.0 {
             write!(

@@ -10,7 +10,7 @@ use glam::{DVec2, IVec2};
 use nalgebra::{Matrix3, Vector3};
 
 use super::median::median;
-use super::picture::{Level, Mask, bilinear, gaussian, index_in, places};
+use super::picture::{Level, Mask, bilinear, gaussian, places};
 use super::raster::Coverage;
 use app_scene::sharpness::{Sharpness, Spread};
 
@@ -251,21 +251,28 @@ struct Grey {
 }
 
 impl Grey {
-    /// The nearest pixel's value.
-    fn at(&self, at: IVec2) -> f32 {
-        let inside = at.clamp(IVec2::ZERO, self.size_px - 1);
-        index_in(self.size_px, inside).map_or(0.0, |index| self.values[index])
+    fn width(&self) -> usize {
+        self.size_px.x as usize
     }
 
+    /// The nearest row.
+    fn row(&self, y: i32) -> &[f32] {
+        let from = y.clamp(0, self.size_px.y - 1) as usize * self.width();
+        &self.values[from..from + self.width()]
+    }
+
+    /// The weighted sum of the pixels at these offsets from each, or of the nearest ones beyond the
+    /// border. Row by row, since most of the time of a measurement is spent here.
     fn taking(&self, taps: &[(IVec2, f32)]) -> Self {
-        let sum = |at: IVec2| {
-            taps.iter()
-                .map(|(offset, weight)| weight * self.at(at + *offset))
-                .sum()
-        };
+        let mut values = vec![0.0; self.values.len()];
+        for (offset, weight) in taps {
+            for (y, sums) in (0..).zip(values.chunks_exact_mut(self.width())) {
+                add_row(sums, self.row(y + offset.y), offset.x, *weight);
+            }
+        }
         Self {
             size_px: self.size_px,
-            values: places(self.size_px).map(sum).collect(),
+            values,
         }
     }
 
@@ -277,6 +284,25 @@ impl Grey {
     fn spread(&self, spread: Spread) -> Self {
         let [first, second] = spread.axes_px().map(taps_along);
         self.taking(&first).taking(&second)
+    }
+}
+
+/// Adds the pixels of a row to those `offset` before them, and the last one at that end beyond it.
+fn add_row(sums: &mut [f32], from: &[f32], offset: i32, weight: f32) {
+    let n_beyond = (offset.unsigned_abs() as usize).min(from.len());
+    let n_within = from.len() - n_beyond;
+    let (within, beyond, taken, nearest) = if offset >= 0 {
+        let (within, beyond) = sums.split_at_mut(n_within);
+        (within, beyond, &from[n_beyond..], from.last())
+    } else {
+        let (beyond, within) = sums.split_at_mut(n_beyond);
+        (within, beyond, &from[..n_within], from.first())
+    };
+    for (sum, value) in within.iter_mut().zip(taken) {
+        *sum += weight * value;
+    }
+    if let Some(nearest) = nearest {
+        beyond.iter_mut().for_each(|sum| *sum += weight * nearest);
     }
 }
 

@@ -40,8 +40,7 @@ impl Aligner {
 fn shadows(scene: &Scene, input: &FrameInput, lights: &[Light], grown: f64) -> Result<Mask, ToyError> {
     let camera_from_world = input.camera.world_from_camera.inverse();
     let shape = Shape::new(scene, &(camera_from_world * input.world_from_object))?;
-    let toy_in_world = input.world_from_object.w_axis.truncate();
-    let receivers = SeenReceiver::near(&scene.receivers, toy_in_world, &camera_from_world);
+    let receivers = SeenReceiver::near(scene, &input.world_from_object, &camera_from_world);
     let size_px = UVec2::new(scene.width_px, scene.height_px).as_ivec2();
     let turn = std::f64::consts::TAU / f64::from(N_RIM);
     let mut points: Vec<DVec2> = (0..N_RIM)

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use crate::camera_frame::CameraImage;
+use crate::depth::Depth;
 use crate::gloss::Gloss;
 use crate::grain::Grain;
 use crate::reflection::Reflection;
@@ -36,6 +37,9 @@ pub struct FrameInput {
     /// The platform's estimate of the light, if there is one. Only alignment uses it, and only if
     /// no light is listed.
     pub light_estimate: Option<LightEstimate>,
+    /// Depths of the picture, if a sensor measured them. Only alignment uses them, to find planes on
+    /// which things let the shadow fall.
+    pub depth: Option<Depth>,
     /// Other things in the picture, if any are known.
     pub things: Option<Things>,
     /// Measured softness of the picture, which is applied to everything that is composed into it.
@@ -86,6 +90,7 @@ impl FrameInput {
             world_from_object,
             lights: None,
             light_estimate: None,
+            depth: None,
             things: None,
             sharpness: Sharpness::SHARP,
             gloss: Gloss::NONE,
@@ -137,6 +142,13 @@ impl FrameInput {
     #[must_use]
     pub fn with_light_estimate(mut self, estimate: Option<LightEstimate>) -> Self {
         self.light_estimate = estimate;
+        self
+    }
+
+    /// Sets the depths of the picture.
+    #[must_use]
+    pub fn with_depth(mut self, depth: Option<Depth>) -> Self {
+        self.depth = depth;
         self
     }
 

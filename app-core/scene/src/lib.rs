@@ -4,6 +4,7 @@
 
 pub mod camera_frame;
 pub mod card;
+pub mod depth;
 pub mod disjoint;
 pub mod frame;
 pub mod geometry;

@@ -24,9 +24,10 @@ use self::field::{LENS, WHOLE_FILE, at, frame_field, in_index, read_named};
 use self::record::{CaptureRecord, FORMAT, Header, VERSION};
 use super::error::{PictureError, SessionError, SessionErrorKind};
 use super::files::{Files, INDEX_FILE, MAX_INDEX_BYTES};
-use super::picture::{PictureSize, check_head, decode_mask, decode_photo};
+use super::picture::{PictureSize, check_depth, check_head, decode_depth, decode_mask, decode_photo};
 use super::tags::exif_orientation;
 use super::{GroundTruth, Session, SessionFrame, SessionWarning, Truth};
+use app_scene::depth::Depth;
 use app_scene::lens::{Distortion, Lens};
 use app_scene::scene::{Camera, Image, Intrinsics, LightEstimate, Pose, Scene};
 
@@ -45,6 +46,8 @@ pub struct Capture {
     frames: Vec<Frame>,
     /// The last frame's picture: a still camera repeats one picture many times.
     last_picture: Mutex<Option<(FrameKey, Photo)>>,
+    /// The last frame's depths.
+    last_depth: Mutex<Option<(String, Depth)>>,
 }
 
 /// A picture, and the camera whose distortion is removed from it.
@@ -79,6 +82,8 @@ struct Frame {
     world_from_object: DMat4,
     exposure: f64,
     light_estimate: Option<LightEstimate>,
+    /// File of its depth picture.
+    depth: Option<String>,
     shown_pose: Pose,
     world_from_shown: Option<DMat4>,
     warnings: Vec<SessionWarning>,
@@ -137,6 +142,21 @@ impl Capture {
         *last = Some((key, photo.clone()));
         Ok((frame, photo))
     }
+
+    fn depth(&self, index: usize, frame: &Frame) -> Result<Option<Depth>, SessionError> {
+        let Some(path) = &frame.depth else {
+            return Ok(None);
+        };
+        let mut last = self.last_depth.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, depth)) = last.as_ref().filter(|(of_last, _)| of_last == path) {
+            return Ok(Some(depth.clone()));
+        }
+        let depth = self
+            .store
+            .read(path, &frame_field(index, ".depth"), decode_depth)?;
+        *last = Some((path.clone(), depth.clone()));
+        Ok(Some(depth))
+    }
 }
 
 impl Session for Capture {
@@ -162,6 +182,7 @@ impl Session for Capture {
             world_from_object: frame.world_from_object,
             exposure: frame.exposure,
             light_estimate: frame.light_estimate,
+            depth: self.depth(index, frame)?,
             shown_pose: frame.shown_pose.clone(),
             world_from_shown: frame.world_from_shown,
             warnings: frame.warnings.iter().cloned().chain(turned).collect(),
@@ -183,6 +204,14 @@ impl Session for Capture {
                     let check = |bytes: &[u8], size| check_head(bytes, size, is_mask);
                     self.store.read(path, &frame_field(index, field), check)?;
                 }
+            }
+            if let Some(path) = frame
+                .depth
+                .as_ref()
+                .filter(|path| known.insert((path.as_str(), false)))
+            {
+                self.store
+                    .read(path, &frame_field(index, ".depth"), check_depth)?;
             }
         }
         Ok(())

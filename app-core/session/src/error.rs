@@ -101,6 +101,23 @@ pub enum PictureError {
         /// Height of the session.
         expected_height_px: u32,
     },
+    /// Depths of another shape than the session's pictures.
+    #[error(
+        "the depths are {width_px} x {height_px} px, which is not the shape of the session's pictures, {picture_width_px} x {picture_height_px} px: turn or cut them like the pictures"
+    )]
+    DepthSize {
+        /// Width in the header.
+        width_px: u32,
+        /// Height in the header.
+        height_px: u32,
+        /// Width of the session's pictures.
+        picture_width_px: u32,
+        /// Height of the session's pictures.
+        picture_height_px: u32,
+    },
+    /// Depths that are no grey PNG of 16 bits.
+    #[error("not a grey PNG of 16 bits, as depths in millimetres must be")]
+    NotDepths,
     /// Damaged or cut short.
     #[error("damaged picture: {0}")]
     Decode(#[from] image::ImageError),

@@ -22,6 +22,7 @@ use std::sync::Arc;
 use glam::DMat4;
 use thiserror::Error;
 
+use app_scene::depth::Depth;
 use app_scene::frame::FrameInput;
 use app_scene::lens::Lens;
 use app_scene::scene::{Camera, Image, LightEstimate, Pose, Scene};
@@ -98,6 +99,8 @@ pub struct SessionFrame {
     pub exposure: f64,
     /// The platform's light estimate, if it is recorded.
     pub light_estimate: Option<LightEstimate>,
+    /// Depths of the picture, if they are recorded.
+    pub depth: Option<Depth>,
     /// The pose to show.
     pub shown_pose: Pose,
     /// The place to show the toy, if it differs from the real toy's.
@@ -111,6 +114,7 @@ impl From<&SessionFrame> for FrameInput {
         Self::new(Arc::clone(&frame.image), frame.camera, frame.world_from_object)
             .with_exposure(frame.exposure)
             .with_light_estimate(frame.light_estimate)
+            .with_depth(frame.depth.clone())
             .with_shown_pose(frame.shown_pose.clone())
             .with_world_from_shown(frame.world_from_shown)
     }

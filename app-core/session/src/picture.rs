@@ -7,10 +7,15 @@ use image::{ColorType, DynamicImage, ImageDecoder, Limits};
 
 use super::error::PictureError;
 use super::tags::{JPEG_MAGIC, PNG_MAGIC};
-use app_scene::scene::Image;
+use app_scene::depth::Depth;
+use app_scene::scene::{Image, check};
+use glam::UVec2;
 
 /// Room for data of a picture file besides pixels: colour profiles, previews, text.
 const EXTRA_BYTES: u64 = 16 << 20;
+
+/// Memory for the decoder of a depth picture of the largest size.
+const MAX_DEPTH_BYTES: u64 = 2 * check::MAX_PICTURE_PIXELS + EXTRA_BYTES;
 
 /// The size of all pictures of a session.
 #[derive(Clone, Copy)]
@@ -45,6 +50,47 @@ pub(super) fn decode_mask(bytes: &[u8], size: PictureSize) -> Result<Image, Pict
         DynamicImage::ImageRgba8(image) => Ok(with_size(image.into_raw(), size)),
         _ => Err(PictureError::NotAMask),
     }
+}
+
+/// Decodes depths, which may be of another size than the pictures but not of another shape.
+pub(super) fn decode_depth(bytes: &[u8], size: PictureSize) -> Result<Depth, PictureError> {
+    let decoder = depth_decoder(bytes, size)?;
+    let DynamicImage::ImageLuma16(image) = DynamicImage::from_decoder(decoder)? else {
+        return Err(PictureError::NotDepths);
+    };
+    let size_px = UVec2::new(image.width(), image.height());
+    Depth::new(size_px, image.into_raw()).ok_or(PictureError::NotDepths)
+}
+
+/// Checks format and size of depths without decoding them.
+pub(super) fn check_depth(bytes: &[u8], size: PictureSize) -> Result<(), PictureError> {
+    depth_decoder(bytes, size).map(|_| ())
+}
+
+fn depth_decoder(bytes: &[u8], size: PictureSize) -> Result<PngDecoder<Cursor<&[u8]>>, PictureError> {
+    if !bytes.starts_with(PNG_MAGIC) {
+        return Err(PictureError::NotDepths);
+    }
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MAX_DEPTH_BYTES);
+    let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits)?;
+    if decoder.color_type() != ColorType::L16 {
+        return Err(PictureError::NotDepths);
+    }
+    let (width_px, height_px) = decoder.dimensions();
+    let [width, height, of_width, of_height] =
+        [width_px, height_px, size.width_px, size.height_px].map(f64::from);
+    // Sides of the same shape, each rounded to whole pixels.
+    let is_alike = (width * of_height - height * of_width).abs() <= of_width.max(of_height);
+    if !is_alike || check::picture_size(width_px, height_px).is_err() {
+        return Err(PictureError::DepthSize {
+            width_px,
+            height_px,
+            picture_width_px: size.width_px,
+            picture_height_px: size.height_px,
+        });
+    }
+    Ok(decoder)
 }
 
 /// Checks format and size of a photograph or a mask, and a JPEG's end, without decoding it.

@@ -1,24 +1,37 @@
-//! A plane above the table is found by the toy's shadow on it, and no plane is found if there is
-//! none.
+//! A plane above the table is found by the toy's shadow on it, without sides if it is a board, and no
+//! plane is found if there is none. Depths help where little of the shadow falls.
 
 use app_core::alignment::Observer;
-use app_core::scene::Scene;
-use glam::{DMat4, DQuat, DVec2, DVec3};
+use app_core::scene::{Receiver, Scene};
+use app_scene::depth::Depth;
+use glam::{DMat4, DQuat, DVec2, DVec3, UVec2};
 use measure::photographer::world::toward;
 use measure::photographer::{Ground, Lamp, Paint, Quality, Shot, World};
+use measure::random::Random;
 
 /// Tolerance of its height in metres: a shadow moves by a pixel for each millimetre.
 const HEIGHT_M: f64 = 0.001;
 const TILT_RAD: f64 = 0.03;
+/// Tolerance of its middle and half sides in metres: one pixel and a half.
+const EXTENT_M: f64 = 0.0025;
+/// Half the sides of the board.
+const HALF_M: DVec2 = DVec2::new(0.05, 0.06);
+/// Noise of a depth sensor, in millimetres, and the size of its picture.
+const NOISE_MM: f64 = 5.0;
+const DEPTH_PX: UVec2 = UVec2::new(256, 144);
 
 /// A plane that catches the shadow of the boxes, and is turned against them.
 fn board(height_m: f64, tilt_rad: f64) -> DMat4 {
-    let turn = DQuat::from_rotation_y(0.4) * DQuat::from_rotation_z(tilt_rad);
-    DMat4::from_rotation_translation(turn, DVec3::new(-0.1, height_m, 0.0))
+    board_at(-0.1, height_m, tilt_rad)
 }
 
-/// The boxes beside such a plane, which the scene does not contain.
-fn session(world_from_board: Option<DMat4>) -> (Scene, Shot) {
+fn board_at(x_m: f64, height_m: f64, tilt_rad: f64) -> DMat4 {
+    let turn = DQuat::from_rotation_y(0.4) * DQuat::from_rotation_z(tilt_rad);
+    DMat4::from_rotation_translation(turn, DVec3::new(x_m, height_m, 0.0))
+}
+
+/// The boxes beside such planes, which the scene does not contain.
+fn session(planes: &[(DMat4, DVec2)]) -> (Scene, Shot) {
     let mut world = World::boxes().resized([480, 270]);
     world = world.lit_by(vec![Lamp::bulb(toward(50.0, 90.0), 0.01, 0.75)]);
     world.bounces = false;
@@ -34,9 +47,9 @@ fn session(world_from_board: Option<DMat4>) -> (Scene, Shot) {
     };
     world
         .grounds
-        .extend(world_from_board.map(|world_from_plane| Ground {
-            world_from_plane,
-            half_extent_m: DVec2::new(0.05, 0.06),
+        .extend(planes.iter().map(|(world_from_plane, half_extent_m)| Ground {
+            world_from_plane: *world_from_plane,
+            half_extent_m: *half_extent_m,
             paint: Paint::Even(DVec3::new(0.2, 0.35, 0.6)),
         }));
     let shot = Shot::of(&world).unwrap();
@@ -45,21 +58,81 @@ fn session(world_from_board: Option<DMat4>) -> (Scene, Shot) {
     (scene, shot)
 }
 
+/// Depth at a place of the camera's picture: that of the nearest receiver.
+fn depth_mm(receivers: &[Receiver], shot: &Shot, at_px: DVec2) -> f64 {
+    let camera = &shot.input.camera;
+    let ray = camera.intrinsics.ray(at_px);
+    let depth_m = |receiver: &Receiver| {
+        let plane_from_camera = receiver.world_from_plane.inverse() * camera.world_from_camera;
+        let eye = plane_from_camera.w_axis.truncate();
+        let along = plane_from_camera.transform_vector3(ray);
+        let depth_m = -eye.y / along.y;
+        let at = eye + depth_m * along;
+        let is_on = at.x.abs() <= receiver.half_extent_m.x && at.z.abs() <= receiver.half_extent_m.y;
+        (is_on && depth_m > 0.0).then_some(depth_m)
+    };
+    1e3 * receivers.iter().filter_map(depth_m).fold(f64::INFINITY, f64::min)
+}
+
+/// Depths of the receivers with noise; the toy, which hides some of them, is left out.
+fn depths(shot: &Shot, offset_mm: f64) -> Depth {
+    let mut random = Random::new(11);
+    let size_px = UVec2::new(shot.scene.width_px, shot.scene.height_px).as_dvec2();
+    let pixels = (0..DEPTH_PX.y).flat_map(|y| (0..DEPTH_PX.x).map(move |x| UVec2::new(x, y)));
+    let depths = pixels.map(|at| {
+        let at_px = (at.as_dvec2() + 0.5) * size_px / DEPTH_PX.as_dvec2();
+        let seen_mm = depth_mm(&shot.scene.receivers, shot, at_px);
+        let noise = (0..12).map(|_| random.uniform() - 0.5).sum::<f64>();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a cast saturates"
+        )]
+        let seen_mm = if seen_mm.is_finite() {
+            (seen_mm + offset_mm + NOISE_MM * noise).round() as u16
+        } else {
+            0
+        };
+        seen_mm
+    });
+    Depth::new(DEPTH_PX, depths.collect::<Vec<_>>()).unwrap()
+}
+
 /// Heights above the table in the middle of the board, and tilts: the estimated and the true ones.
-fn found(height_m: f64, tilt_rad: f64) -> Option<([f64; 2], [f64; 2])> {
-    let world_from_board = board(height_m, tilt_rad);
-    let (scene, shot) = session(Some(world_from_board));
+fn found_in(
+    (scene, shot): &(Scene, Shot),
+    depth: Option<Depth>,
+    (world_from_board, tilt_rad): (DMat4, f64),
+) -> Option<([f64; 2], [f64; 2])> {
     let mut observer = Observer::default();
-    observer.observed(&scene, &shot.input).unwrap();
+    observer
+        .observed(scene, &shot.input.clone().with_depth(depth))
+        .unwrap();
     let told = observer.planes().first()?;
-    let known = observer.scene(&scene);
-    let plane_from_world = known.receivers[1].world_from_plane.inverse();
-    let off = plane_from_world.transform_point3(world_from_board.w_axis.truncate());
+    assert_eq!(observer.planes().len(), 1, "a board has no upright sides");
+    let known = observer.scene(scene);
+    let found = &known.receivers[1];
+    let off = found
+        .world_from_plane
+        .inverse()
+        .transform_point3(world_from_board.w_axis.truncate());
+    let [half_m, true_half_m] =
+        [found.half_extent_m, HALF_M].map(|half| [half.min_element(), half.max_element()]);
+    // A tilted one is continued down to the table.
+    let most_m = if tilt_rad == 0.0 { EXTENT_M } else { 0.4 * HALF_M.y };
     assert!(
-        off.x.abs() <= known.receivers[1].half_extent_m.x,
-        "the board's middle is not within what is found: {off}"
+        (0..2).all(|side| (half_m[side] - true_half_m[side]).abs() < most_m)
+            && off.x.abs() < most_m
+            && off.z.abs() < most_m,
+        "half sides of {half_m:?} m, the middle {off} m off"
     );
     Some(([off.y, 0.0], [told.tilt_rad, tilt_rad]))
+}
+
+fn found(height_m: f64, tilt_rad: f64) -> Option<([f64; 2], [f64; 2])> {
+    let world_from_board = board(height_m, tilt_rad);
+    let session = session(&[(world_from_board, HALF_M)]);
+    found_in(&session, None, (world_from_board, tilt_rad))
 }
 
 #[test]
@@ -85,9 +158,40 @@ fn a_tilted_plane_is_found() {
 }
 
 #[test]
+fn noisy_depths_do_no_harm() {
+    let world_from_board = board(0.022, -0.16);
+    let session = session(&[(world_from_board, HALF_M)]);
+    let depth = depths(&session.1, 20.0);
+    let ([found_m, true_m], tilts) =
+        found_in(&session, Some(depth), (world_from_board, -0.16)).expect("a plane");
+    assert!(
+        (found_m - true_m).abs() < HEIGHT_M,
+        "{:.2} mm off",
+        1e3 * (found_m - true_m)
+    );
+    assert!((tilts[0] - tilts[1].abs()).abs() < TILT_RAD, "{tilts:?}");
+}
+
+/// The shadow alone does not determine it; a sensor that is 20 mm off does.
+#[test]
+fn depths_find_a_plane_with_little_shadow() {
+    let world_from_board = board_at(-0.17, 0.018, 0.0);
+    let session = session(&[(world_from_board, HALF_M)]);
+    let place = (world_from_board, 0.0);
+    assert!(found_in(&session, None, place).is_none());
+    let depth = depths(&session.1, 20.0);
+    let ([found_m, true_m], _) = found_in(&session, Some(depth), place).expect("a plane");
+    assert!(
+        (found_m - true_m).abs() < HEIGHT_M,
+        "{:.2} mm off",
+        1e3 * (found_m - true_m)
+    );
+}
+
+#[test]
 fn a_plane_that_is_listed_too_low_is_found_in_its_place() {
     let world_from_board = board(0.018, 0.0);
-    let (mut scene, shot) = session(Some(world_from_board));
+    let (mut scene, shot) = session(&[(world_from_board, HALF_M)]);
     let mut listed = shot.scene.receivers[1].clone();
     listed.world_from_plane.w_axis.y -= 0.006;
     scene.receivers.push(listed);
@@ -101,7 +205,7 @@ fn a_plane_that_is_listed_too_low_is_found_in_its_place() {
 
 #[test]
 fn no_plane_is_found_where_there_is_none() {
-    let (scene, shot) = session(None);
+    let (scene, shot) = session(&[]);
     let mut observer = Observer::default();
     observer.observed(&scene, &shot.input).unwrap();
     assert!(observer.planes().is_empty());

@@ -49,6 +49,7 @@ impl Moment {
             world_from_object: input.world_from_object,
             exposure: input.exposure,
             light_estimate: input.light_estimate,
+            depth: input.depth.clone(),
             shown_pose: input.shown_pose,
             world_from_shown: input.world_from_shown,
             warnings: Vec::new(),

@@ -3,7 +3,7 @@
 //! The change of light on a receiver without a toy is smooth, and visible at all unshadowed pixels
 //! of frame and plate. The shadow is an outlier.
 
-use glam::{DMat4, DVec3};
+use glam::DMat4;
 
 use super::background::{Background, QUARTIC};
 use crate::picture::{Level, Picture, Pyramid, UNKNOWN, places};
@@ -11,7 +11,7 @@ use crate::raster::{Rasterizer, project};
 use crate::receivers::{SeenReceiver, receiver_at};
 use crate::shape::Shape;
 use app_scene::geometry::color::{code_of_linear, linear_of_codes};
-use app_scene::scene::{Camera, Image, Plate, Receiver};
+use app_scene::scene::{Camera, Image, Plate, Scene};
 
 /// Distance from the toy to which the light is estimated, over the toy's radius.
 const REACH: f64 = 8.0;
@@ -74,13 +74,14 @@ impl Relight {
         }
     }
 
-    /// A plate relit to this light; pixels far from the toy stay the same.
-    pub(crate) fn plate(&self, plate: &Plate, receivers: &[Receiver], toy_in_world: DVec3) -> Plate {
+    /// A scene's plate relit to this light, with the toy in its place; pixels far from it stay the
+    /// same.
+    pub(crate) fn plate(&self, plate: &Plate, (scene, world_from_object): (&Scene, &DMat4)) -> Plate {
         let Camera {
             intrinsics,
             world_from_camera,
         } = &plate.camera;
-        let seen = SeenReceiver::near(receivers, toy_in_world, &world_from_camera.inverse());
+        let seen = SeenReceiver::near(scene, world_from_object, &world_from_camera.inverse());
         let here_from_there = self.camera_from_world * *world_from_camera;
         let linear_of_code = linear_of_codes();
         let Image {

@@ -1,13 +1,13 @@
 //! The conditions of a photograph: its softness, and the other things in it.
 
-use glam::DMat4;
+use glam::{DMat4, DVec3, UVec2};
 
 use super::Photograph;
 use crate::found_planes::FoundReceiver;
 use crate::lights::FoundReflection;
 use crate::{gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
-use app_scene::geometry::nearest_receivers::nearest_receivers;
+use app_scene::geometry::nearest_receivers::nearest_to_toy;
 use app_scene::gloss::Gloss;
 use app_scene::scene::{Camera, Light, Scene};
 use app_scene::sharpness::{Sharpness, Spread};
@@ -100,6 +100,13 @@ impl Photograph {
     ) -> Result<Sighted, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let paint = pose::Paint::new(scene, &self.camera_from_object(&input.world_from_object))?;
+        let points: Vec<DVec3> = match &input.depth {
+            Some(depth) if wants_planes => {
+                let size_px = UVec2::from_array(input.image.size_px());
+                depth.points(input.camera.intrinsics, size_px).collect()
+            }
+            _ => Vec::new(),
+        };
         let found = things::find(&things::Sight {
             shape: &shape,
             paint: &paint,
@@ -107,18 +114,20 @@ impl Photograph {
             pyramid: &self.pyramid,
             lights,
             world_from_camera: &input.camera.world_from_camera,
+            points: &points,
             wants_planes,
         });
         let Some(found) = found else {
             return Ok(Sighted::default());
         };
-        let toy_in_world = input.world_from_object.w_axis.truncate();
-        let in_scene = nearest_receivers(&scene.receivers, &[toy_in_world]);
+        let in_scene = nearest_to_toy(scene, &input.world_from_object);
         let planes = found.planes.into_iter().map(|found| {
-            let receiver = found.plane.receiver(
-                format!("{:.0} mm up", 1e3 * found.report.height_m),
-                &input.camera.world_from_camera,
-            );
+            let name = if found.report.is_upright() {
+                "a side".to_owned()
+            } else {
+                format!("{:.0} mm up", 1e3 * found.report.height_m)
+            };
+            let receiver = found.plane.receiver(name, &input.camera.world_from_camera);
             FoundReceiver {
                 receiver,
                 instead_of: found.instead_of.and_then(|index| in_scene.get(index).copied()),

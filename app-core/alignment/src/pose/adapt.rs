@@ -90,7 +90,7 @@ pub(crate) fn adapt(
     let (Some(field), [Some(before), Some(after)]) = (field, measured) else {
         return Ok(None);
     };
-    let misfits = [&before, &after].map(|measured| Misfit::of(measured));
+    let misfits = [&before, &after].map(|measured| Misfit::of(measured, Misfit::ROBUST_PX));
     let evidence = field.evidence.min(misfits[1].likelier_than(&misfits[0]));
     Ok((evidence >= LEAST_EVIDENCE).then(|| Adapted {
         displacements_m,

@@ -9,7 +9,8 @@ use super::placement::{Placement, SIZE};
 use super::settle::{Balance, Known, LEAST_EVIDENCE, Misfit, smoothed_px};
 use super::standing::{Ground, Standing};
 use super::texture::{LAST_SPREAD, Likeness, Texture};
-use super::{FINE, Fit, Found, Search, Subject, enough};
+use super::{FINE, Fit, Found, Search, Subject, WIDE, enough};
+use crate::median::median;
 use crate::picture::Level;
 use crate::report::{PoseDeviation, most_model_px};
 use crate::rigid_motion::RigidMotion;
@@ -48,8 +49,29 @@ const LESS_SEEN: f64 = 0.1;
 struct Seen<'a> {
     lit: Option<Lit<'a>>,
     optics: Optics,
+    accuracy: Accuracy,
     /// `None` if the toy has none, or another one than its model.
     texture: Option<&'a Texture>,
+}
+
+/// The way in which the outline is compared.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Accuracy {
+    /// By the codes beside it, to hundredths of a pixel; farther than half a pixel all errors count
+    /// alike.
+    Codes,
+    /// By the toy's coverage of a wide band: the outline of a model that is not quite the toy.
+    Area,
+}
+
+impl Accuracy {
+    /// Scale of the loss of a piece, in pixels: it counts at most the square of it.
+    fn robust_px(self) -> f64 {
+        match self {
+            Self::Codes => Misfit::ROBUST_PX,
+            Self::Area => WIDE.robust_px,
+        }
+    }
 }
 
 /// The source of a toy's size.
@@ -68,6 +90,21 @@ struct Settled {
     deviation: PoseDeviation,
 }
 
+/// An estimate beside the given pose.
+struct Compared {
+    settled: Settled,
+    /// The measured outline of the given pose.
+    given: Vec<Measured>,
+    /// Logarithm of the likelihood ratio of the estimate and the given pose.
+    evidence: f64,
+}
+
+impl Compared {
+    fn is_better(&self) -> bool {
+        self.evidence >= LEAST_EVIDENCE
+    }
+}
+
 impl Search<'_> {
     /// Estimates all six parameters, in all bands; standing, if the picture does not contradict it.
     pub(super) fn freed(&mut self, subject: Subject<'_>, given: Fit, motion: RigidMotion) -> Option<Found> {
@@ -84,43 +121,24 @@ impl Search<'_> {
         let texture = seen.lit.and_then(|lit| self.texture(lit, &start));
         let (seen, free) = self.textured(seen, texture.as_ref(), &start)?;
         let standing = ground.and_then(|Ground { plane, .. }| Standing::on(shape, plane));
-        let certain = standing
-            .as_ref()
-            .filter(|_| ground.is_some_and(|ground| ground.is_certain));
-        let settled = match (certain, &standing) {
-            (Some(standing), _) => self.on_plane(seen, &free, standing),
-            (None, Some(standing)) => self.stood(seen, &free, standing),
-            (None, None) => None,
-        };
-        let settled = settled.unwrap_or_else(|| free.clone());
-        let as_given = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
-        let as_given = self.edges(&as_given, seen).unwrap_or_default();
-        let of_given = Misfit {
-            texture: self.likeness(
-                seen,
-                &Placement::of(RigidMotion::none(shape.centre, shape.radius_m)),
-            ),
-            ..Misfit::of(&as_given)
-        };
-        let standing_evidence = certain.map_or(0.0, |standing| {
-            standing.evidence(|point| settled.placement.apply(point))
-        });
-        let is_refused = certain.is_none() && settled.misfit.likelier_than(&of_given) < LEAST_EVIDENCE;
-        // A plane that a toy need not stand on is no reason to leave its given place.
-        let settled = if is_refused && free.misfit.likelier_than(&of_given) >= LEAST_EVIDENCE {
-            free
+        let ground = standing.as_ref().zip(ground);
+        let by_codes = self.compared(seen, free, ground);
+        let best = if by_codes.is_better() || by_codes.settled.is_measured() {
+            by_codes
         } else {
-            settled
+            let by_area = self.by_area(seen, &start, ground);
+            by_area.filter(Compared::is_better).unwrap_or(by_codes)
         };
+        let settled = best.settled;
         let found = self.fit(&settled.placement)?;
         Some(Found {
             motion: settled.placement.matrix(),
             outlines_px: [
-                outline_px(&given, &as_given, seen.optics),
+                outline_px(&given, &best.given, seen.optics),
                 outline_px(&found, &settled.measured, seen.optics),
             ],
             is_less_seen: found.share <= given.share - LESS_SEEN,
-            evidence: settled.misfit.likelier_than(&of_given) + standing_evidence,
+            evidence: best.evidence,
             deviation: settled.deviation,
             model_px: smoothed_px(&settled.measured),
             texture_correlation: settled.misfit.texture.map(|texture| texture.correlation),
@@ -131,6 +149,60 @@ impl Search<'_> {
                 [standing.stand(|point| point), found]
             }),
         })
+    }
+
+    /// The pose by the coverage of a wide band, for a model that is not quite the toy.
+    fn by_area(
+        &mut self,
+        seen: Seen<'_>,
+        start: &Placement,
+        ground: Option<(&Standing, Ground)>,
+    ) -> Option<Compared> {
+        let seen = Seen {
+            accuracy: Accuracy::Area,
+            ..seen
+        };
+        let free = self.settled(seen, start, None)?;
+        Some(self.compared(seen, free, ground))
+    }
+
+    /// The pose on the toy's ground, compared with the given pose.
+    fn compared(&mut self, seen: Seen<'_>, free: Settled, ground: Option<(&Standing, Ground)>) -> Compared {
+        let settled = self.on_ground(seen, &free, ground);
+        let as_given = Placement::of(RigidMotion::none(self.shape.centre, self.shape.radius_m));
+        let given = self.edges(&as_given, seen).unwrap_or_default();
+        let of_given = Misfit {
+            texture: self.likeness(seen, &as_given),
+            ..Misfit::of(&given, seen.accuracy.robust_px())
+        };
+        let is_better = |settled: &Settled| settled.misfit.likelier_than(&of_given) >= LEAST_EVIDENCE;
+        let certain = ground.filter(|(_, ground)| ground.is_certain);
+        // A plane that a toy need not stand on is no reason to leave its given place.
+        let settled = if certain.is_none() && !is_better(&settled) && is_better(&free) {
+            free
+        } else {
+            settled
+        };
+        let standing = certain.map_or(0.0, |(standing, _)| {
+            standing.evidence(|point| settled.placement.apply(point))
+        });
+        Compared {
+            evidence: settled.misfit.likelier_than(&of_given) + standing,
+            settled,
+            given,
+        }
+    }
+
+    /// The toy on its ground, as far as it stands there; the free pose if it floats.
+    fn on_ground(&mut self, seen: Seen<'_>, free: &Settled, ground: Option<(&Standing, Ground)>) -> Settled {
+        let settled = ground.and_then(|(standing, ground)| {
+            if ground.is_certain {
+                self.on_plane(seen, free, standing)
+            } else {
+                self.stood(seen, free, standing)
+            }
+        });
+        settled.unwrap_or_else(|| free.clone())
     }
 
     /// The toy on its plane, whatever the picture; in another size if that is much likelier.
@@ -188,6 +260,7 @@ impl Search<'_> {
         Seen {
             lit,
             optics,
+            accuracy: Accuracy::Codes,
             texture: None,
         }
     }
@@ -249,6 +322,11 @@ impl Search<'_> {
 
     /// The pieces measured by the codes beside them; `None` if there are too few.
     fn edges(&mut self, placement: &Placement, seen: Seen<'_>) -> Option<Vec<Measured>> {
+        if seen.accuracy == Accuracy::Area {
+            return self
+                .matte(placement, seen.lit, WIDE)
+                .map(|(measured, _)| measured);
+        }
         let posed = self.posed(placement, seen.lit);
         let softened = self.softened.as_ref().map(|(level, _)| level);
         let level = softened.unwrap_or_else(|| self.pyramid.level(0));
@@ -270,6 +348,7 @@ impl Search<'_> {
             k: &pyramid.level(0).intrinsics,
             radius_m: self.shape.radius_m,
             standing: standing.map(|(standing, _)| standing),
+            most_robust_px: seen.accuracy.robust_px(),
             is_size_open: standing.is_some_and(|(_, size)| size == SizeOf::Found),
         };
         let rows = |round: usize, placement: &Placement| {
@@ -292,7 +371,7 @@ impl Search<'_> {
         }
         let misfit = Misfit {
             texture: self.likeness(seen, &placement),
-            ..Misfit::of(&measured)
+            ..Misfit::of(&measured, seen.accuracy.robust_px())
         };
         let depth_m = -placement.motion.centre().z;
         let balance = Balance::new((&measured, rows(usize::MAX, &placement)), &placement, known);
@@ -305,6 +384,14 @@ impl Search<'_> {
     }
 }
 
+impl Settled {
+    /// Whether most of the outline is near enough for codes to say how far away it is.
+    fn is_measured(&self) -> bool {
+        let offsets_px = self.measured.iter().map(|one| one.offset_px.abs());
+        median(offsets_px, f64::total_cmp).is_some_and(|offset_px| offset_px < COMPARED_PX)
+    }
+}
+
 /// All bands by area except the finest, which is replaced by codes.
 fn wide_bands() -> &'static [(Band, usize)] {
     &FINE[..FINE.len() - 1]
@@ -313,7 +400,7 @@ fn wide_bands() -> &'static [(Band, usize)] {
 /// Root mean square distance of an outline, in pixels: by the codes beside it if they belong to
 /// this outline, since noise and sharpening do not bias them, and else by area.
 fn outline_px(fit: &Fit, measured: &[Measured], optics: Optics) -> f64 {
-    let loss_px2 = Misfit::of(measured).loss_px2;
+    let loss_px2 = Misfit::of(measured, Misfit::ROBUST_PX).loss_px2;
     let is_near = loss_px2 < MET_PX2 + MET_OF_SPREAD * optics.spread_px;
     if is_near && smoothed_px(measured) < most_model_px(optics.spread_px) {
         fit.outline_px().min(loss_px2.sqrt())

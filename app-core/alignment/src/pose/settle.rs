@@ -21,11 +21,10 @@ pub(super) const LEAST_EVIDENCE: f64 = 6.0;
 /// Standard deviation of the offset of the whole outline, in pixels: by a halo, or a model that is
 /// too thin.
 pub(super) const OFFSET_PX: f64 = 0.1;
-/// Scale of the robust weights over the median of the pieces, and its bounds in pixels (Geman and
-/// McClure 1987).
+/// Scale of the robust weights over the median of the pieces, and its lower bound in pixels (Geman
+/// and McClure 1987).
 const ROBUST: f64 = 3.0;
 const LEAST_ROBUST_PX: f64 = 0.1;
-const MOST_ROBUST_PX: f64 = 0.5;
 /// Correlation length along the outline in pieces: halos, textures and the blocks of a compressed
 /// picture span some ten pixels.
 pub(super) const ALIKE: f64 = 12.0;
@@ -57,6 +56,8 @@ pub(super) struct Known<'a> {
     pub(super) k: &'a Intrinsics,
     pub(super) radius_m: f64,
     pub(super) standing: Option<&'a Standing>,
+    /// Largest scale of the robust weights of the outline, in pixels.
+    pub(super) most_robust_px: f64,
     /// Whether the size is estimated.
     pub(super) is_size_open: bool,
 }
@@ -116,7 +117,7 @@ impl<'a> Balance<'a> {
         known: Known<'a>,
     ) -> Self {
         let residual_px = |one: &Measured| one.offset_px - placement.offset_px;
-        let robust_px = robust_px(measured.iter().map(residual_px));
+        let robust_px = robust_px(measured.iter().map(residual_px), known.most_robust_px);
         let robust = |one: &Measured| robust::weight((residual_px(one) / robust_px).powi(2));
         let (mut square, mut total) = (0.0, 0.0);
         for one in measured {
@@ -203,11 +204,11 @@ fn block(at_px: DVec2) -> IVec2 {
 }
 
 /// Scale of the weights: far above the median, a residual is an outlier.
-fn robust_px(residuals_px: impl Iterator<Item = f64>) -> f64 {
+fn robust_px(residuals_px: impl Iterator<Item = f64>, most_px: f64) -> f64 {
     let mut away_px: Vec<f64> = residuals_px.map(f64::abs).collect();
     away_px.sort_by(f64::total_cmp);
-    let median_px = away_px.get(away_px.len() / 2).copied().unwrap_or(MOST_ROBUST_PX);
-    (ROBUST * median_px).clamp(LEAST_ROBUST_PX, MOST_ROBUST_PX)
+    let median_px = away_px.get(away_px.len() / 2).copied().unwrap_or(most_px);
+    (ROBUST * median_px).clamp(LEAST_ROBUST_PX, most_px)
 }
 
 /// The misfit of an outline and a picture, and of the toy's texture within the outline.
@@ -222,15 +223,16 @@ pub(super) struct Misfit {
 }
 
 impl Misfit {
-    /// Scale of the loss: a piece counts at most the square of it.
-    const ROBUST_PX: f64 = 0.5;
+    /// Scale of the loss of an outline that is measured by codes: a piece counts at most the square
+    /// of it.
+    pub(super) const ROBUST_PX: f64 = 0.5;
     /// Length along the outline that counts as one piece of evidence, in pixels.
     const EVIDENCE_PX: f64 = 20.0;
 
     /// The misfit of pieces, with the best offset of the whole outline within its prior.
-    pub(super) fn of(measured: &[Measured]) -> Self {
-        let offset_px = offset_px(measured);
-        let scale = Self::ROBUST_PX * Self::ROBUST_PX;
+    pub(super) fn of(measured: &[Measured], robust_px: f64) -> Self {
+        let offset_px = offset_px(measured, robust_px);
+        let scale = robust_px * robust_px;
         let (mut sum, mut length_px) = (0.0, 0.0);
         for one in measured {
             let square = (one.offset_px - offset_px).powi(2);
@@ -269,13 +271,13 @@ impl Misfit {
 }
 
 /// Offset of the whole outline out of the toy, within its prior.
-fn offset_px(measured: &[Measured]) -> f64 {
+fn offset_px(measured: &[Measured], robust_px: f64) -> f64 {
     const N_ROUNDS: usize = 4;
     let mut offset_px = 0.0;
     for _ in 0..N_ROUNDS {
         let (mut information, mut pull) = (ALIKE * OFFSET_PX.powi(-2), 0.0);
         for one in measured {
-            let robust = robust::weight(((one.offset_px - offset_px) / Misfit::ROBUST_PX).powi(2));
+            let robust = robust::weight(((one.offset_px - offset_px) / robust_px).powi(2));
             let weight = robust * one.precision * one.element.length_px;
             information += weight;
             pull += weight * one.offset_px;
@@ -288,7 +290,7 @@ fn offset_px(measured: &[Measured]) -> f64 {
 /// The root mean square of displacements smoothed along the outline, in pixels: a model's errors
 /// keep their sign over centimetres, those of halos and compression do not.
 pub(super) fn smoothed_px(measured: &[Measured]) -> f64 {
-    let offset_px = offset_px(measured);
+    let offset_px = offset_px(measured, Misfit::ROBUST_PX);
     let smooth_px = smoothed(measured)
         .into_iter()
         .map(|smooth_px| (smooth_px - offset_px).powi(2));

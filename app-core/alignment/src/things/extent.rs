@@ -1,7 +1,9 @@
-//! Estimates the extent of a thing's plane: the smallest rectangle around its visible part.
+//! Estimates the extent of a thing's plane: the smallest rectangle around its visible part, with its
+//! sides on edges of the plate.
 
 use glam::{DMat4, DVec2, DVec3, Vec3Swizzles};
 
+use super::edges::{Side, moved_m};
 use super::grown::Grown;
 use crate::picture::{Level, places};
 use crate::receivers::SeenReceiver;
@@ -79,6 +81,10 @@ impl Extent {
         let smallest = turns
             .map(|turn_rad| Self::turned(&places, turn_rad))
             .min_by(|a, b| a.half_m.element_product().total_cmp(&b.half_m.element_product()))?;
+        let face_m = is_level.then(|| smallest.height_m(plane_from_camera, outline.table));
+        let on_edges = |extent: Self| extent.on_edges(outline.level, plane_from_camera, face_m);
+        // The first round corrects the lengths that the second one looks along.
+        let smallest = on_edges(on_edges(smallest));
         let filled = outline.filled(&smallest.plane(plane_from_camera));
         let whole = if is_level {
             smallest
@@ -86,6 +92,32 @@ impl Extent {
             smallest.down_to(outline.table, plane_from_camera)
         };
         (filled >= FILLED).then_some(whole)
+    }
+
+    /// The rectangle with its sides on edges of the plate, above upright faces of a height.
+    fn on_edges(self, level: &Level, plane_from_camera: &DMat4, face_m: Option<f64>) -> Self {
+        let axis = DVec2::from_angle(self.turn_rad);
+        let moved_m = |outward: DVec2, out_m: f64, half_m: f64| {
+            let side = Side {
+                middle: self.middle + out_m * outward,
+                outward,
+                half_m,
+                face_m,
+            };
+            moved_m(&side, plane_from_camera, level)
+        };
+        let along = |axis: DVec2, out_m: f64, half_m: f64| {
+            [axis, -axis].map(|outward| moved_m(outward, out_m, half_m))
+        };
+        let [right_m, left_m] = along(axis, self.half_m.x, self.half_m.y);
+        let [far_m, near_m] = along(axis.perp(), self.half_m.y, self.half_m.x);
+        let grown = DVec2::new(right_m + left_m, far_m + near_m);
+        let moved = DVec2::new(right_m - left_m, far_m - near_m);
+        Self {
+            middle: self.middle + 0.5 * axis.rotate(moved),
+            half_m: self.half_m + 0.5 * grown,
+            ..self
+        }
     }
 
     fn turned(places: &[DVec2], turn_rad: f64) -> Self {

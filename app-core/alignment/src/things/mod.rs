@@ -10,14 +10,17 @@
 
 mod codes;
 mod colors;
+mod edges;
 mod extent;
 pub(crate) mod groups;
 mod grown;
+mod measured;
 pub(crate) mod planes;
 mod seeds;
+mod sides;
 mod simplex;
 
-use glam::{DMat4, DVec2, IVec2};
+use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use crate::lights::Compared;
 use crate::picture::{Color, Level, Mask, Pyramid, index_in, places};
@@ -39,6 +42,8 @@ const MOST_PIXELS: i32 = 150_000;
 /// Distance in pixels of a level from the toy's outline within which something before it is
 /// detected.
 const WITHIN_PX: i32 = 2;
+/// Least distance in pixels of a level between the toy and a depth sensor's points of other things.
+const BESIDE_PX: i32 = 4;
 /// Largest difference in codes at which frame and plate count as equal.
 const ALIKE_CODES: f32 = 5.0;
 /// Minimum number of pixels of the level that show a thing before the toy: in the toy's place, and
@@ -71,6 +76,8 @@ pub(crate) struct Sight<'a> {
     pub(crate) pyramid: &'a Pyramid,
     pub(crate) lights: &'a [Light],
     pub(crate) world_from_camera: &'a DMat4,
+    /// Points that a depth sensor measured, in camera space.
+    pub(crate) points: &'a [DVec3],
     /// Whether planes of things are searched for.
     pub(crate) wants_planes: bool,
 }
@@ -108,7 +115,12 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
         .map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
     let planes = match &grown {
         Some(grown) if sight.wants_planes => {
-            planes::find((sight.shape, sight.receivers), level, &compared, grown)
+            let place = planes::Place {
+                shape: sight.shape,
+                receivers: sight.receivers,
+                points: &toy.beside(sight.points, level),
+            };
+            planes::find(&place, level, &compared, grown)
         }
         _ => Vec::new(),
     };
@@ -302,6 +314,15 @@ impl Toy {
         let codes = |color: Color| color.map(|linear| 255.0 * srgb_from_linear(linear.clamp(0.0, 1.0)));
         let shown = shown.map(|shown| shown.into_iter().map(|color| color.map(codes)).collect());
         Self { coverage, shown }
+    }
+
+    /// The points in camera space that are seen beside the toy.
+    fn beside(&self, points: &[DVec3], level: &Level) -> Vec<DVec3> {
+        let is_beside = |point: &DVec3| {
+            let at = level.intrinsics.pixel_of(*point);
+            at.is_some_and(|at| !self.coverage.is_near(at.floor().as_ivec2(), BESIDE_PX))
+        };
+        points.iter().copied().filter(is_beside).collect()
     }
 
     fn expected(&self, at: IVec2) -> Option<Color> {

@@ -2,12 +2,17 @@
 //!
 //! The shadow on a plane is the toy projected onto it. The search varies a plane's height and tilt
 //! until the predicted shadow matches the photograph. The remaining loss decides whether the thing
-//! has a plane at all: a cup, a cloth or a hand has none.
+//! has a plane at all: a cup, a cloth or a hand has none. If a depth sensor measured the thing, the
+//! search begins with the plane of its points and stays close to it, and the loss only has to agree.
+
+use std::collections::HashSet;
 
 use glam::{DMat4, DQuat, DVec2, DVec3, IVec2, Vec3Swizzles};
 
 use super::extent::{Extent, Outline};
 use super::grown::Grown;
+use super::measured::Measured;
+use super::sides::{Side, sides};
 use super::simplex::descend;
 use crate::lights::{Compared, Comparison, OnPlane};
 use crate::picture::{Color, Level};
@@ -20,6 +25,8 @@ use app_scene::scene::{Intrinsics, MAX_RECEIVERS};
 /// Least pixels of a thing, in the level, for a search, and most pixels that a search samples.
 const LEAST_PIXELS: usize = 300;
 const MOST_PIXELS: usize = 2500;
+/// Least pixels of an upright side beside the toy for a comparison of losses.
+const LEAST_OF_SIDE: usize = 60;
 /// Least shadowed pixels that a level and a tilted plane need.
 const LEAST_SHADOWED: [usize; 2] = [90, 250];
 /// Least part of the light that a shadowed pixel loses.
@@ -32,6 +39,12 @@ const MOST_LOSS: f64 = 0.03;
 /// of no shadow at all.
 const OF_PLANE: f64 = 0.0012;
 const OF_OTHERS: f64 = 0.35;
+/// Largest loss of a plane that a depth sensor measured, and the addition to the losses of the
+/// others for noise.
+const OF_MEASURED: f64 = 0.003;
+const NOISE: f64 = 1e-4;
+/// Loss of a squared deviation from the plane of a depth sensor.
+const OFF_MEASURED: f64 = 1e-4;
 /// If these leave a smaller loss, there is nothing to explain.
 const LEAST_LEFT: f64 = 3e-4;
 /// Largest distance in metres between a found plane and the receiver that it replaces.
@@ -79,14 +92,21 @@ impl FoundPlane {
     }
 }
 
+/// The toy, the known receivers and the points of a depth sensor, in camera space.
+pub(super) struct Place<'a> {
+    pub(super) shape: &'a Shape,
+    pub(super) receivers: &'a [SeenReceiver],
+    pub(super) points: &'a [DVec3],
+}
+
 /// Finds the planes of a level's things.
 pub(super) fn find(
-    (shape, receivers): (&Shape, &[SeenReceiver]),
+    place: &Place<'_>,
     level: &Level,
     comparison: &Comparison,
     grown: &Grown,
 ) -> Vec<FoundPlane> {
-    let shape = shape.merged_in_px(CELL_PX, level);
+    let (shape, receivers) = (place.shape.merged_in_px(CELL_PX, level), place.receivers);
     // Each search takes a second: only the largest things are searched.
     let mut things: Vec<usize> = (0..grown.n_things()).collect();
     things.sort_by_key(|thing| std::cmp::Reverse(grown.n_seeds(*thing)));
@@ -94,20 +114,78 @@ pub(super) fn find(
     let planes = things.into_iter().filter_map(|thing| {
         let pixels = pixels(comparison, grown, thing);
         let on = most_on(&pixels)?;
-        let search = Search::new((&shape, receivers), level, comparison, &pixels)?;
+        let search = || Search::new((&shape, receivers), level, comparison, &pixels);
         let outline = Outline {
             level,
-            table: search.table,
+            table: receivers.get(GROUND)?,
             grown,
             thing,
         };
-        let found = found(search, &outline)?;
+        let by_points = || found(search()?.measured(&outline, place.points)?, &outline);
+        let found = by_points().or_else(|| found(search()?, &outline))?;
         Some(FoundPlane {
             instead_of: (on != GROUND && found.is_near(&receivers[on])).then_some(on),
             ..found
         })
     });
-    planes.collect()
+    let mut planes: Vec<FoundPlane> = planes.collect();
+    let upright = upright((&shape, receivers), (level, grown), comparison, &planes);
+    planes.extend(upright);
+    planes
+}
+
+/// The upright sides of level planes, as many as there may be receivers, the largest in the picture
+/// first.
+fn upright(
+    (shape, receivers): (&Shape, &[SeenReceiver]),
+    (level, grown): (&Level, &Grown),
+    comparison: &Comparison,
+    planes: &[FoundPlane],
+) -> Vec<FoundPlane> {
+    let mut known = receivers.to_vec();
+    for found in planes {
+        match found.instead_of {
+            Some(index) => known[index] = found.plane.clone(),
+            None => known.push(found.plane.clone()),
+        }
+    }
+    let mut all: Vec<Side> = (GROUND + 1..known.len())
+        .flat_map(|top| {
+            let others: Vec<SeenReceiver> = known
+                .iter()
+                .enumerate()
+                .filter(|(index, _)| *index != top)
+                .map(|(_, other)| other.clone())
+                .collect();
+            sides(level, grown, &known[top], &others)
+        })
+        .collect();
+    all.sort_by_key(|side| std::cmp::Reverse(side.pixels.len()));
+    let raster = &mut Rasterizer::default();
+    let taken = all.into_iter().filter_map(|side| {
+        let shown: HashSet<IVec2> = side.pixels.iter().copied().collect();
+        let pixels: Vec<&Compared> = comparison
+            .pixels
+            .iter()
+            .filter(|pixel| pixel.noise < NOISIEST && shown.contains(&pixel.at))
+            .collect();
+        // The toy may hide it: then only the place of the top counts.
+        let losses = match Search::new((shape, receivers), level, comparison, &pixels) {
+            Some(search) if pixels.len() >= LEAST_OF_SIDE => search.agreed_losses(raster, &side.plane)?,
+            _ => [0.0; 2],
+        };
+        Some(FoundPlane {
+            report: PlaneAlignment {
+                height_m: side.half_m.y,
+                tilt_rad: std::f64::consts::FRAC_PI_2,
+                half_extent_m: side.half_m.to_array(),
+                losses,
+            },
+            plane: side.plane,
+            instead_of: None,
+        })
+    });
+    taken.take(MAX_RECEIVERS.saturating_sub(known.len())).collect()
 }
 
 /// The inner pixels of a thing, row by row.
@@ -184,6 +262,8 @@ struct Search<'a> {
     middle: DVec2,
     size_m: f64,
     radius_m: f64,
+    /// The plane that a depth sensor measured.
+    measured: Option<Measured>,
 }
 
 impl<'a> Search<'a> {
@@ -217,13 +297,25 @@ impl<'a> Search<'a> {
             middle,
             size_m,
             radius_m: shape.radius_m,
+            measured: None,
         })
+    }
+
+    /// The same search, about the plane of a depth sensor's points; `None` if they are on none.
+    fn measured(mut self, outline: &Outline<'_>, points: &[DVec3]) -> Option<Self> {
+        self.measured = Some(Measured::of(outline, self.middle, points)?);
+        Some(self)
     }
 
     /// The plane with the smallest residual.
     fn best_plane(&self, raster: &mut Rasterizer) -> Option<Candidate> {
         let (first, step, n) = HEIGHTS;
         let level = (0..n).map(|i| [(first + step * i as f64) * self.radius_m, 0.0, 0.0]);
+        let measured = self
+            .measured
+            .as_ref()
+            .map(|measured| measured.heights(self.size_m));
+        let level = level.chain(measured.map(|heights| [heights[0], 0.0, 0.0]));
         let level = self.best(raster, level, N_STARTS + 1);
         let slopes = level.iter().flat_map(|(_, [height_m, ..])| {
             SLOPES.into_iter().flat_map(move |slope| {
@@ -234,7 +326,7 @@ impl<'a> Search<'a> {
             })
         });
         let all = level.iter().map(|(_, heights)| *heights).chain(slopes);
-        let all: Vec<Heights> = all.collect();
+        let all: Vec<Heights> = all.chain(measured).collect();
         let tilted = self.best(raster, all.into_iter(), N_STARTS);
         self.refined(raster, &level, &tilted)
     }
@@ -285,10 +377,23 @@ impl<'a> Search<'a> {
         let of_light = self.loss_of(&vec![Some([1.0; 3]); self.seen.len()]);
         let loss = candidate.loss;
         let of_others = of_receiver.min(of_light);
+        if self.measured.is_some() {
+            let is_agreed = loss < OF_MEASURED.min(of_others + NOISE);
+            return is_agreed.then_some([of_receiver, loss]);
+        }
         let is_significant = of_others > LEAST_LEFT && loss < OF_PLANE.min(OF_OTHERS * of_others);
         let n_shadowed = self.n_shadowed(raster, &candidate.heights);
         let least = LEAST_SHADOWED[usize::from(!candidate.is_level)];
         (is_significant && n_shadowed >= least).then_some([of_receiver, loss])
+    }
+
+    /// Losses of the known receivers and of an upright side; `None` if those, or no shadow at all,
+    /// explain the pixels better.
+    fn agreed_losses(&self, raster: &mut Rasterizer, plane: &SeenReceiver) -> Option<[f64; 2]> {
+        let loss = self.loss_of(&self.on_plane.ratios(raster, plane, &self.pixels));
+        let of_receiver = self.loss_of(&self.expected);
+        let of_light = self.loss_of(&vec![Some([1.0; 3]); self.seen.len()]);
+        (loss < of_receiver.min(of_light) + NOISE).then_some([of_receiver, loss])
     }
 
     /// The best of some tries, with their losses.
@@ -323,7 +428,9 @@ impl<'a> Search<'a> {
             return f64::INFINITY;
         }
         let expected = self.on_plane.ratios(raster, &self.plane(heights), &self.pixels);
-        self.loss_of(&expected)
+        let measured = self.measured.as_ref();
+        let off = measured.map_or(0.0, |measured| measured.square(heights, self.size_m));
+        self.loss_of(&expected) + OFF_MEASURED * off
     }
 
     /// The same for a prediction of each pixel, if there is one.

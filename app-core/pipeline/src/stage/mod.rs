@@ -15,7 +15,7 @@ mod supported;
 
 use std::sync::{Arc, OnceLock};
 
-use glam::{DMat4, DVec3, UVec2};
+use glam::{DMat4, UVec2};
 
 use crate::frame::FrameReport;
 use crate::frame::warning::Warning;
@@ -40,6 +40,7 @@ use crate::readback::{FloatMap, Map};
 use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
 use app_scene::geometry::bounds::Bounds;
+use app_scene::geometry::nearest_receivers::corners_in_world;
 use app_scene::gloss::Gloss;
 use app_scene::reflection::Reflection;
 use app_scene::scene::{Camera, Image, Scene};
@@ -173,10 +174,7 @@ impl Stage {
         let toy_in_world = scene
             .world_from_object
             .transform_point3(bounds_in_object.centre());
-        let corners_in_world: Vec<DVec3> = bounds_in_object
-            .corners()
-            .map(|corner| scene.world_from_object.transform_point3(corner))
-            .collect();
+        let corners_in_world = corners_in_world(toy_in_object, &scene.world_from_object);
         let receivers = Receivers::new(&scene.receivers, toy_in_world, &corners_in_world);
         let anchor_from_object = receivers.anchored[0].world_from_plane.inverse() * scene.world_from_object;
         let mut posed = PosedMesh::default();

@@ -2,9 +2,33 @@
 
 use std::cmp::Ordering;
 
-use glam::{DVec2, DVec3};
+use glam::{DMat4, DVec2, DVec3};
 
-use crate::scene::Receiver;
+use super::bounds::Bounds;
+use crate::scene::{Receiver, Scene};
+use crate::toy;
+
+/// Corners of a toy's box in a place, by which its receivers are ranked.
+pub fn corners_in_world(toy_in_object: &toy::Bounds, world_from_object: &DMat4) -> Vec<DVec3> {
+    let bounds = Bounds {
+        min: toy_in_object.min.as_dvec3(),
+        max: toy_in_object.max.as_dvec3(),
+    };
+    let corners = bounds.corners();
+    corners
+        .map(|corner| world_from_object.transform_point3(corner))
+        .collect()
+}
+
+/// Indices of a scene's receivers, the one nearest to the toy in a place first.
+pub fn nearest_to_toy(scene: &Scene, world_from_object: &DMat4) -> Vec<usize> {
+    let points = match scene.toy.bounds_of_pose(&scene.physical_pose) {
+        Ok(bounds) => corners_in_world(&bounds, world_from_object),
+        // A toy that cannot be posed is refused elsewhere.
+        Err(_) => vec![world_from_object.w_axis.truncate()],
+    };
+    nearest_receivers(&scene.receivers, &points)
+}
 
 /// Indices of receivers, the one nearest to any of `points_in_world` first. The result does not
 /// depend on their order in the list.

@@ -87,6 +87,7 @@ pub(super) fn capture_from_record(
         warnings,
         frames,
         last_picture: Mutex::new(None),
+        last_depth: Mutex::new(None),
     })
 }
 
@@ -178,6 +179,7 @@ fn frame_from_record(
     let mut warnings = Vec::new();
     let picture_fields = [
         ("image", Some(&record.image)),
+        ("depth", record.depth.as_ref()),
         ("truth", record.truth.as_ref()),
         ("mask", record.mask.as_ref()),
     ];
@@ -213,6 +215,7 @@ fn frame_from_record(
             .as_ref()
             .map(|estimate| light_estimate(&format!("{field}.light_estimate"), estimate))
             .transpose()?,
+        depth: record.depth.clone(),
         shown_pose: pose(
             toy,
             &format!("{field}.animation"),

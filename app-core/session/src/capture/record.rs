@@ -333,6 +333,12 @@ pub struct FrameRecord {
     /// The platform's light estimate in this frame.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light_estimate: Option<LightEstimateRecord>,
+    /// Path of the frame's depths in the session's folder: a grey PNG of 16 bit that shows what `image` shows, without
+    /// a lens's distortion, in a size of its own. A pixel is the distance along the view in millimetres, or 0 if it is
+    /// unknown.
+    #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depth: Option<String>,
     /// Pose of the camera: from camera space (+X right, +Y up, looks along -Z, metres) to world. Rigid.
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::COORDINATE_M)))]
     pub world_from_camera: [f64; 16],

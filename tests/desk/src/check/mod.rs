@@ -88,6 +88,7 @@ pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyh
         }
     }
     if let Ok(first) = capture.frame(0) {
+        findings.facts.extend(sense::depth(&first));
         let given = FrameInput::from(&first);
         match Alignments::find(&capture, 0..1, asked) {
             Ok(alignments) => {

@@ -28,6 +28,16 @@ pub(super) fn without(scene: &Scene) -> Vec<String> {
     facts
 }
 
+/// The depths of the first frame.
+pub(super) fn depth(frame: &SessionFrame) -> Option<String> {
+    let depth = frame.depth.as_ref()?;
+    let [width, height] = depth.size_px().to_array();
+    Some(format!(
+        "frames[0].depth: {width} x {height} px, {:.0} % of them known: planes of things are searched close to it",
+        1e2 * depth.known()
+    ))
+}
+
 /// Implausible numbers of the session as a whole.
 pub(super) fn wrong(scene: &Scene) -> Vec<String> {
     let mut wrong = doubts::of_scene(scene);

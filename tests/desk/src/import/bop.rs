@@ -120,6 +120,7 @@ fn frame(
     Ok(ImportedFrame {
         time_s: None,
         image,
+        depth: None,
         intrinsics: [fx, fy, cx + HALF_PIXEL, cy + HALF_PIXEL],
         size_px: None,
         lens: Lens::NONE,

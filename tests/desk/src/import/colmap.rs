@@ -110,6 +110,7 @@ pub(super) fn parse(model: &Model, bytes: [&[u8]; 2], known: &Known) -> Result<I
         frames.push(ImportedFrame {
             time_s: None,
             image: picture,
+            depth: None,
             intrinsics: camera.intrinsics,
             size_px: Some(camera.size_px),
             lens: camera.lens,

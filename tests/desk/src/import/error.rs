@@ -107,6 +107,11 @@ pub enum ImportReason {
     /// Neither PNG nor JPEG, or damaged.
     #[error("neither a PNG nor a JPEG whose size can be read")]
     NotAPicture,
+    /// Depths or confidences of another kind.
+    #[error(
+        "not what a depth sensor's picture is: grey PNGs of 16 bit for depths and of 8 bit for confidences, of one size"
+    )]
+    NotDepths,
     /// A picture whose size differs from the first.
     #[error(
         "it is {} x {} px, but {first} is {} x {} px: all pictures of a session have one size",

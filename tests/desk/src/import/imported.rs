@@ -11,6 +11,15 @@ pub(super) const MAX_FRAMES: usize = 100_000;
 /// Limit for focal lengths, image coordinates and metres.
 pub(super) const MAX_NUMBER: f64 = 1e6;
 
+/// Depths of a frame: grey PNGs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImportedDepth {
+    /// Path of the depths in millimetres, of 16 bit; 0 if unknown.
+    pub image: String,
+    /// Path of their confidences, of 8 bit; 0 if low.
+    pub confidence: Option<String>,
+}
+
 /// A camera frame of another format.
 #[derive(Clone, Debug)]
 pub struct ImportedFrame {
@@ -18,6 +27,8 @@ pub struct ImportedFrame {
     pub time_s: Option<f64>,
     /// Path of the picture.
     pub image: String,
+    /// Depths, if the format has them.
+    pub depth: Option<ImportedDepth>,
     /// Focal lengths, then the principal point, in pixels, the first pixel's centre at (.5, .5).
     pub intrinsics: [f64; 4],
     /// Size of the pictures that the intrinsics refer to, width first; `None` if the format does

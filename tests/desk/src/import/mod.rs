@@ -5,6 +5,7 @@
 
 mod bop;
 mod colmap;
+mod depth;
 mod error;
 mod formats;
 mod glb;
@@ -22,7 +23,7 @@ mod write_nerfstudio;
 
 pub use error::{ImportError, ImportReason};
 pub use formats::{Format, parse, read};
-pub use imported::{Imported, ImportedFrame};
+pub use imported::{Imported, ImportedDepth, ImportedFrame};
 pub use lens::Lens;
 pub use ply::glb_of_ply;
 pub use write::{Lacking, PlateFrames, Written, write};

@@ -86,6 +86,7 @@ pub(super) fn parse(file: &str, text: &str, known: &Known) -> Result<Imported, I
         frames.push(ImportedFrame {
             time_s: time.transpose()?,
             image,
+            depth: None,
             intrinsics: cameras.intrinsics()?,
             size_px: cameras.size_px()?,
             lens: cameras.lens(model)?,

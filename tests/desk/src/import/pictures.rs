@@ -183,7 +183,7 @@ fn of_size(
     Ok((of_picture, is_scaled.then_some(across)))
 }
 
-fn read(files: &dyn Files, path: &str) -> Result<Vec<u8>, ImportError> {
+pub(super) fn read(files: &dyn Files, path: &str) -> Result<Vec<u8>, ImportError> {
     files
         .read(path, MAX_FILE_BYTES)
         .map_err(|error| ImportError::new(path, "the file", error))

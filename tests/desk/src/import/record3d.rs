@@ -112,6 +112,7 @@ impl Metadata {
         Ok(ImportedFrame {
             time_s: time_s(file, index, times_s, self.fps)?,
             image,
+            depth: None,
             intrinsics: match intrinsics {
                 Some(numbers) => of_frame(file, index, numbers)?,
                 None => of_matrix(file, &self.matrix)?,

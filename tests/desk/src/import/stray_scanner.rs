@@ -1,4 +1,4 @@
-//! Stray Scanner: `odometry.csv` and the video's frames.
+//! Stray Scanner: `odometry.csv`, the video's frames and the depths of LiDAR.
 //!
 //! A line is a time, a frame's number, position and quaternion (x, y, z, w), and in newer files the
 //! frame's intrinsics; the oldest have neither header, time nor number. There are blanks after
@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use super::error::{ImportError, ImportReason};
-use super::imported::{Imported, ImportedFrame};
+use super::imported::{Imported, ImportedDepth, ImportedFrame};
 use super::lens::Lens;
 use super::paths::Known;
 use super::values::{OPENCV_FROM_CAMERA, number, ordered, pose, time_s, without_picture};
@@ -59,7 +59,7 @@ pub(super) fn parse(odometry: &str, matrix: Option<&str>, known: &Known) -> Resu
         let number = frame + first_number;
         let names = ["jpg", "jpeg", "png"].map(|kind| format!("{FOLDER}{number:06}.{kind}"));
         match known.first(names) {
-            Some(image) => frames.push(row.imported(image, shared)?),
+            Some(image) => frames.push(row.imported(image, depth(*frame, known), shared)?),
             None => missing.push(format!("{FOLDER}{number:06}.jpg")),
         }
     }
@@ -75,6 +75,14 @@ pub(super) fn parse(odometry: &str, matrix: Option<&str>, known: &Known) -> Resu
         is_metric: true,
         recorded_from_object: None,
         notes,
+    })
+}
+
+/// The depths of a frame; the scanner counts them from 0.
+fn depth(frame: u64, known: &Known) -> Option<ImportedDepth> {
+    Some(ImportedDepth {
+        image: known.first([format!("depth/{frame:06}.png")])?,
+        confidence: known.first([format!("confidence/{frame:06}.png")]),
     })
 }
 
@@ -112,7 +120,12 @@ impl<'a> Row<'a> {
         }
     }
 
-    fn imported(&self, image: String, shared: Option<[f64; 4]>) -> Result<ImportedFrame, ImportError> {
+    fn imported(
+        &self,
+        image: String,
+        depth: Option<ImportedDepth>,
+        shared: Option<[f64; 4]>,
+    ) -> Result<ImportedFrame, ImportError> {
         let camera = |name: &str| self.cell(name).map(|_| self.number(name)).transpose();
         let own = [camera("fx")?, camera("fy")?, camera("cx")?, camera("cy")?];
         let intrinsics = match (own, shared) {
@@ -131,6 +144,7 @@ impl<'a> Row<'a> {
         Ok(ImportedFrame {
             time_s: self.time_s()?,
             image,
+            depth,
             intrinsics,
             size_px: None,
             lens: Lens::NONE,

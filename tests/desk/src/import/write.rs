@@ -4,10 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail, ensure};
-use app_core::session::Capture;
 use app_core::session::record::{
     BackgroundRecord, CaptureRecord, Encoding, FrameRecord, Index, PoseRecord, ToyRecord,
 };
+use app_core::session::{Capture, Session};
 use app_core::toy::Toy;
 use glam::{DMat4, DQuat, DVec3};
 use serde::de::DeserializeOwned;
@@ -246,12 +246,19 @@ fn write_files(
         let file = out.join(fitted.path(&frame.image));
         make_folder(file.parent().unwrap_or(out))?;
         write_whole(&file, &fitted.picture(files, imported, place)?)?;
+        if let Some(depth) = &frame.depth {
+            let file = out.join(&depth.image);
+            make_folder(file.parent().unwrap_or(out))?;
+            write_whole(&file, &depth.png(files)?)?;
+        }
     }
     write_whole(
         &out.join(SESSION_FILE),
         &serde_json::to_vec_pretty(&Index::from(index))?,
     )?;
-    Ok(Capture::open(Folder::open(out)?)?)
+    let capture = Capture::open(Folder::open(out)?)?;
+    capture.check_pictures(0..capture.n_frames())?;
+    Ok(capture)
 }
 
 /// `capture.json`.
@@ -310,6 +317,7 @@ fn frames(imported: &Imported, fitted: &Fitted, lacking: &Lacking) -> anyhow::Re
         FrameRecord {
             time: times_s[place],
             image: fitted.path(&frame.image),
+            depth: frame.depth.as_ref().map(|depth| depth.image.clone()),
             intrinsics: fitted.intrinsics.get(place).map(Into::into),
             world_from_camera: world_from_camera.to_cols_array(),
             ..FrameRecord::default()

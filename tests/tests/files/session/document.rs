@@ -90,6 +90,7 @@ fn the_example_has_every_key_and_the_reader_takes_it() {
     let [width_px, height_px] = size_px;
     let photo = encode(&DynamicImage::new_rgb8(width_px, height_px), ImageFormat::Png);
     let mask = encode(&DynamicImage::new_rgba8(width_px, height_px), ImageFormat::Png);
+    let depth = encode(&DynamicImage::new_luma16(256, 192), ImageFormat::Png);
     let files = [
         ("toy.glb", toy_glb(true)),
         ("plate.png", photo.clone()),
@@ -97,6 +98,7 @@ fn the_example_has_every_key_and_the_reader_takes_it() {
         ("frame_0001.png", photo.clone()),
         ("truth_0000.png", photo.clone()),
         ("mask_0000.png", mask),
+        ("depth_0000.png", depth),
         ("probe_0000.png", photo.clone()),
         ("probe_0001.png", photo),
     ];

@@ -62,6 +62,10 @@ fn open(lens: serde_json::Value) -> Result<Capture, SessionError> {
         parts.set(field, intrinsics.clone());
     }
     parts.index["lens"] = lens;
+    let depth = DynamicImage::new_luma16(SIZE_PX[0] / 2, SIZE_PX[1] / 2);
+    parts
+        .files
+        .insert("depth.png".to_owned(), encode(&depth, ImageFormat::Png));
     parts.open()
 }
 

@@ -103,6 +103,7 @@ fn fed_and_recorded(codec: PictureCodec) -> (Fed, Vec<u8>) {
             world_from_object: scene.world_from_object,
             exposure: 1.0,
             light_estimate: fed.light_estimate,
+            depth: None,
             shown_pose,
             world_from_shown: None,
             warnings: Vec::new(),

@@ -6,11 +6,11 @@ use app_core::frame::{Change, FrameInput, FrameReport, Warning};
 use app_core::governor::{BALANCED_QUALITY_LADDER, QualitySetting, QualityStep};
 use app_core::ledger::Ledger;
 use app_core::preset::Preset;
-use app_core::scene::{Light, Scene};
+use app_core::scene::{Light, Receiver, Scene, Surface};
 use app_core::sharpness::{Sharpness, Spread};
 use app_core::toy::Toy;
 use app_pipeline::core::inspect::Inspect;
-use glam::DVec3;
+use glam::{DMat4, DVec2, DVec3};
 use measure::ball::{SCREEN_PX, ball, lifted, phone};
 use measure::bench::{FRAME_KINDS, FrameKind, with_new};
 use measure::count::{Counted, count, ledgers};
@@ -137,6 +137,49 @@ fn soft_pictures_stay_within_their_budgets() {
             assert!(copies <= OF_FOCUS, "{copies:.3} copies\n{}", rows.join("\n"));
         }
     }
+}
+
+/// With the top and two sides of a box beside the toy, as planes that are found or delivered.
+#[test]
+fn other_planes_stay_within_their_budgets() {
+    const TRIANGLES: [u64; 3] = [1_310_000, 1_310_000, 2_460_000];
+    const COPIES: [f64; 3] = [1.58, 1.93, 2.91];
+    const PEAK_MIB: f64 = 33.5;
+    let (mut scene, input) = scene_of(ball(100, 51), 1);
+    scene.receivers.extend(box_beside());
+    let counted = count(&scene, (Preset::Balanced, &[]), &input).unwrap();
+    let what = ledgers(&counted);
+    for (counted, (triangles, copies)) in counted.iter().zip(TRIANGLES.into_iter().zip(COPIES)) {
+        let (n_triangles, n_copies) = (counted.ledger.total().triangles(), counted.ledger.copies_moved());
+        assert!(
+            n_triangles <= triangles && n_copies <= copies,
+            "{n_triangles} triangles, {n_copies:.3} copies, {:.1} MiB\n{what}",
+            counted.peak_mib()
+        );
+        assert!(counted.peak_mib() <= PEAK_MIB, "{:.1} MiB", counted.peak_mib());
+    }
+}
+
+/// The top and two sides of a box of 10 x 8 x 2 cm, which stands in the shadow of the ball.
+fn box_beside() -> Vec<Receiver> {
+    let half_m = DVec3::new(0.05, 0.01, 0.04);
+    let middle = DVec3::new(-0.11, half_m.y, -0.02);
+    let plane = |outward: DVec3, x: DVec3| Receiver {
+        name: "box".to_owned(),
+        world_from_plane: DMat4::from_cols(
+            x.extend(0.0),
+            outward.extend(0.0),
+            x.cross(outward).extend(0.0),
+            (middle + outward * half_m).extend(1.0),
+        ),
+        half_extent_m: DVec2::new(x.abs().dot(half_m), x.cross(outward).abs().dot(half_m)),
+        surface: Surface::Uniform,
+    };
+    vec![
+        plane(DVec3::Y, DVec3::X),
+        plane(DVec3::Z, DVec3::X),
+        plane(DVec3::X, DVec3::NEG_Z),
+    ]
 }
 
 /// A more expensive row of the ledger is detected.
