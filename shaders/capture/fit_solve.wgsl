@@ -1,5 +1,4 @@
-// Solves the normal equations of `fit` per channel, with weak priors for under-constrained
-// unknowns.
+// Solves the normal equations of `fit` per channel, with weak priors for under-constrained unknowns.
 //
 // A toy with few faces does not separate its lights from the ambient light. The receiver does: its
 // ambient part is to a light's part as the ambient light from above on the toy is to that light,
@@ -51,8 +50,12 @@ const MAX_DIRECT_FRACTION: f32 = 0.98;
 const MAX_BOUNCE: f32 = 1.0;
 
 var<workgroup> sums: array<f32, N_ROW>;
-var<private> matrix: array<f32, 36>;
-var<private> unknowns: array<f32, N_COLUMNS>;
+// Used by one invocation alone; as private arrays they keep phones' compilers busy for minutes, and spill.
+var<workgroup> matrix: array<f32, 36>;
+var<workgroup> unknowns: array<f32, N_COLUMNS>;
+// The equations before unknowns are taken out.
+var<workgroup> whole: array<f32, 36>;
+var<workgroup> right: array<f32, N_COLUMNS>;
 
 // Irradiance of a light on a receiver's reference point, up to a factor of the light.
 fn irradiance(receiver: u32, i: u32) -> f32 {
@@ -150,10 +153,6 @@ fn store_receiver(channel: u32, clipped: f32) {
   solution.receivers[step.receiver].clipped[channel] = clipped;
 }
 
-fn store_toy(channel: u32) {
-  for (var i = 0u; i < step.n_columns; i++) { solution.toy[i][channel] = unknowns[i]; }
-}
-
 fn solve_receiver(channel: u32) {
   load_equations(channel, 1u);
   let energy = matrix[0];
@@ -213,8 +212,8 @@ fn take_out(column: u32) {
 
 // Solves the loaded equations without negative unknowns.
 fn solve_non_negative() {
-  let whole = matrix;
-  let right = unknowns;
+  whole = matrix;
+  right = unknowns;
   var out: array<bool, N_COLUMNS>;
   for (var n_out = 0u; n_out < step.n_columns; n_out++) {
     matrix = whole;
@@ -247,7 +246,7 @@ fn solve_toy(channel: u32) {
   only[channel] = 1.0;
   add_receiver_light(RECEIVER_LIGHT_WEIGHT * energy, only);
   solve_non_negative();
-  store_toy(channel);
+  for (var i = 0u; i < step.n_columns; i++) { solution.toy[i][channel] = unknowns[i]; }
 }
 
 // Without a valid pixel the start values stay.
