@@ -148,10 +148,12 @@ fn receiver(
   if b.a == 0.0 { return f; }
   let lit = fit.gain.rgb * b.rgb;
   let point = receiver_point(at);
-  // A thing stays as photographed.
-  if is_thing(evident) && evident.b == 1.0 {
-    *change = vec4f(0.0);
-    return f;
+  // A thing stays as photographed; where the real toy hides it, the plate has its light.
+  if is_thing(evident) {
+    *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.b);
+    let color = mix(lit, f, evident.b);
+    if HAS_GRAIN { missing = missing_beside(color, evident.b, f, b, fit.gain.rgb); }
+    return color;
   }
   // Beyond the receivers only the real toy is removed.
   if !is_hit(point) {
