@@ -136,8 +136,8 @@ fn shaded(image: &Image, [first, end]: Rect, light: f32) -> Image {
 fn a_shadow_in_the_plate_alone_is_measured() {
     let (scene, input) = &*SESSION;
     let mut scene = Scene::clone(scene);
-    // Over the legs and most of the toy's shadow.
-    let rect = [UVec2::new(190, 205), UVec2::new(460, 300)];
+    // Over the legs and all of the toy's shadow.
+    let rect = [UVec2::new(190, 205), UVec2::new(500, 330)];
     scene.plates[0].image = Arc::new(shaded(&scene.plates[0].image, rect, 0.5));
     let things = Observer::default()
         .observed(&scene, input)
@@ -150,7 +150,8 @@ fn a_shadow_in_the_plate_alone_is_measured() {
             .all(|left| (f32::from(*left) / 255.0 - 0.5).abs() < 0.06),
         _ => false,
     };
-    let [first, end] = rect;
+    // Real shadows have no such sharp edges: behind the legs they are interpolated.
+    let [first, end] = [rect[0] + 8, rect[1] - 8];
     let width_px = things.size_px().x;
     let pixels = (first.y..end.y).flat_map(|y| (first.x..end.x).map(move |x| (y * width_px + x) as usize));
     let size = f64::from((end - first).element_product());
