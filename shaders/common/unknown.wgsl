@@ -34,5 +34,6 @@ fn shadow_likeness(residual: vec3f) -> f32 {
 // of the same light falls there.
 fn darkened(own_color: vec3f, changed: vec3f, shadowed: vec3f) -> vec3f {
   let left = smallest(changed / max(shadowed, vec3f(DARKEST_USABLE)));
-  return mix(max(changed, min(own_color, shadowed)), changed, smoothstep(DARK_ALL, DARK_NONE, left));
+  let kept = max(changed, min(own_color, shadowed));
+  return kept + smoothstep(DARK_ALL, DARK_NONE, left) * (changed - kept);
 }

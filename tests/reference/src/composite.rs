@@ -107,10 +107,10 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
     let object = unknown * (1.0 - shadow_likeness(pooled));
     let made = lit * (after + residual).max(DVec3::ZERO) + new_image;
     let own = frame - old_image;
-    let kept = own + lit * (after - before) + new_image;
-    let kept = kept.lerp(frame, object);
-    let alone = darkened(own, own + lit * (after - before), lit * after) + new_image;
-    let alone = alone.lerp(frame, object);
+    let changes = lit * (after - before) + new_image - old_image;
+    let kept = frame + (1.0 - object) * changes;
+    let dark = darkened(own, own + lit * (after - before), lit * after) - own;
+    let alone = frame + (1.0 - object) * (dark + new_image - old_image);
     let near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, change);
     let keep = seen * near.max(unknown);
 
@@ -146,7 +146,7 @@ pub fn inside_border(region: &Region, texel: UVec2) -> f64 {
 fn darkened(own: DVec3, changed: DVec3, shadowed: DVec3) -> DVec3 {
     let left = changed / shadowed.max(DVec3::splat(DARKEST_USABLE));
     let kept = changed.max(own.min(shadowed));
-    kept.lerp(changed, smoothstep(DARK[0], DARK[1], left.min_element()))
+    kept + smoothstep(DARK[0], DARK[1], left.min_element()) * (changed - kept)
 }
 
 /// Whether a residual may be a shadow: darker in all channels, and by similar amounts.
