@@ -76,7 +76,7 @@ pub struct Things {
     size_px: UVec2,
     marks: Arc<[Mark]>,
     /// Number of pixels with each mark except `None`.
-    counts: [usize; 4],
+    counts: [u32; 4],
     /// The camera that took the picture.
     camera: Camera,
 }
@@ -87,7 +87,10 @@ impl Things {
     pub fn new(size_px: UVec2, marks: impl Into<Arc<[Mark]>>, camera: Camera) -> Option<Self> {
         let marks = marks.into();
         let n_pixels = u64::from(size_px.x) * u64::from(size_px.y);
-        let count = |kind: usize| marks.iter().filter(|mark| mark.kind() == Some(kind)).count();
+        let count = |kind: usize| {
+            let marks = marks.iter().filter(|mark| mark.kind() == Some(kind));
+            u32::try_from(marks.count()).unwrap_or(u32::MAX)
+        };
         let counts = [0, 1, 2, 3].map(count);
         (marks.len() as u64 == n_pixels).then_some(Self {
             size_px,
@@ -137,15 +140,15 @@ impl Things {
     #[must_use]
     pub fn count(&self, mark: Mark) -> usize {
         match mark.kind() {
-            None => self.marks.len() - self.counts.iter().sum::<usize>(),
-            Some(kind) => self.counts[kind],
+            None => self.marks.iter().filter(|mark| mark.kind().is_none()).count(),
+            Some(kind) => self.counts[kind] as usize,
         }
     }
 
     /// Number of pixels whose plate shows something that the picture does not.
     #[must_use]
     pub fn n_in_plate_alone(&self) -> usize {
-        self.counts[2] + self.counts[3]
+        (self.counts[2] + self.counts[3]) as usize
     }
 
     /// Whether any pixel's plate needs another light.
