@@ -118,6 +118,7 @@ fn a_thing_in_the_plate_alone_makes_the_plate_wrong() {
 }
 
 /// A picture with another light in a rectangle.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
 fn shaded(image: &Image, [first, end]: Rect, light: f32) -> Image {
     let mut image = image.clone();
     for y in first.y..end.y {

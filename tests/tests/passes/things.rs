@@ -17,7 +17,7 @@ fn things() -> Things {
     let codes = [0, THING, SHADED_PLATE, 0, BEFORE_TOY, WRONG_PLATE, HIDDEN_THING];
     Things {
         codes: Raster::from_fn(UVec2::new(97, 83), |at| {
-            let light = (at.element_sum() % 251 + 2) as u8;
+            let light = u8::try_from(at.element_sum() % 251 + 2).unwrap();
             let code = codes[at.element_sum() as usize / 6 * 11 % 7];
             [code, light, light / 2, 255 - light]
         }),
