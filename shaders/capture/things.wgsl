@@ -2,12 +2,14 @@
 //
 // A thing gives no information on the light of a receiver, nor on the toy that it hides. It stays
 // as photographed.
-// A wrong part of the plate is treated as not photographed.
+// A wrong part of the plate is treated as not photographed; a shadow that the plate alone has is
+// divided out, and a thing that the toy hides gets the light of its visible part.
 //
 // Reads: validity, marks of things, which belong to the picture in which they were found and are
 // transferred by the first receiver's plane.
 // Writes: the same mask, but r is 0 on a thing, and b is 1 if its pixel is clear of the toy; a is
-// THING or BEFORE_TOY, for which g is 0 as well. In the plate alpha alone: 0 in a wrong part.
+// THING or BEFORE_TOY, for which g is 0 as well. The plate's colour and alpha are multiplied: by 0
+// in a wrong part.
 // CPU reference: tests/reference/src/things.rs.
 
 //#import common/fullscreen
@@ -20,22 +22,35 @@ struct ThingsView {
 }
 
 @group(1) @binding(0) var<uniform> things: ThingsView;
-// Codes of marks.
+// Codes of marks, and light as a share of what is usual.
 @group(1) @binding(1) var codes: texture_2d<f32>;
 @group(1) @binding(2) var validity: texture_2d<f32>;
 
 const CODE_THING: u32 = 1u;
 const CODE_BEFORE_TOY: u32 = 2u;
 const CODE_WRONG_PLATE: u32 = 3u;
+const CODE_SHADED_PLATE: u32 = 4u;
+const CODE_HIDDEN_THING: u32 = 5u;
 // Distance from a thing before the toy up to which a pixel of the toy mixes with it.
 const MIXED_PX: f32 = 2.0;
+// Smallest light in a plate: that of code 1.
+const LEAST_LEFT: f32 = 0.00392;
+
+// The mark at a place: its code, and light; 0 outside their picture.
+fn mark_at(region_px: vec2f) -> vec4f {
+  let at = things.marks_px_from_region_px * vec3f(region_px, 1.0);
+  if at.z <= 0.0 { return vec4f(0.0); }
+  let texel = vec2i(floor(at.xy / at.z));
+  if any(texel < vec2i(0)) || any(texel >= vec2i(textureDimensions(codes))) { return vec4f(0.0); }
+  return textureLoad(codes, texel, 0);
+}
+
+fn code_of(mark: vec4f) -> u32 {
+  return u32(round(255.0 * mark.r));
+}
 
 fn code_at(region_px: vec2f) -> u32 {
-  let at = things.marks_px_from_region_px * vec3f(region_px, 1.0);
-  if at.z <= 0.0 { return 0u; }
-  let texel = vec2i(floor(at.xy / at.z));
-  if any(texel < vec2i(0)) || any(texel >= vec2i(textureDimensions(codes))) { return 0u; }
-  return u32(round(255.0 * textureLoad(codes, texel, 0).r));
+  return code_of(mark_at(region_px));
 }
 
 fn is_beside_thing_before_toy(region_px: vec2f) -> bool {
@@ -54,12 +69,17 @@ fn fs_mark(@builtin(position) position: vec4f) -> @location(0) vec4f {
   if code == CODE_BEFORE_TOY { return vec4f(0.0, 0.0, marks.r, BEFORE_TOY); }
   var of_toy = marks.g;
   if of_toy == 1.0 && is_beside_thing_before_toy(position.xy) { of_toy = 0.0; }
-  if code == CODE_THING { return vec4f(0.0, of_toy, marks.r, THING); }
+  if code == CODE_THING || code == CODE_HIDDEN_THING { return vec4f(0.0, of_toy, marks.r, THING); }
   return vec4f(marks.r, of_toy, marks.ba);
 }
 
+// Factors of the plate's colour and alpha.
 @fragment
-fn fs_forget_plate(@builtin(position) position: vec4f) -> @location(0) vec4f {
-  if code_at(position.xy) != CODE_WRONG_PLATE { discard; }
-  return vec4f(0.0);
+fn fs_correct_plate(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  let mark = mark_at(position.xy);
+  let code = code_of(mark);
+  if code == CODE_WRONG_PLATE { return vec4f(0.0); }
+  if code == CODE_SHADED_PLATE { return vec4f(1.0 / max(mark.gba, vec3f(LEAST_LEFT)), 1.0); }
+  if code == CODE_HIDDEN_THING { return vec4f(mark.gba, 1.0); }
+  return vec4f(1.0);
 }

@@ -23,6 +23,7 @@
 //#import common/made_grain
 //#import common/marks
 //#import common/reflection
+//#import common/unknown
 
 struct Drawing {
   // Whether the own residual of visible pixels is that of `detail` and not the frame's.
@@ -71,14 +72,6 @@ const KEEP_ALL: f32 = 0.02;
 const KEEP_NONE: f32 = 0.15;
 // Change of the model at which the pooled residual is halved.
 const RESIDUAL_HALF: f32 = 0.5;
-// Pooled residual, in plates, from which it may be an unknown thing or shadow, and from which it
-// certainly is: then the pixel stays as photographed.
-const OUTLIER_NONE: f32 = 0.15;
-const OUTLIER_ALL: f32 = 0.3;
-// Smallest over largest channel of a residual from which it may be a shadow, and below which it is
-// not.
-const SHADOW_EVENNESS: f32 = 0.4;
-const OBJECT_EVENNESS: f32 = 0.2;
 // Deviation from the model, in plates, up to which a pixel is not affected by the colour of a moved
 // toy beside it, and from which it is.
 const BLED_NONE: f32 = 0.03;
@@ -89,19 +82,6 @@ fn own_share(evident: vec4f, has_moved: bool, deviation: f32) -> f32 {
   if evident.r == 0.0 { return 0.0; }
   if !has_moved { return 1.0; }
   return 1.0 - smoothstep(BLED_NONE, BLED_ALL, deviation);
-}
-
-// Certainty that a pooled residual shows something unknown.
-fn outlier(pooled: vec3f) -> f32 {
-  return smoothstep(OUTLIER_NONE, OUTLIER_ALL, largest(abs(pooled)));
-}
-
-// Likelihood that a residual is a shadow: all channels are darker, by similar amounts.
-fn shadow_likeness(residual: vec3f) -> f32 {
-  let least = -largest(residual);
-  let most = largest(-residual);
-  if least <= 0.0 { return 0.0; }
-  return smoothstep(OBJECT_EVENNESS, SHADOW_EVENNESS, least / most);
 }
 
 // The model; 1 if the plate is clipped and no real shadow shows its true brightness.
@@ -148,10 +128,12 @@ fn receiver(
   if b.a == 0.0 { return f; }
   let lit = fit.gain.rgb * b.rgb;
   let point = receiver_point(at);
-  // A thing stays as photographed.
-  if is_thing(evident) && evident.b == 1.0 {
-    *change = vec4f(0.0);
-    return f;
+  // A thing stays as photographed; where the real toy hides it, the plate has its light.
+  if is_thing(evident) {
+    *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.b);
+    let color = mix(lit, f, evident.b);
+    if HAS_GRAIN { missing = missing_beside(color, evident.b, f, b, fit.gain.rgb); }
+    return color;
   }
   // Beyond the receivers only the real toy is removed.
   if !is_hit(point) {
@@ -188,7 +170,7 @@ fn receiver(
     // Ratios to a nearly black plate are noise.
     own = select(own, lit * (after + textureLoad(detail, texel, 0).rgb), b.rgb >= vec3f(DARKEST_USABLE));
   }
-  let kept = mix(own + shown, f, is_object);
+  let kept = mix(darkened(own_color, own, lit * after) + shown, f, is_object);
   let keep = seen * max(is_near, is_outlier);
   let inside = max(inside_border(at), 1.0 - seen);
   let is_withheld = evident.a < 1.0 && !is_thing(evident);

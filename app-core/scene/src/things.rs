@@ -19,6 +19,55 @@ pub enum Mark {
     BeforeToy,
     /// A receiver whose plate shows something else; it is treated as not photographed there.
     WrongPlate,
+    /// A receiver whose plate shows it in a shadow that the picture does not have.
+    ShadedPlate {
+        /// Light that remains in the plate, of 255, for each channel; 0 counts as 1.
+        left: [u8; 3],
+    },
+    /// A part of a thing that the toy hides. The plate shows it, in another light.
+    HiddenThing {
+        /// Light relative to the plate, of 255, for each channel.
+        light: [u8; 3],
+    },
+}
+
+impl Mark {
+    /// A receiver whose plate has this share of its light, for each channel.
+    #[must_use]
+    pub fn shaded_plate(left: [f32; 3]) -> Self {
+        Self::ShadedPlate {
+            left: left.map(code_of),
+        }
+    }
+
+    /// A thing that the toy hides, in this share of the plate's light, for each channel.
+    #[must_use]
+    pub fn hidden_thing(light: [f32; 3]) -> Self {
+        Self::HiddenThing {
+            light: light.map(code_of),
+        }
+    }
+
+    /// Index in the counts; `None` for no mark.
+    fn kind(self) -> Option<usize> {
+        match self {
+            Self::None => None,
+            Self::Thing | Self::HiddenThing { .. } => Some(0),
+            Self::BeforeToy => Some(1),
+            Self::WrongPlate => Some(2),
+            Self::ShadedPlate { .. } => Some(3),
+        }
+    }
+}
+
+/// Code of a share; 1 at least.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "clamped to the codes; 0 for NaN"
+)]
+fn code_of(share: f32) -> u8 {
+    (255.0 * share).round().clamp(1.0, 255.0) as u8
 }
 
 /// Marks on the pixels of a picture.
@@ -27,7 +76,7 @@ pub struct Things {
     size_px: UVec2,
     marks: Arc<[Mark]>,
     /// Number of pixels with each mark except `None`.
-    counts: [usize; 3],
+    counts: [u32; 4],
     /// The camera that took the picture.
     camera: Camera,
 }
@@ -38,8 +87,11 @@ impl Things {
     pub fn new(size_px: UVec2, marks: impl Into<Arc<[Mark]>>, camera: Camera) -> Option<Self> {
         let marks = marks.into();
         let n_pixels = u64::from(size_px.x) * u64::from(size_px.y);
-        let count = |mark: Mark| marks.iter().filter(|other| **other == mark).count();
-        let counts = [Mark::Thing, Mark::BeforeToy, Mark::WrongPlate].map(count);
+        let count = |kind: usize| {
+            let marks = marks.iter().filter(|mark| mark.kind() == Some(kind));
+            u32::try_from(marks.count()).unwrap_or(u32::MAX)
+        };
+        let counts = [0, 1, 2, 3].map(count);
         (marks.len() as u64 == n_pixels).then_some(Self {
             size_px,
             marks,
@@ -81,18 +133,28 @@ impl Things {
     /// Whether there is any mark.
     #[must_use]
     pub fn has_any(&self) -> bool {
-        self.counts != [0; 3]
+        self.counts != [0; 4]
     }
 
-    /// Number of pixels with a mark.
+    /// Number of pixels with a mark of this kind, in any light.
     #[must_use]
     pub fn count(&self, mark: Mark) -> usize {
-        let [thing, before_toy, wrong_plate] = self.counts;
-        match mark {
-            Mark::None => self.marks.len() - thing - before_toy - wrong_plate,
-            Mark::Thing => thing,
-            Mark::BeforeToy => before_toy,
-            Mark::WrongPlate => wrong_plate,
+        match mark.kind() {
+            None => self.marks.iter().filter(|mark| mark.kind().is_none()).count(),
+            Some(kind) => self.counts[kind] as usize,
         }
+    }
+
+    /// Number of pixels whose plate shows something that the picture does not.
+    #[must_use]
+    pub fn n_in_plate_alone(&self) -> usize {
+        (self.counts[2] + self.counts[3]) as usize
+    }
+
+    /// Whether any pixel's plate needs another light.
+    #[must_use]
+    pub fn has_light(&self) -> bool {
+        let is_hidden = |mark: &Mark| matches!(mark, Mark::HiddenThing { .. });
+        self.counts[3] > 0 || self.marks.iter().any(is_hidden)
     }
 }

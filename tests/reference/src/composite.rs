@@ -24,6 +24,10 @@ const SHADOW_EVENNESS: f64 = 0.4;
 /// The same ratio, up to which it counts as a thing of its own colour.
 const OBJECT_EVENNESS: f64 = 0.2;
 
+/// Remaining part of the receiver in the new shadow up to which a pixel is too dark, and from which
+/// it is not.
+const DARK: [f64; 2] = [0.1, 0.4];
+
 /// The toy's shown pose, and learned parameters.
 #[derive(Clone, Debug)]
 pub struct Shown {
@@ -102,13 +106,17 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
     let unknown = smoothstep(OUTLIER_NONE, OUTLIER_ALL, pooled.abs().max_element());
     let object = unknown * (1.0 - shadow_likeness(pooled));
     let made = lit * (after + residual).max(DVec3::ZERO) + new_image;
-    let kept = frame + (1.0 - object) * (lit * (after - before) + new_image - old_image);
+    let own = frame - old_image;
+    let changes = lit * (after - before) + new_image - old_image;
+    let kept = frame + (1.0 - object) * changes;
+    let dark = darkened(own, own + lit * (after - before), lit * after) - own;
+    let alone = frame + (1.0 - object) * (dark + new_image - old_image);
     let near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, change);
     let keep = seen * near.max(unknown);
 
     // Whatever hides the receiver must be removed even at the border.
     let inside = inside_border(region, texel).max(1.0 - seen);
-    let laid = frame.lerp(made.lerp(kept, keep), inside).max(DVec3::ZERO);
+    let laid = frame.lerp(made.lerp(alone, keep), inside).max(DVec3::ZERO);
     [laid, laid.lerp(kept, (1.0 - seen) * near).max(DVec3::ZERO)]
 }
 
@@ -131,6 +139,14 @@ pub fn inside_border(region: &Region, texel: UVec2) -> f64 {
         .zip(region.border_px)
         .filter(|(_, fade_px)| *fade_px > 0.0);
     inner_edges.map(|(px, fade_px)| px / fade_px).fold(1.0, f64::min)
+}
+
+/// A pixel's own colour after a change of the model. Where next to nothing of the receiver in the
+/// new shadow would remain, another shadow is there already.
+fn darkened(own: DVec3, changed: DVec3, shadowed: DVec3) -> DVec3 {
+    let left = changed / shadowed.max(DVec3::splat(DARKEST_USABLE));
+    let kept = changed.max(own.min(shadowed));
+    kept + smoothstep(DARK[0], DARK[1], left.min_element()) * (changed - kept)
 }
 
 /// Whether a residual may be a shadow: darker in all channels, and by similar amounts.

@@ -7,6 +7,7 @@ use app_core::alignment::Observer;
 use app_core::frame::FrameInput;
 use app_core::scene::{Image, Scene};
 use app_core::things::{Mark, Things};
+use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 use glam::UVec2;
 
 use super::bundled::SESSION;
@@ -114,6 +115,75 @@ fn a_thing_in_the_plate_alone_makes_the_plate_wrong() {
         is_found,
         "{of_it:.2} of it, {beyond:.2} beyond, {thing:.2} a thing"
     );
+}
+
+/// A picture with another light in a rectangle.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
+fn shaded(image: &Image, [first, end]: Rect, light: f32) -> Image {
+    let mut image = image.clone();
+    for y in first.y..end.y {
+        for x in first.x..end.x {
+            let at = 4 * (y * image.width_px + x) as usize;
+            for code in &mut image.rgba8[at..at + 3] {
+                let shown = light * linear_from_srgb(f32::from(*code) / 255.0);
+                *code = (255.0 * srgb_from_linear(shown)).round() as u8;
+            }
+        }
+    }
+    image
+}
+
+#[test]
+fn a_shadow_in_the_plate_alone_is_measured() {
+    let (scene, input) = &*SESSION;
+    let mut scene = Scene::clone(scene);
+    // Over the legs and all of the toy's shadow.
+    let rect = [UVec2::new(190, 205), UVec2::new(500, 330)];
+    scene.plates[0].image = Arc::new(shaded(&scene.plates[0].image, rect, 0.5));
+    let things = Observer::default()
+        .observed(&scene, input)
+        .unwrap()
+        .things
+        .unwrap();
+    let is_right = |mark: &Mark| match mark {
+        Mark::ShadedPlate { left } => left
+            .iter()
+            .all(|left| (f32::from(*left) / 255.0 - 0.5).abs() < 0.06),
+        _ => false,
+    };
+    // Real shadows have no such sharp edges: behind the legs they are interpolated.
+    let [first, end] = [rect[0] + 8, rect[1] - 8];
+    let width_px = things.size_px().x;
+    let pixels = (first.y..end.y).flat_map(|y| (first.x..end.x).map(move |x| (y * width_px + x) as usize));
+    let size = f64::from((end - first).element_product());
+    let right = pixels.filter(|at| is_right(&things.marks()[*at])).count() as f64 / size;
+    let others = [Mark::Thing, Mark::BeforeToy, Mark::WrongPlate].map(|mark| things.count(mark));
+    assert!(right > 0.9, "{right:.2} of it");
+    assert_eq!(others, [0; 3]);
+}
+
+#[test]
+fn the_shadow_of_a_thing_belongs_to_it() {
+    let (scene, input) = &*SESSION;
+    let (mut scene, input) = (Scene::clone(scene), FrameInput::clone(input));
+    // Half of it lies in the toy's shadow.
+    let of_thing = [UVec2::new(365, 262), UVec2::new(415, 320)];
+    let plate = shaded(&scene.plates[0].image, of_thing, 0.36);
+    let mut frame = Image::clone(input.image.rgba());
+    let [first, end] = of_thing;
+    for y in first.y..end.y {
+        let row = [first.x, end.x].map(|x| 4 * (y * frame.width_px + x) as usize);
+        frame.rgba8[row[0]..row[1]].copy_from_slice(&plate.rgba8[row[0]..row[1]]);
+    }
+    scene.plates[0].image = Arc::new(painted(&plate, IN_SHADOW));
+    let input = input.with_image(Arc::new(painted(&frame, IN_SHADOW)));
+    let things = Observer::default().observed(&scene, &input).unwrap().things;
+    let found = Found {
+        things,
+        rect: of_thing,
+    };
+    let of_it = found.part(Mark::Thing);
+    assert!(of_it > 0.85, "{of_it:.2} of it");
 }
 
 #[test]

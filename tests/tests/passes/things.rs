@@ -2,7 +2,9 @@
 
 use glam::{DMat3, DVec3, DVec4, UVec2};
 use reference::raster::Raster;
-use reference::things::{BEFORE_TOY, THING, Things, WRONG_PLATE, mark};
+use reference::things::{
+    BEFORE_TOY, HIDDEN_THING, SHADED_PLATE, THING, Things, WRONG_PLATE, mark, plate_factors,
+};
 
 use crate::alone::{Draw, check_faults, source};
 use crate::device::Device;
@@ -12,10 +14,12 @@ use crate::scrambled::{buffers, views};
 
 /// Blocks of each code, in a picture other than the region's.
 fn things() -> Things {
-    let codes = [0, THING, 0, BEFORE_TOY, WRONG_PLATE];
+    let codes = [0, THING, SHADED_PLATE, 0, BEFORE_TOY, WRONG_PLATE, HIDDEN_THING];
     Things {
         codes: Raster::from_fn(UVec2::new(97, 83), |at| {
-            codes[at.element_sum() as usize / 6 * 7 % 5]
+            let light = u8::try_from(at.element_sum() % 251 + 2).unwrap();
+            let code = codes[at.element_sum() as usize / 6 * 11 % 7];
+            [code, light, light / 2, 255 - light]
         }),
         // Not exact in binary, so that no position lies on the border of two pixels; behind its
         // camera on one side.
@@ -27,23 +31,29 @@ fn things() -> Things {
     }
 }
 
-/// Errors of the marks that `source` makes.
+/// Largest factor of a plate: light of code 1.
+const MOST: f64 = 255.0;
+
+/// Errors of the marks that `source` makes, and of the plate's factors, relative to the largest one.
 fn errors(source: &str) -> Errors {
     let (device, things) = (Device::shared(), things());
     let size = UVec2::new(123, 101);
     let validity = numbers(size, 3).map(|texel: DVec4| texel.map(f64::round));
     let columns = [0, 1, 2].map(|index| things.codes_px_from_region_px.as_mat3().col(index).extend(0.0));
-    let maps = [
-        device.map(&things.codes.map(|code| DVec4::splat(f64::from(code) / 255.0))),
-        device.map(&validity),
-    ];
+    let of_codes = |codes: [u8; 4]| DVec4::from_array(codes.map(|code| f64::from(code) / 255.0));
+    let maps = [device.map(&things.codes.map(of_codes)), device.map(&validity)];
     let view = device.uniform(&columns.map(|column| column.to_array()));
     let mut own = buffers(0, std::slice::from_ref(&view));
     own.extend(views(1, &maps));
-    let draw = Draw::of(source, "fs_mark", size);
-    let actual = device.draw(draw, [&[], &own]);
+    let marked = device.draw(Draw::of(source, "fs_mark", size), [&[], &own]);
     let expected = Raster::from_fn(size, |texel| mark(&things, &validity, texel));
-    Errors::between(pairs_of(&actual, &expected))
+    // The plate's part reads no validity.
+    own.truncate(2);
+    let factors = device.draw(Draw::of(source, "fs_correct_plate", size), [&[], &own]);
+    let expected_factors = Raster::from_fn(size, |texel| plate_factors(&things, texel) / MOST);
+    let factors = factors.map(|factor| factor / MOST);
+    let of_mask = pairs_of(&marked, &expected).into_iter();
+    Errors::between(of_mask.chain(pairs_of(&factors, &expected_factors)))
 }
 
 #[test]
@@ -59,6 +69,8 @@ fn a_fault_in_marking_things_is_found() {
         ("of_toy, marks.r, THING", "of_toy, marks.b, THING"),
         ("floor(at.xy / at.z)", "round(at.xy / at.z)"),
         ("of_toy = 0.0", "of_toy = 1.0"),
+        ("return vec4f(mark.gba, 1.0)", "return vec4f(1.0)"),
+        ("1.0 / max(mark.gba", "max(mark.gba"),
     ];
     check_faults("things", &faults, 1e-6, errors);
 }

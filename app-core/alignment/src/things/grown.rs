@@ -10,7 +10,7 @@ use glam::{DVec2, IVec2};
 
 use super::codes::{Codes, apart};
 use super::colors::Colors;
-use super::groups::{STEPS, groups};
+use super::groups::{STEPS, groups, place_of};
 use super::seeds::{Seed, Seeds};
 use crate::picture::{bilinear, index_in, places};
 
@@ -31,6 +31,10 @@ const AROUND_PX: i32 = 2;
 const LARGEST_HOLE: usize = 100;
 /// Maximum distance of growth.
 const FARTHEST: f32 = 40.0;
+
+/// Distance in pixels at which an added group touches a thing, and its distance from the receiver.
+const TOUCH_PX: i32 = 3;
+const ABSORBED: f32 = 10.0;
 
 /// Things of a level.
 pub(super) struct Grown {
@@ -72,6 +76,25 @@ impl Grown {
             n_seeds,
             is_like_place: like_place(seeds.size_px, plate, colors),
         })
+    }
+
+    /// Adds groups of pixels, each to a thing that it touches or is part of.
+    pub(super) fn absorb(&mut self, groups: &[Vec<usize>]) {
+        for group in groups {
+            let touched = group.iter().flat_map(|index| {
+                let at = place_of(*index, self.size_px);
+                let around = (-TOUCH_PX..=TOUCH_PX)
+                    .flat_map(move |y| (-TOUCH_PX..=TOUCH_PX).map(move |x| at + IVec2::new(x, y)));
+                around.filter_map(|at| self.of_pixel(at))
+            });
+            let Some(thing) = touched.last().and_then(|thing| u32::try_from(thing).ok()) else {
+                continue;
+            };
+            for index in group {
+                self.thing[*index] = self.thing[*index].or(Some(thing));
+                self.nearer[*index] = self.nearer[*index].max(ABSORBED);
+            }
+        }
     }
 
     /// Whether a place in pixels has the colours of the place below the things, such as a thing's

@@ -8,6 +8,7 @@
 //! that frame and plate both show in the toy's place is **before the toy**; a thing in the plate
 //! alone makes the plate wrong; and a thing in the frame alone matters if it hides the toy.
 
+mod cast;
 mod codes;
 mod colors;
 mod edges;
@@ -17,12 +18,15 @@ mod grown;
 mod measured;
 pub(crate) mod planes;
 mod seeds;
+mod shade;
 mod sides;
 mod simplex;
 
+use std::borrow::Cow;
+
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
-use crate::lights::Compared;
+use crate::lights::{Compared, Comparison};
 use crate::picture::{Color, Level, Mask, Pyramid, index_in, places};
 use crate::pose::Paint;
 use crate::raster::{Coverage, Rasterizer, project};
@@ -36,6 +40,7 @@ use groups::{groups, most_around, place_of};
 use grown::Grown;
 use planes::FoundPlane;
 use seeds::{Seed, Seeds};
+use shade::Light as Brightness;
 
 /// Maximum number of pixels of the level for the search: more take longer and find no more.
 const MOST_PIXELS: i32 = 150_000;
@@ -94,20 +99,16 @@ pub(crate) struct Sighting {
 /// Finds the things; `None` if there are none beside the toy, or none can be detected.
 pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
     let level = sight.level();
+    let toy = Toy::of(sight, level);
+    let (level, compared, in_plate) = sight.restored(level, &toy)?;
+    let level = &*level;
     let plate = Codes::of(level.plate.as_ref()?);
     let frame = Codes::of(&level.frame);
-    let compared = crate::lights::compare(
-        sight.lights,
-        (sight.shape, sight.receivers),
-        level,
-        sight.world_from_camera,
-    )?;
-    let toy = Toy::of(sight, level);
     let seeds = Seeds::found(&compared.pixels, toy.hidden(&frame, &plate), (&frame, &plate));
     let grown = Grown::from(&seeds, Seed::Thing, &plate);
     let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
     let in_frame = toy.in_frame(&seeds, &frame);
-    if grown.is_none() && wrong.is_none() && in_frame.is_none() {
+    if grown.is_none() && wrong.is_none() && in_frame.is_none() && in_plate.is_none() {
         return None;
     }
     let before = grown
@@ -124,6 +125,15 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
         }
         _ => Vec::new(),
     };
+    let grown = grown.map(|mut grown| {
+        let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, &plate);
+        grown.absorb(&shadows);
+        grown
+    });
+    let of_level = (&toy.coverage, level.frame.size_px);
+    let on_things = grown
+        .as_ref()
+        .map(|grown| Brightness::of_things(grown, &compared.pixels, of_level));
     let wrong = wrong.map(|wrong| wrong_plate(&wrong, &toy, level.frame.size_px, &compared.pixels));
     let on_planes = grown.as_ref().map_or(Vec::new(), |grown| {
         sight.on_planes((grown, &seeds), level, &before)
@@ -133,6 +143,8 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
         grown,
         before,
         wrong,
+        in_plate,
+        on_things,
         in_frame,
     };
     let (size_px, marks) = sight.marks(level, &found);
@@ -152,6 +164,10 @@ struct Found {
     on_planes: Vec<bool>,
     /// The wrong part of the plate.
     wrong: Option<Mask>,
+    /// The light in the plate, if a shadow lies on it that the frame does not show.
+    in_plate: Option<Brightness>,
+    /// The light on the parts of things that the toy hides.
+    on_things: Option<Brightness>,
     /// Things that the frame alone shows, such as a hand.
     in_frame: Option<InFrame>,
 }
@@ -171,16 +187,27 @@ impl Found {
         match thing {
             Some(_) if is_on_plane => Mark::None,
             Some((grown, thing)) if self.before[thing] && !grown.is_like_place(place) => Mark::BeforeToy,
-            Some((grown, thing)) if self.before[thing] || grown.n_seeds(thing) >= LEAST_ALONE => Mark::Thing,
-            _ if self
-                .wrong
-                .as_ref()
-                .is_some_and(|wrong| wrong.has(place.floor().as_ivec2())) =>
-            {
-                Mark::WrongPlate
+            Some((grown, thing)) if self.before[thing] || grown.n_seeds(thing) >= LEAST_ALONE => {
+                self.behind_toy_at(place).unwrap_or(Mark::Thing)
             }
-            _ => Mark::None,
+            _ => self.in_plate_at(place),
         }
+    }
+
+    /// The same for a part of a thing that the toy hides; `None` if it does not, or if the light
+    /// there is unknown.
+    fn behind_toy_at(&self, place: DVec2) -> Option<Mark> {
+        self.on_things.as_ref()?.at(place).map(Mark::hidden_thing)
+    }
+
+    /// The same for what the plate alone shows.
+    fn in_plate_at(&self, place: DVec2) -> Mark {
+        let wrong = self.wrong.as_ref();
+        if wrong.is_some_and(|wrong| wrong.has(place.floor().as_ivec2())) {
+            return Mark::WrongPlate;
+        }
+        let left = self.in_plate.as_ref().and_then(|light| light.missing_at(place));
+        left.map_or(Mark::None, Mark::shaded_plate)
     }
 
     /// The same for things in the frame alone.
@@ -237,6 +264,28 @@ fn filled(mask: &Mask, size_px: IVec2) -> Mask {
 impl Sight<'_> {
     fn level(&self) -> &Level {
         self.pyramid.largest_within(MOST_PIXELS)
+    }
+
+    fn compared(&self, level: &Level) -> Option<Comparison> {
+        let seen = (self.shape, self.receivers);
+        crate::lights::compare(self.lights, seen, level, self.world_from_camera)
+    }
+
+    /// The level and the comparison of its pixels, without the shadow that the plate alone may show;
+    /// and the light in that.
+    fn restored<'b>(
+        &self,
+        level: &'b Level,
+        toy: &Toy,
+    ) -> Option<(Cow<'b, Level>, Comparison, Option<Brightness>)> {
+        let compared = self.compared(level)?;
+        let pictures = (&Codes::of(&level.frame), &Codes::of(level.plate.as_ref()?));
+        let Some(light) = Brightness::of_plate(&compared.pixels, pictures, &toy.coverage) else {
+            return Some((Cow::Borrowed(level), compared, None));
+        };
+        let restored = light.restored(level);
+        let compared = self.compared(&restored).unwrap_or(compared);
+        Some((Cow::Owned(restored), compared, Some(light)))
     }
 
     /// For each pixel of a level, whether it is in a part of a thing with few seeds, but shows

@@ -18,6 +18,8 @@ const LEAST_CONDITIONING: f64 = 0.75;
 /// Share of the lights in the plate's radiance below which no real shadow is assumed: its edge
 /// would hardly be visible.
 const LEAST_DIRECT_FRACTION: f32 = 0.03;
+/// The same, if only one channel has a share.
+const CLEAR_DIRECT_FRACTION: f32 = 0.2;
 /// Darkest and brightest bounce: no paint reflects less than a hundredth of the light or more than
 /// 99 hundredths.
 const POSSIBLE_BOUNCE: [f32; 2] = [0.01, 0.99];
@@ -123,8 +125,7 @@ impl Core {
             let faint = Warning::FaintShadow { assumed: 1.0 - known };
             return Ok(stage.is_toy_in_picture().then_some(faint));
         }
-        let direct_fraction = total_direct_fraction(fit, model.region.plan.n_receivers);
-        if direct_fraction < LEAST_DIRECT_FRACTION {
+        if let Some(direct_fraction) = absent(total_direct_fractions(fit, model.region.plan.n_receivers)) {
             return Ok(Some(Warning::Mismatch(Mismatch::NoShadow { direct_fraction })));
         }
         let n_pixels = evidence.n_shadow_pixels();
@@ -194,14 +195,26 @@ fn bounce_at_limit(fit: &Fit, evidence: &Evidence) -> Option<Warning> {
     (is_black || is_white).then_some(Warning::BounceAtLimit { is_black })
 }
 
-/// Share of all lights in the plate's radiance, on the receiver and in the channel with the largest
+/// Share of all lights in the plate's radiance in each channel, on the receiver with the largest
 /// one.
-fn total_direct_fraction(fit: &Fit, n_receivers: u32) -> f32 {
-    let total = |lights: &[[f32; 4]], channel: usize| lights.iter().map(|light| light[channel]).sum();
-    let receivers = fit.receivers.iter().take(n_receivers as usize);
-    receivers
-        .flat_map(|receiver| [0, 1, 2].map(|channel| total(&receiver.direct_fraction, channel)))
-        .fold(0.0, f32::max)
+fn total_direct_fractions(fit: &Fit, n_receivers: u32) -> [f32; 3] {
+    let receivers = || fit.receivers.iter().take(n_receivers as usize);
+    [0, 1, 2].map(|channel| {
+        let total = |lights: &[[f32; 4]]| lights.iter().map(|light| light[channel]).sum();
+        receivers()
+            .map(|receiver| total(&receiver.direct_fraction))
+            .fold(0.0, f32::max)
+    })
+}
+
+/// The largest of the lights' shares, if they cast no visible shadow. A shadow in one channel alone
+/// is that of a coloured light only if it is a clear one.
+fn absent(mut fractions: [f32; 3]) -> Option<f32> {
+    fractions.sort_unstable_by(f32::total_cmp);
+    let [_, second, most] = fractions;
+    let is_absent =
+        most < LEAST_DIRECT_FRACTION || (second < LEAST_DIRECT_FRACTION && most < CLEAR_DIRECT_FRACTION);
+    is_absent.then_some(most)
 }
 
 /// The first thing missing in the pictures that explains the others.

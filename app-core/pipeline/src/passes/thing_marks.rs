@@ -13,6 +13,8 @@ use crate::gpu::{Buffer, Gpu, Mat3Columns, Resource, Texture, shared_struct};
 pub(crate) const CODE_THING: u32 = 1;
 pub(crate) const CODE_BEFORE_TOY: u32 = 2;
 pub(crate) const CODE_WRONG_PLATE: u32 = 3;
+pub(crate) const CODE_SHADED_PLATE: u32 = 4;
+pub(crate) const CODE_HIDDEN_THING: u32 = 5;
 
 shared_struct! {
     /// Positions of the marks' pixels in the region.
@@ -24,23 +26,28 @@ shared_struct! {
 /// Objects on the device.
 pub(crate) struct Things {
     given: GivenThings,
+    is_plate_wrong: bool,
     codes: Texture,
     view: Buffer,
 }
 
 impl Things {
     pub(crate) fn new(gpu: &Gpu, given: &GivenThings) -> Self {
-        let codes = Texture::plane(gpu, "things", given.size_px(), TextureFormat::R8Unorm);
-        let code = |mark: &Mark| match mark {
-            Mark::None => 0,
-            Mark::Thing => CODE_THING,
-            Mark::BeforeToy => CODE_BEFORE_TOY,
-            Mark::WrongPlate => CODE_WRONG_PLATE,
+        // The light is needed for some marks alone.
+        let (format, n_channels) = if given.has_light() {
+            (TextureFormat::Rgba8Unorm, 4)
+        } else {
+            (TextureFormat::R8Unorm, 1)
         };
-        #[allow(clippy::cast_possible_truncation, reason = "codes below 4")]
-        let texels: Vec<u8> = given.marks().iter().map(|mark| code(mark) as u8).collect();
+        let codes = Texture::plane(gpu, "things", given.size_px(), format);
+        let texels: Vec<u8> = given
+            .marks()
+            .iter()
+            .flat_map(|mark| texel(*mark).into_iter().take(n_channels))
+            .collect();
         codes.write(gpu, &texels);
         Self {
+            is_plate_wrong: given.has_light() || given.count(Mark::WrongPlate) > 0,
             given: given.clone(),
             codes,
             view: gpu.uniform("things view", &ThingsView::zeroed()),
@@ -52,9 +59,9 @@ impl Things {
         &self.given
     }
 
-    /// Whether a part of the plate is wrong.
+    /// Whether a part of the plate is wrong, or in another light than it should be.
     pub(crate) fn is_plate_wrong(&self) -> bool {
-        self.given.count(Mark::WrongPlate) > 0
+        self.is_plate_wrong
     }
 
     /// Adapts to a camera's view and a region of it. The objects are assumed to lie in the plane of
@@ -80,4 +87,18 @@ impl Things {
     pub(crate) fn resources(&self) -> [Resource<'_>; 2] {
         [(&self.view).into(), (&self.codes.view).into()]
     }
+}
+
+/// A mark's code and light.
+#[allow(clippy::cast_possible_truncation, reason = "codes below 6")]
+fn texel(mark: Mark) -> [u8; 4] {
+    let (code, [red, green, blue]) = match mark {
+        Mark::None => (0, [0; 3]),
+        Mark::Thing => (CODE_THING, [0; 3]),
+        Mark::BeforeToy => (CODE_BEFORE_TOY, [0; 3]),
+        Mark::WrongPlate => (CODE_WRONG_PLATE, [0; 3]),
+        Mark::ShadedPlate { left } => (CODE_SHADED_PLATE, left),
+        Mark::HiddenThing { light } => (CODE_HIDDEN_THING, light),
+    };
+    [code as u8, red, green, blue]
 }

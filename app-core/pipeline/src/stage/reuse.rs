@@ -364,9 +364,11 @@ impl Stage {
             (Mark::WrongPlate, Thing::InPlateAlone),
         ];
         let count = move |mark| things.map_or(0, |things| things.given().count(mark));
+        let n_in_plate = things.map_or(0, |things| things.given().n_in_plate_alone());
         // A thing before the toy mostly comes with a shadow.
         let is_reported = move |mark: Mark| match mark {
             Mark::Thing => count(mark) > count(Mark::BeforeToy),
+            Mark::WrongPlate => n_in_plate > 0,
             _ => count(mark) > 0,
         };
         let reported = reported.into_iter().filter(move |(mark, _)| is_reported(*mark));

@@ -99,3 +99,42 @@ fn a_wrong_plate_is_estimated() {
         assert_eq!(texel[3] < 1.0, is_in(at), "{at}");
     }
 }
+
+#[test]
+fn a_plate_gets_its_light() {
+    let (scene, input) = staged();
+    let mut core = core();
+    core.set_scene(scene, Preset::Balanced).unwrap();
+    let left = [51, 102, 204];
+    // All of the light as well, so that both plates have the same format.
+    let maps = [[255; 3], left].map(|light| {
+        let marked = [
+            (Mark::ShadedPlate { left: light }, IN_SHADOW),
+            (Mark::HiddenThing { light }, OVER_TOY),
+        ];
+        let report = core.frame(&with(&input, &marked)).unwrap();
+        assert!(report.warnings.contains(&Warning::Thing(Thing::InPlateAlone)));
+        core.read_map(Map::Plate).unwrap().unwrap()
+    });
+    let origin_px = core.plan().unwrap().region.origin_px;
+    let is_in = |at: UVec2, [first, end]: Rect| at.cmpge(first).all() && at.cmplt(end).all();
+    for (index, (before, after)) in (0..).zip(maps[0].texels.iter().zip(&maps[1].texels)) {
+        let at = origin_px + UVec2::new(index % maps[0].width, index / maps[0].width);
+        for channel in 0..3 {
+            let light = f32::from(left[channel]) / 255.0;
+            let factor = match [IN_SHADOW, OVER_TOY].map(|rect| is_in(at, rect)) {
+                [true, _] => light.recip(),
+                [_, true] => light,
+                _ => 1.0,
+            };
+            let expected = factor * before[channel];
+            let error = (after[channel] - expected).abs();
+            assert!(
+                error < 2e-3 * expected.max(0.5),
+                "{at}: {} for {expected}",
+                after[channel]
+            );
+        }
+        assert_eq!(after[3], 1.0, "{at}");
+    }
+}

@@ -204,7 +204,7 @@ impl CapturePath<'_> {
         let target = sharp.unwrap_or_else(|| self.read_plate());
         self.plate.encode(recorder, &inputs, target);
         if let Some(things) = self.pictures.things.filter(|things| things.is_plate_wrong()) {
-            self.passes.things.forget_plate(recorder, things, &target.view);
+            self.passes.things.correct_plate(recorder, things, &target.view);
         }
         self.soften(recorder);
     }

@@ -1,5 +1,9 @@
 //! `things`: objects beside the toy, in the validity mask and in the plate.
 
+use wgpu::{
+    BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites, TextureFormat,
+};
+
 use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::context::Gpu;
 use crate::gpu::pipeline::{Draw, DrawSpec};
@@ -9,12 +13,14 @@ use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::validity;
 use crate::model::plan::Plan;
 use crate::passes::plate::FINE_FORMAT;
-use crate::passes::thing_marks::{CODE_BEFORE_TOY, CODE_THING, CODE_WRONG_PLATE, Things, ThingsView};
+use crate::passes::thing_marks::{
+    CODE_BEFORE_TOY, CODE_HIDDEN_THING, CODE_SHADED_PLATE, CODE_THING, CODE_WRONG_PLATE, Things, ThingsView,
+};
 
 pub(crate) const SHADER: Shader = shader!(
     "capture/things",
     structs: [ThingsView],
-    constants: [CODE_THING, CODE_BEFORE_TOY, CODE_WRONG_PLATE]
+    constants: [CODE_THING, CODE_BEFORE_TOY, CODE_WRONG_PLATE, CODE_SHADED_PLATE, CODE_HIDDEN_THING]
 );
 const SLOTS: &[Slot] = &[Slot::uniform::<ThingsView>(), Slot::Texture];
 /// The same, and the mask that is marked.
@@ -27,7 +33,7 @@ pub(crate) fn is_needed(plan: &Plan) -> bool {
 
 pub(crate) struct Pass {
     mark: Draw,
-    forget_plate: Draw,
+    correct_plate: Draw,
 }
 
 /// Targets of the region's size, if needed.
@@ -53,7 +59,15 @@ impl Pass {
         };
         Self {
             mark: draw("fs_mark", MASK_SLOTS, validity::FORMAT),
-            forget_plate: draw("fs_forget_plate", SLOTS, FINE_FORMAT),
+            correct_plate: gpu.draw(&DrawSpec {
+                targets: vec![multiplied(FINE_FORMAT)],
+                ..DrawSpec::fullscreen(
+                    &SHADER,
+                    "fs_correct_plate",
+                    [&[][..], SLOTS, &[], &[]],
+                    &[FINE_FORMAT],
+                )
+            }),
         }
     }
 
@@ -72,15 +86,33 @@ impl Pass {
         recorder.fullscreen(&self.mark, &groups, &[&marks.view]);
     }
 
-    /// Treats the plate as not photographed where it is wrong.
-    pub(crate) fn forget_plate(
+    /// Treats the plate as not photographed where it is wrong, and gives it the right light where
+    /// that alone is wrong.
+    pub(crate) fn correct_plate(
         &self,
         recorder: &mut Recorder<'_>,
         things: &Things,
         photographed: &TextureView,
     ) {
-        let draw = &self.forget_plate;
+        let draw = &self.correct_plate;
         let groups = [recorder.bind(draw, GROUP_PASS, &things.resources())];
         recorder.fullscreen_onto(draw, &groups, &[Some(loaded(photographed))]);
+    }
+}
+
+/// A target that is multiplied by the drawn values.
+fn multiplied(format: TextureFormat) -> ColorTargetState {
+    let product = BlendComponent {
+        src_factor: BlendFactor::Dst,
+        dst_factor: BlendFactor::Zero,
+        operation: BlendOperation::Add,
+    };
+    ColorTargetState {
+        format,
+        blend: Some(BlendState {
+            color: product,
+            alpha: product,
+        }),
+        write_mask: ColorWrites::ALL,
     }
 }

@@ -1,0 +1,107 @@
+//! Shadows of things: beside a thing, the place's own colours in the light that a shadow leaves.
+//!
+//! No further shadow of the toy falls there, and the frame keeps them. A group of such pixels counts
+//! if it touches a thing, and if some of them did not get darker in the toy's shadow.
+
+use glam::IVec2;
+
+use super::codes::Codes;
+use super::colors::Colors;
+use super::groups::{groups, place_of};
+use super::grown::Grown;
+use super::seeds::{Seed, Seeds};
+use crate::lights::Compared;
+use crate::median::median;
+use crate::picture::{Color, Mask, index_in, places};
+use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
+
+/// Share of the light that the darkest part of the toy's shadow loses at least, part of it that
+/// counts as that, and the number of such pixels.
+const LEAST_TAKEN: f32 = 0.3;
+const DARKEST: f32 = 0.93;
+const LEAST_PIXELS: usize = 30;
+/// Log likelihood ratio of shaded colours against those of the place, as a mean over a square of
+/// this radius in pixels.
+const SHADED: f32 = 1.5;
+const MEAN_PX: i32 = 2;
+/// Distance in pixels from a thing.
+const BESIDE_PX: i32 = 3;
+/// Minimum number of pixels of a group that stay as bright as in the plate.
+const LEAST_UNCHANGED: usize = 8;
+
+/// The shadows of things in a level's plate.
+pub(super) fn shadows_of(
+    things: &Grown,
+    seeds: &Seeds,
+    compared: &[Compared],
+    plate: &Codes,
+) -> Vec<Vec<usize>> {
+    let Some(left) = darkest(compared) else {
+        return Vec::new();
+    };
+    let of_place = seeds.of(Seed::Receiver);
+    let place = || of_place.iter().map(|index| plate.pixels[*index]);
+    let colors = Colors::of(place().map(|color| shaded(color, &left)), place());
+    let likelier = mean(plate, &colors);
+    let mut is_lit = vec![false; plate.pixels.len()];
+    for pixel in compared.iter().filter(|pixel| pixel.taken() > 0.5 * LEAST_TAKEN) {
+        if let Some(index) = index_in(plate.size_px, pixel.at) {
+            is_lit[index] = seeds.get(pixel.at) == Seed::Receiver;
+        }
+    }
+    let mut beside = Mask::new(plate.size_px);
+    for at in places(plate.size_px).filter(|at| things.of_pixel(*at).is_some()) {
+        beside.mark(at);
+    }
+    let beside = beside.grown(BESIDE_PX);
+    let is_shadow = |group: &Vec<usize>| {
+        let is_unchanged = |index: &&usize| seeds.seeds[**index] == Seed::Thing;
+        group
+            .iter()
+            .any(|index| beside.has(place_of(*index, plate.size_px)))
+            && group.iter().filter(is_unchanged).count() >= LEAST_UNCHANGED
+    };
+    let mut found = groups(plate.size_px, |index| likelier[index] > SHADED && !is_lit[index]);
+    found.retain(is_shadow);
+    found
+}
+
+/// The light that the darkest part of the toy's shadow has.
+fn darkest(compared: &[Compared]) -> Option<Color> {
+    let most = compared.iter().map(Compared::taken).fold(0.0, f32::max);
+    let darkest: Vec<Color> = compared
+        .iter()
+        .filter(|pixel| pixel.taken() > DARKEST * most)
+        .map(|pixel| pixel.model)
+        .collect();
+    if most < LEAST_TAKEN || darkest.len() < LEAST_PIXELS {
+        return None;
+    }
+    let of = |channel: usize| median(darkest.iter().map(|model| model[channel]), f32::total_cmp);
+    Some([of(0)?, of(1)?, of(2)?])
+}
+
+fn shaded(color: Color, left: &Color) -> Color {
+    [0, 1, 2].map(|channel| {
+        let light = linear_from_srgb(color[channel] / 255.0) * left[channel];
+        255.0 * srgb_from_linear(light.clamp(0.0, 1.0))
+    })
+}
+
+/// Mean log likelihood ratios around each pixel.
+fn mean(plate: &Codes, colors: &Colors) -> Vec<f32> {
+    let own: Vec<f32> = plate
+        .pixels
+        .iter()
+        .map(|color| colors.likelier(*color).unwrap_or(0.0))
+        .collect();
+    let along = |values: &[f32], axis: IVec2| -> Vec<f32> {
+        let mean = |at: IVec2| {
+            let taps = (-MEAN_PX..=MEAN_PX).filter_map(|step| index_in(plate.size_px, at + step * axis));
+            let (sum, n) = taps.fold((0.0, 0.0), |(sum, n), index| (sum + values[index], n + 1.0));
+            sum / n
+        };
+        places(plate.size_px).map(mean).collect()
+    };
+    along(&along(&own, IVec2::X), IVec2::Y)
+}
