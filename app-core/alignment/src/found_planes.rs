@@ -28,15 +28,18 @@ pub(super) struct FoundPlanes {
 impl FoundPlanes {
     /// Whether a search is due.
     pub(super) fn are_wanted(&self) -> bool {
-        self.found.is_empty() && self.n_searches < MOST_SEARCHES
+        // The sides of a listed top are known without a thing's own plane.
+        let is_found = self.report.iter().any(|plane| !plane.is_upright());
+        !is_found && self.n_searches < MOST_SEARCHES
     }
 
-    /// Stores the result of a search in a view that shows things; whether it found any.
+    /// Adds the result of a search in a view that shows things; whether it found any.
     pub(super) fn take(&mut self, planes: Vec<FoundReceiver>) -> bool {
         self.n_searches += 1;
-        self.report = planes.iter().map(|found| found.report).collect();
-        self.found = planes;
-        !self.found.is_empty()
+        let is_any = !planes.is_empty();
+        self.report.extend(planes.iter().map(|found| found.report));
+        self.found.extend(planes);
+        is_any
     }
 
     /// Adds the planes to a scene, each once.

@@ -6,6 +6,7 @@
 //! and those that match it are refined and distinguished by their colours, as
 //! [`find_toy`](crate::find_toy) does without a table.
 
+use std::cmp::Reverse;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -75,14 +76,17 @@ impl TableChange {
         let n_least = LEAST_SHARE * f64::from(size_px.x * size_px.y);
         let mut regions = changed_regions(&tiny);
         regions.retain(|region| region.len() as f64 >= n_least);
-        let is_any = !regions.is_empty();
+        let n_all = regions.len();
         let is_at_border = |at: &IVec2| at.cmpeq(IVec2::ZERO).any() || at.cmpeq(size_px - 1).any();
         regions.retain(|region| !region.iter().any(is_at_border));
-        let largest = regions.into_iter().max_by_key(Vec::len);
-        let object = largest.and_then(|region| object(&region, scene, (input, size_px)));
-        Ok(match object {
+        let are_at_border = n_all > 0 && regions.is_empty();
+        regions.sort_by_key(|region| Reverse(region.len()));
+        let mut objects = regions
+            .iter()
+            .filter_map(|region| object(region, scene, (input, size_px)));
+        Ok(match objects.next() {
             Some(object) => Self::Object(object),
-            None if is_any => Self::AtBorder,
+            None if are_at_border => Self::AtBorder,
             None => Self::None,
         })
     }

@@ -111,14 +111,17 @@ impl Grain {
             ),
             channels: narrowed(common, 1.0),
         };
-        let light = median(classes.iter().map(|class| class.light));
-        grain.is_seen(light).then_some(grain)
+        let typical = |light: fn(&Statistics) -> f64| median(classes.iter().map(light));
+        grain
+            .is_seen(typical(|class| class.light), typical(|class| class.plate_light))
+            .then_some(grain)
     }
 
-    /// Whether the picture is noisy at this light.
-    fn is_seen(&self, light: f64) -> bool {
-        let per_code = light_per_code(light);
-        is_noisy([self.frame, self.plate].map(|noise| noise.variance(light) / per_code.powi(2)))
+    /// Whether the picture is noisy at a light, which is another one in the plate if that has
+    /// another exposure.
+    fn is_seen(&self, light: f64, plate_light: f64) -> bool {
+        let plate = self.plate.variance(plate_light) * (light / plate_light).powi(2);
+        is_noisy([self.frame.variance(light), plate].map(|variance| variance / light_per_code(light).powi(2)))
     }
 
     /// Checks the values.

@@ -190,7 +190,7 @@ impl Session for Capture {
     }
 
     fn check_pictures(&self, frames: Range<usize>) -> Result<(), SessionError> {
-        let mut known = HashSet::new();
+        let (mut known, mut known_depths) = (HashSet::new(), HashSet::new());
         for index in frames {
             let frame = self.frame_at(index)?;
             let truth = frame.truth.as_ref();
@@ -208,7 +208,7 @@ impl Session for Capture {
             if let Some(path) = frame
                 .depth
                 .as_ref()
-                .filter(|path| known.insert((path.as_str(), false)))
+                .filter(|path| known_depths.insert(path.as_str()))
             {
                 self.store
                     .read(path, &frame_field(index, ".depth"), check_depth)?;

@@ -14,6 +14,9 @@ use app_scene::sharpness::{Sharpness, Spread};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 
+/// Most points of a depth picture that are used: more add nothing to a plane.
+const MOST_DEPTHS: usize = 50_000;
+
 /// Things beside the toy.
 #[derive(Default)]
 pub(crate) struct Sighted {
@@ -103,7 +106,9 @@ impl Photograph {
         let points: Vec<DVec3> = match &input.depth {
             Some(depth) if wants_planes => {
                 let size_px = UVec2::from_array(input.image.size_px());
-                depth.points(input.camera.intrinsics, size_px).collect()
+                let every = depth.n_pixels().div_ceil(MOST_DEPTHS).max(1);
+                let points = depth.points(input.camera.intrinsics, size_px);
+                points.step_by(every).collect()
             }
             _ => Vec::new(),
         };

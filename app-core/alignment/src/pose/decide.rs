@@ -320,7 +320,7 @@ impl Search<'_> {
         }
     }
 
-    /// The pieces measured by the codes beside them; `None` if there are too few.
+    /// The pieces measured by codes or by area; `None` if there are too few.
     fn edges(&mut self, placement: &Placement, seen: Seen<'_>) -> Option<Vec<Measured>> {
         if seen.accuracy == Accuracy::Area {
             return self

@@ -43,10 +43,10 @@ pub(super) fn shadows_of(
     let place = || of_place.iter().map(|index| plate.pixels[*index]);
     let colors = Colors::of(place().map(|color| shaded(color, &left)), place());
     let likelier = mean(plate, &colors);
-    let mut is_lit = vec![false; plate.pixels.len()];
+    let mut is_toy_shadow = vec![false; plate.pixels.len()];
     for pixel in compared.iter().filter(|pixel| pixel.taken() > 0.5 * LEAST_TAKEN) {
         if let Some(index) = index_in(plate.size_px, pixel.at) {
-            is_lit[index] = seeds.get(pixel.at) == Seed::Receiver;
+            is_toy_shadow[index] = seeds.get(pixel.at) == Seed::Receiver;
         }
     }
     let mut beside = Mask::new(plate.size_px);
@@ -61,7 +61,7 @@ pub(super) fn shadows_of(
             .any(|index| beside.has(place_of(*index, plate.size_px)))
             && group.iter().filter(is_unchanged).count() >= LEAST_UNCHANGED
     };
-    let mut found = groups(plate.size_px, |index| likelier[index] > SHADED && !is_lit[index]);
+    let mut found = groups(plate.size_px, |index| likelier[index] > SHADED && !is_toy_shadow[index]);
     found.retain(is_shadow);
     found
 }

@@ -19,6 +19,8 @@ const LEAST_PIXELS: usize = 100;
 /// If the lowest side of a tilted plane is at most this part as high as the highest one, the plane
 /// continues down to the receiver.
 const LOW: f64 = 0.4;
+/// Largest move of a side inward, over its distance from the middle.
+const MOST_INWARD: f64 = 0.8;
 
 /// A thing in a level, on a receiver.
 pub(super) struct Outline<'a> {
@@ -104,7 +106,7 @@ impl Extent {
                 half_m,
                 face_m,
             };
-            moved_m(&side, plane_from_camera, level)
+            moved_m(&side, plane_from_camera, level).max(-MOST_INWARD * out_m)
         };
         let along = |axis: DVec2, out_m: f64, half_m: f64| {
             [axis, -axis].map(|outward| moved_m(outward, out_m, half_m))

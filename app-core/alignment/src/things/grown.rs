@@ -4,7 +4,7 @@
 //! Source: Criminisi et al. 2008, geodesic segmentation, with detected seeds.
 
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, BinaryHeap};
 
 use glam::{DVec2, IVec2};
 
@@ -78,7 +78,7 @@ impl Grown {
         })
     }
 
-    /// Adds groups of pixels, each to a thing that it touches or is part of.
+    /// Adds groups of pixels, each to the thing that most of it touches or is part of.
     pub(super) fn absorb(&mut self, groups: &[Vec<usize>]) {
         for group in groups {
             let touched = group.iter().flat_map(|index| {
@@ -87,7 +87,10 @@ impl Grown {
                     .flat_map(move |y| (-TOUCH_PX..=TOUCH_PX).map(move |x| at + IVec2::new(x, y)));
                 around.filter_map(|at| self.of_pixel(at))
             });
-            let Some(thing) = touched.last().and_then(|thing| u32::try_from(thing).ok()) else {
+            let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
+            touched.for_each(|thing| *counts.entry(thing).or_default() += 1);
+            let most = counts.into_iter().max_by_key(|(_, n)| *n);
+            let Some(thing) = most.and_then(|(thing, _)| u32::try_from(thing).ok()) else {
                 continue;
             };
             for index in group {

@@ -30,9 +30,10 @@ const LEAST_CELLS: usize = 4;
 /// the thing's points that are on it.
 const MOST_OFF: f64 = 2.5;
 const LEAST_ON: f64 = 0.5;
-/// First heights, as parts of the thing's points below them, and first slopes with their directions.
+/// First heights, as parts of the thing's points below them, and first slopes with their directions,
+/// beside a level one.
 const PARTS: [f64; 4] = [0.3, 0.5, 0.7, 0.9];
-const SLOPES: [f64; 3] = [0.0, 0.12, 0.3];
+const SLOPES: [f64; 2] = [0.12, 0.3];
 const N_SIDES: usize = 8;
 const N_ROUNDS: usize = 8;
 /// Least deviation of a height in metres, and of a slope.
@@ -138,14 +139,12 @@ fn fitted(points: &[DVec3], (noise_m, shared_m): (f64, f64)) -> Option<Measured>
     let height_m = |part: f64| heights_m[(part * (heights_m.len() - 1) as f64) as usize];
     let sides =
         (0..N_SIDES).map(|side| DVec2::from_angle(std::f64::consts::TAU * side as f64 / N_SIDES as f64));
-    let sides: Vec<DVec2> = sides.collect();
+    let sloped = sides.flat_map(|side| SLOPES.map(|slope| slope * side));
+    let slopes: Vec<DVec2> = std::iter::once(DVec2::ZERO).chain(sloped).collect();
     let most_m = MOST_OFF * noise_m;
-    let starts = PARTS.iter().flat_map(|part| {
-        let sides = &sides;
-        SLOPES
-            .iter()
-            .flat_map(move |slope| sides.iter().map(move |side| (*part, *slope * *side)))
-    });
+    let starts = PARTS
+        .iter()
+        .flat_map(|part| slopes.iter().map(move |slope| (*part, *slope)));
     let ends = starts.filter_map(|(part, slope)| {
         let mut plane = DVec3::new(height_m(part), slope.x, slope.y);
         for _ in 0..N_ROUNDS {

@@ -40,7 +40,7 @@ use groups::{groups, most_around, place_of};
 use grown::Grown;
 use planes::FoundPlane;
 use seeds::{Seed, Seeds};
-use shade::Light as Brightness;
+use shade::Brightness;
 
 /// Maximum number of pixels of the level for the search: more take longer and find no more.
 const MOST_PIXELS: i32 = 150_000;
@@ -185,7 +185,7 @@ impl Found {
                 .is_some_and(|index| self.on_planes.get(index).is_some_and(|is_on| *is_on))
         });
         match thing {
-            Some(_) if is_on_plane => Mark::None,
+            Some(_) if is_on_plane => self.in_plate_at(place),
             Some((grown, thing)) if self.before[thing] && !grown.is_like_place(place) => Mark::BeforeToy,
             Some((grown, thing)) if self.before[thing] || grown.n_seeds(thing) >= LEAST_ALONE => {
                 self.behind_toy_at(place).unwrap_or(Mark::Thing)

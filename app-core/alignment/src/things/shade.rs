@@ -26,11 +26,11 @@ const LEAST_PIXELS: usize = 60;
 /// Share of these whose plate must show the place in less light.
 const OF_SHADOW: f32 = 0.9;
 /// Largest part of the frame's texture that the plate lacks or adds, in energy, and the texture in
-/// codes that is needed to tell.
+/// codes that is needed to compare it.
 const OTHER_TEXTURE: f32 = 0.5;
 const TEXTURE_CODES: f32 = 2.0;
-/// Largest difference of the model around a pixel whose neighbours' differences tell those of the
-/// plate's light, within a radius.
+/// Largest difference of the model within a radius of a pixel if its neighbours' differences are those
+/// of the plate's light.
 const EVEN: f32 = 0.05;
 const EVEN_PX: i32 = 2;
 /// Smallest light, as a share of its usual amount, that is used, and the light from which on nothing
@@ -49,7 +49,7 @@ const N_ROUNDS: usize = 300;
 const RELAXATION: f32 = 1.9;
 
 /// Light at the pixels of a level, as a share of its usual amount.
-pub(super) struct Light {
+pub(super) struct Brightness {
     size_px: IVec2,
     /// Logarithms; unknown where it cannot be measured.
     light: Vec<Color>,
@@ -57,7 +57,7 @@ pub(super) struct Light {
     used: Mask,
 }
 
-impl Light {
+impl Brightness {
     /// The light that remains in the plate in a shadow that it alone shows; `None` if there is none.
     pub(super) fn of_plate(
         compared: &[Compared],
@@ -75,22 +75,22 @@ impl Light {
             .for_each(|index| used.mark(place_of(*index, size_px)));
         let mut used = used.grown(AROUND_PX);
         let measured = smoothed(&measured(compared, size_px), size_px);
-        let is_open = |pixel: &&Compared| {
+        let is_unmeasured = |pixel: &&Compared| {
             let index = index_in(size_px, pixel.at);
             pixel.taken() > OPEN || index.is_some_and(|index| measured[index][0].is_nan())
         };
-        let open: Vec<IVec2> = compared
+        let unmeasured: Vec<IVec2> = compared
             .iter()
-            .filter(is_open)
+            .filter(is_unmeasured)
             .map(|pixel| pixel.at)
             .chain(hidden(coverage, size_px))
             .collect();
-        open.iter().for_each(|at| used.mark(*at));
+        unmeasured.iter().for_each(|at| used.mark(*at));
         let mut light = measured.clone();
-        for index in open.iter().filter_map(|at| index_in(size_px, *at)) {
+        for index in unmeasured.iter().filter_map(|at| index_in(size_px, *at)) {
             light[index] = UNKNOWN;
         }
-        interpolate(&mut light, (&measured, size_px), &open);
+        interpolate(&mut light, (&measured, size_px), &unmeasured);
         Some(Self { size_px, light, used })
     }
 
@@ -109,10 +109,10 @@ impl Light {
             }
         }
         let mut light = smoothed(&own, size_px);
-        let open: Vec<IVec2> = hidden(coverage, size_px).filter(|at| is_thing(*at)).collect();
-        interpolate(&mut light, (&own, size_px), &open);
+        let unmeasured: Vec<IVec2> = hidden(coverage, size_px).filter(|at| is_thing(*at)).collect();
+        interpolate(&mut light, (&own, size_px), &unmeasured);
         let mut used = Mask::new(size_px);
-        open.iter().for_each(|at| used.mark(*at));
+        unmeasured.iter().for_each(|at| used.mark(*at));
         Self { size_px, light, used }
     }
 

@@ -23,9 +23,9 @@ impl ImportedDepth {
         let DynamicImage::ImageLuma16(mut depths) = decoded(bytes).ok_or_else(|| wrong(&self.image))? else {
             return Err(wrong(&self.image));
         };
-        let confidences = decoded(read(files, confidence)?)
-            .ok_or_else(|| wrong(confidence))?
-            .into_luma8();
+        let Some(DynamicImage::ImageLuma8(confidences)) = decoded(read(files, confidence)?) else {
+            return Err(wrong(confidence));
+        };
         if confidences.dimensions() != depths.dimensions() {
             return Err(wrong(confidence));
         }
