@@ -67,7 +67,7 @@
 //! The documents of `app-core/doc` explain the [architecture], the [spaces] and units, the [passes]
 //! and the terms of the [glossary]; [`session`] has the format of sessions, [`recording`] that of
 //! recordings. The programs in `app-core/examples` use a device of their own, a loop over poses,
-//! and a scene made of values alone.
+//! a scene made of values alone, and a device's compiler and self-test.
 #![forbid(unsafe_code)]
 
 pub use app_pipeline::{Core, CoreError, governor, ledger, preset, profile, wgpu};

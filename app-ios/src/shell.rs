@@ -201,6 +201,7 @@ impl Shell {
     /// Drops the app and everything that it contains.
     pub(crate) fn clear(&mut self) {
         self.session.pause();
+        self.session.recognise(None);
         self.session.lend_to(None);
         self.stage.clear();
         let _ = self.inbox.take();

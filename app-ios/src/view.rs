@@ -248,7 +248,11 @@ impl MetalView {
     /// Matches the surface with the view's size on the current screen, if the view is in front.
     fn fit(&self, shell: &mut Shell) -> Result<(), StageError> {
         match self.screen() {
-            Some(screen) if self.ivars().in_foreground.get() => shell.fit(&self.layer(), screen.size_px),
+            Some(screen) if self.ivars().in_foreground.get() => {
+                // VoiceOver's places are computed with it.
+                self.setContentScaleFactor(screen.pixels_per_point);
+                shell.fit(&self.layer(), screen.size_px)
+            }
             // The view is in the background or has no layout yet: layoutSubviews will bring a size.
             _ => Ok(()),
         }

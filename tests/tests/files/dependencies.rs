@@ -13,7 +13,9 @@ const TARGETS: [&str; 3] = [
     "aarch64-apple-ios",
     "aarch64-linux-android",
 ];
-/// Permissive licences: they require a notice and nothing else.
+/// Permissive licences: they require a notice and nothing else. Parts of AccessKit also carry the
+/// BSD-3-Clause of Chromium and Flutter, whose notice both phones' packages contain
+/// (`LICENSE-THIRD-PARTY`).
 const LICENCES: [&str; 5] = ["MIT", "Apache-2.0", "ISC", "Unicode-3.0", "Zlib"];
 /// Additional licences for the desktop programs: these require a notice from a distributor of
 /// binaries, too.

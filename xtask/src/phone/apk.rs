@@ -8,7 +8,7 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 
 use super::arcore::{Arcore, Unpacked, files_below, unzip};
-use super::ndk;
+use super::{NOTICES, ndk};
 use super::tools::{self, Tool};
 use super::zip::{self, Entry};
 use crate::command;
@@ -67,6 +67,8 @@ fn make_with(
     let sources = folder.join("sources");
     let mut entries = resources(tools, shell, folder, &sources, &manifest, arcore.as_ref())?;
     entries.push(entry("lib/arm64-v8a/libapp_android.so", library));
+    let notices = fs::read(shell.with_file_name(NOTICES))?;
+    entries.push(entry(&format!("assets/{NOTICES}"), notices));
     if let Some(arcore) = arcore {
         let program = arcore.program(&tools.framework, tools.d8.as_deref(), &sources)?;
         entries.push(entry("lib/arm64-v8a/libarcore_sdk_c.so", arcore.library));

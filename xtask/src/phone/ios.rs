@@ -15,7 +15,7 @@ use super::imports::{Imports, text_stub};
 use super::macho::{self, Executable};
 use super::tools::{self, Tool};
 use super::zip::{self, Entry};
-use super::{IOS, Profile};
+use super::{IOS, NOTICES, Profile};
 use crate::command;
 use crate::toolchain::Toolchain;
 
@@ -169,6 +169,7 @@ fn pack(shell: &Path, folder: &Path, program: Vec<u8>) -> Result<()> {
         entry(NAME, program),
         entry("Info.plist", properties.into_bytes()),
         entry("PkgInfo", b"APPL????".to_vec()),
+        entry(NOTICES, fs::read(shell.with_file_name(NOTICES))?),
         entry(
             "PrivacyInfo.xcprivacy",
             fs::read(shell.join("PrivacyInfo.xcprivacy"))?,

@@ -44,6 +44,9 @@ pub(crate) const ANDROID: Phone = Phone {
     target: "aarch64-linux-android",
 };
 
+/// Notices of other programs' licences, beside the shells; both packages contain it.
+const NOTICES: &str = "LICENSE-THIRD-PARTY";
+
 /// The action for a shell.
 pub(crate) enum Action {
     Check,

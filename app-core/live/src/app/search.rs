@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec2, DVec3, UVec2};
 
 use app_alignment::{NewObject, StandingPose, StandingSearch, TableChange};
 use app_scene::frame::FrameInput;
@@ -52,8 +52,36 @@ pub struct SearchJob {
 
 #[derive(Debug)]
 enum Part {
-    Look(Arc<Scene>, Box<FrameInput>),
+    Look(Box<Look>),
     Step(Box<StandingSearch>),
+}
+
+/// A look at the table.
+#[derive(Debug)]
+struct Look {
+    scene: Scene,
+    input: FrameInput,
+    /// The place of a thing that was searched before.
+    searched_at: Option<DVec3>,
+}
+
+impl Look {
+    /// Without a view of the searched place the table does not count as empty.
+    fn change(&self) -> TableChange {
+        let change = TableChange::of(&self.scene, &self.input).unwrap_or(TableChange::AtBorder);
+        match change {
+            TableChange::None if !self.searched_at.is_none_or(|at| self.sees(at)) => TableChange::AtBorder,
+            change => change,
+        }
+    }
+
+    fn sees(&self, at: DVec3) -> bool {
+        let camera = &self.input.camera;
+        let in_camera = camera.world_from_camera.inverse().transform_point3(at);
+        let size_px = UVec2::from_array(self.input.image.size_px()).as_dvec2();
+        let pixel = camera.intrinsics.pixel_of(in_camera);
+        pixel.is_some_and(|pixel| pixel.cmpgt(DVec2::ZERO).all() && pixel.cmplt(size_px).all())
+    }
 }
 
 impl SearchJob {
@@ -61,9 +89,7 @@ impl SearchJob {
     #[must_use]
     pub fn run(self) -> SearchedJob {
         let result = match self.part {
-            Part::Look(scene, input) => {
-                SearchResult::Looked(TableChange::of(&scene, &input).unwrap_or(TableChange::None))
-            }
+            Part::Look(look) => SearchResult::Looked(look.change()),
             Part::Step(mut search) => match search.step() {
                 Ok(()) => SearchResult::Stepped(search),
                 Err(_) => SearchResult::Refused,
@@ -226,7 +252,15 @@ impl Search {
             }
             let (scene, input) = frame()?;
             self.looked_s = 0.0;
-            Part::Look(Arc::new(scene), Box::new(input))
+            let searched_at = match self.stage {
+                Stage::Ended(Start::Noticed(before)) => Some(before.at),
+                _ => None,
+            };
+            Part::Look(Box::new(Look {
+                scene,
+                input,
+                searched_at,
+            }))
         } else if let Stage::Begin(start) = self.stage {
             let (scene, input) = frame()?;
             let search = StandingSearch::new(Arc::new(scene), input);

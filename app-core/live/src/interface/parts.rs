@@ -47,6 +47,9 @@ pub(super) fn slider(ui: &mut Ui, [value, most]: [f64; 2], (label, runs): (&str,
     ui.ctx().accesskit_node_builder(response.id, |node| {
         node.set_min_numeric_value(0.0);
         node.set_max_numeric_value(most);
+        if !runs {
+            node.set_value(format!("{value:.1}"));
+        }
         node.add_action(Action::Increment);
         node.add_action(Action::Decrement);
     });

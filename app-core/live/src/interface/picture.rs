@@ -20,7 +20,8 @@ pub(super) fn show(ui: &mut Ui, app: &App, screen: &Screen, wheel_steps: f64, ac
     let response = ui.interact(
         ui.ctx().content_rect(),
         egui::Id::unique("picture"),
-        Sense::click_and_drag(),
+        // A screen reader has nothing to read of it.
+        Sense::CLICK | Sense::DRAG,
     );
     let fingers = ui.ctx().multi_touch();
     if let Some(fingers) = fingers {

@@ -1,5 +1,6 @@
 //! Sheets over the picture: instructions, obstacles and notices.
 
+use egui::accesskit::Live;
 use egui::{Align2, Area, Id, Order, ProgressBar, Rect, RichText, ScrollArea, Ui, vec2};
 
 use super::parts::{lead, other, words};
@@ -232,7 +233,9 @@ pub(super) fn notice(ui: &Ui, app: &App) -> Option<Rect> {
         .show(ui.ctx(), |ui| {
             style::card().show(ui, |ui| {
                 ui.set_max_width(width - 32.0);
-                ui.label(text::of_notice(notice, app.language()));
+                let notice = ui.label(text::of_notice(notice, app.language()));
+                ui.ctx()
+                    .accesskit_node_builder(notice.id, |node| node.set_live(Live::Polite));
             });
         });
     Some(shown.response.rect)
