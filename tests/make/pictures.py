@@ -22,7 +22,7 @@ LLAMA = ROOT / "tests/sessions/llama"
 CROP, TOY = (112, 28, 546, 328), (0, 0, 256, 300)
 GAP_PX, LABEL_PX, JPEG_QUALITY = 4, 18, 86
 PRESETS = ("flat", "paper", "fast", "balanced", "best")
-SCREENS = ("welcome", "find_table", "take_plate", "place_toy", "play", "menu")
+SCREENS = ("welcome", "find_table", "take_plate", "put_toy", "asked", "play")
 # 640 pixels of width at a focal length of 576.
 FOCAL_35MM = "32.4"
 FILM_MS, FILM_COLORS, TOY_WEIGHT, KMEANS_ROUNDS = 80, 255, 6, 10
