@@ -8,9 +8,9 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 
 use super::arcore::{Arcore, Unpacked, files_below, unzip};
-use super::{NOTICES, ndk};
 use super::tools::{self, Tool};
 use super::zip::{self, Entry};
+use super::{NOTICES, ndk};
 use crate::command;
 
 /// Tools of a package in place of Android's own.

@@ -61,7 +61,9 @@ pub(super) fn shadows_of(
             .any(|index| beside.has(place_of(*index, plate.size_px)))
             && group.iter().filter(is_unchanged).count() >= LEAST_UNCHANGED
     };
-    let mut found = groups(plate.size_px, |index| likelier[index] > SHADED && !is_toy_shadow[index]);
+    let mut found = groups(plate.size_px, |index| {
+        likelier[index] > SHADED && !is_toy_shadow[index]
+    });
     found.retain(is_shadow);
     found
 }

@@ -258,8 +258,8 @@ pub enum PlatformCommand {
     FrameRate(u32),
     /// Open the graphics device again.
     ReopenDevice,
-    /// Announce the step that has begun to screen readers, in the words of
-    /// [`announced`](crate::interface::announced).
+    /// Announce to screen readers the step that has begun, or the question about the toy's place,
+    /// in the words of [`announced`](crate::interface::announced).
     Announce(Step),
     /// Give one short haptic pulse: something was found.
     Knock,

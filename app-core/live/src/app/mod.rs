@@ -189,7 +189,7 @@ impl App {
     /// Processes an event, and returns the resulting commands in their order.
     #[must_use]
     pub fn event(&mut self, event: ShellEvent) -> Vec<ShellCommand> {
-        let step = self.step;
+        let (step, question) = (self.step, self.question());
         let mut commands = Vec::new();
         match event {
             ShellEvent::Permission(permission) => self.permission(permission),
@@ -227,10 +227,17 @@ impl App {
         let job = self.follow_recording(wanted.captures.recording);
         let is_new_world = std::mem::take(&mut self.wants_new_world);
         commands.extend(self.commanded.follow(wanted, is_new_world, job));
-        if self.step != step {
+        let is_new_question = self.question().is_some() && self.question() != question;
+        if self.step != step || is_new_question {
             commands.push(PlatformCommand::Announce(self.step).into());
         }
         commands
+    }
+
+    /// What a person is asked about the place of the toy; `None` while nothing has to be answered.
+    fn question(&self) -> Option<Placing> {
+        let placing = (self.step == Step::PlaceToy).then(|| self.placing());
+        placing.filter(|placing| matches!(placing, Placing::Asked { is_searching: false } | Placing::ByHand))
     }
 
     /// The current step.

@@ -196,7 +196,7 @@ pub(super) fn of_question(question: PhoneQuestion) -> Words {
     }
 }
 
-/// Announcement for screen readers when a step begins.
+/// Announcement for screen readers of a step, or of the question about the toy's place.
 #[must_use]
 pub fn announced(app: &App) -> String {
     let said = of_step(app);

@@ -1,8 +1,8 @@
 //! The commands to the shell are consistent for every order of events.
 
 use app_core::app::{
-    AlignJob, AlignedJob, App, GraphicsState, Notice, Permission, PlateJob, PlatformCommand, SearchJob,
-    ShellCommand, ShellEvent, Show, Step, ToyRefusal, UserAction, WorkCommand,
+    AlignJob, AlignedJob, App, GraphicsState, Notice, Permission, Placing, PlateJob, PlatformCommand,
+    SearchJob, ShellCommand, ShellEvent, Show, Step, ToyRefusal, UserAction, WorkCommand,
 };
 use app_core::camera_frame::{Exposure, Tracking};
 use app_core::frame::FrameInput;
@@ -207,18 +207,25 @@ impl Platform {
     }
 }
 
+/// The answer that a person owes about the toy's place.
+fn asked(app: &App) -> Option<Placing> {
+    let placing = Some(app.placing()).filter(|_| app.step() == Step::PlaceToy);
+    placing.filter(|placing| matches!(placing, Placing::Asked { is_searching: false } | Placing::ByHand))
+}
+
 /// Applies all events; the first inconsistency is an error.
 fn live_through(happenings: Vec<Happening>) -> Result<(App, Platform), String> {
     let (mut app, mut platform) = (world::app(), Platform::default());
     for happening in happenings {
         for event in platform.events(happening) {
-            let step = app.step();
+            let (step, asked) = (app.step(), asked(&app));
             let commands = app.event(event);
             let said = commands.iter().find_map(|command| match command {
                 ShellCommand::Platform(PlatformCommand::Announce(step)) => Some(*step),
                 _ => None,
             });
-            if said != (app.step() != step).then_some(app.step()) {
+            let is_new = self::asked(&app).is_some() && self::asked(&app) != asked;
+            if said != (app.step() != step || is_new).then_some(app.step()) {
                 return Err(format!(
                     "from {step:?} to {:?}, but {said:?} is announced",
                     app.step()

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use app_core::app::{
     App, Placing, PlatformCommand, ShellCommand, ShellEvent, Show, Step, UserAction, Verdict, WorkCommand,
 };
+use app_core::interface::announced;
 use app_core::recording::RecordingJob;
 use app_core::scene::{Camera, Image};
 use desk::files::BUNDLED_SESSION;
@@ -26,6 +27,8 @@ pub(crate) struct Person {
     pub(crate) recordings: Vec<RecordingJob>,
     /// Haptic pulses so far.
     pub(crate) n_knocks: usize,
+    /// The words that were announced last.
+    pub(crate) announced: String,
     /// A grey card over the camera's picture: its left, top, right and bottom, in pixels.
     pub(crate) card_px: Option<[u32; 4]>,
 }
@@ -45,6 +48,7 @@ impl Person {
                 }
                 ShellCommand::Work(WorkCommand::Record(job)) => self.recordings.extend(job.map(|job| *job)),
                 ShellCommand::Platform(PlatformCommand::Knock) => self.n_knocks += 1,
+                ShellCommand::Platform(PlatformCommand::Announce(_)) => self.announced = announced(&self.app),
                 _ => {}
             }
         }
@@ -113,6 +117,7 @@ pub(crate) fn photographed() -> Person {
         feed,
         recordings: Vec::new(),
         n_knocks: 0,
+        announced: String::new(),
         card_px: None,
     };
     world::opening().into_iter().for_each(|event| person.tell(event));
@@ -185,6 +190,11 @@ fn a_toy_that_is_put_down_is_found_without_a_touch() {
     assert_eq!(person.n_knocks, 0, "a guess is no toy");
     person.wait_until(|placing| placing == Placing::Asked { is_searching: false });
     assert_eq!(person.n_knocks, 1);
+    assert!(
+        person.announced.starts_with("Is it on your toy?"),
+        "{}",
+        person.announced
+    );
     let silhouette = person.app.ghost().expect("a ghost");
     let [low, high] = silhouette.corners_px;
     let toy_px = person.pixel_of(DVec3::new(0.0, 0.02, 0.0));
