@@ -2,6 +2,9 @@
 
 use std::cmp::Ordering;
 
+/// Standard deviation of a normal distribution over its median absolute deviation.
+pub(crate) const DEVIATION_OF_MEDIAN: f64 = 1.4826;
+
 /// The median of a list, with a total order such as [`f32::total_cmp`]; the larger of two central
 /// values, `None` for an empty list.
 pub(crate) fn median<T: Copy>(

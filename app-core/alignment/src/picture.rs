@@ -17,6 +17,11 @@ pub(super) fn places(size_px: IVec2) -> impl Iterator<Item = IVec2> + Clone + us
     (0..size_px.y).flat_map(move |y| (0..size_px.x).map(move |x| IVec2::new(x, y)))
 }
 
+/// All places up to a distance from one along each axis, row by row.
+pub(super) fn square(middle: IVec2, reach_px: i32) -> impl Iterator<Item = IVec2> {
+    places(IVec2::splat(2 * reach_px + 1)).map(move |place| middle + place - reach_px)
+}
+
 /// Linear red, green and blue.
 pub(super) type Color = [f32; 3];
 

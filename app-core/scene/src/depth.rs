@@ -36,12 +36,6 @@ impl Depth {
         &self.depths_mm
     }
 
-    /// Number of pixels.
-    #[must_use]
-    pub fn n_pixels(&self) -> usize {
-        self.depths_mm.len()
-    }
-
     /// The part of the pixels whose depth is known.
     #[must_use]
     pub fn known(&self) -> f64 {

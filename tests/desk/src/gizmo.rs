@@ -100,8 +100,7 @@ fn ring(
 }
 
 fn mark(picture: &mut Image, camera: &Camera, at: DVec3, color: [u8; 3]) {
-    let in_camera = camera.world_from_camera.inverse().transform_point3(at);
-    if let Some(at_px) = camera.intrinsics.pixel_of(in_camera) {
+    if let Some(at_px) = camera.pixel_of(at) {
         dot(picture, at_px, color);
     }
 }

@@ -358,8 +358,7 @@ impl<'a> Tour<'a> {
     fn toy_px(&self, moved_m: DVec3) -> DVec2 {
         let (world_from_object, camera) = self.desk.feed.toy();
         let at = world_from_object.w_axis.truncate() + moved_m;
-        let in_camera = camera.world_from_camera.inverse().transform_point3(at);
-        camera.intrinsics.pixel_of(in_camera).unwrap_or(DVec2::ZERO)
+        camera.pixel_of(at).unwrap_or(DVec2::ZERO)
     }
 
     /// Touches a pixel of the camera's picture.

@@ -7,6 +7,7 @@
 use glam::{DVec2, DVec3};
 use nalgebra::{SMatrix, SVector};
 
+use crate::median::DEVIATION_OF_MEDIAN;
 use crate::picture::{Color, Level, places};
 use crate::raster::Coverage;
 use crate::receivers::{SeenReceiver, receiver_at};
@@ -18,8 +19,6 @@ pub(super) const QUARTIC: usize = 15;
 pub(super) const REACH: f64 = 5.0;
 /// Rounds of reweighting; shadows are outliers.
 const N_ROUNDS: usize = 12;
-/// Standard deviation of a normal distribution over its median absolute deviation.
-const OF_MEDIAN: f64 = 1.4826;
 /// Keeps a colour flat if too few pixels are visible.
 const PRIOR: f64 = 1e-6;
 
@@ -148,7 +147,7 @@ fn robust<const N: usize>(values: &[(Terms<N>, f64)]) -> (Terms<N>, f64) {
             .iter()
             .map(|(terms, value)| (value - color.dot(terms)).abs())
             .collect();
-        deviation = (OF_MEDIAN * quantile(&mut away, 0.5)).max(PRIOR);
+        deviation = (DEVIATION_OF_MEDIAN * quantile(&mut away, 0.5)).max(PRIOR);
         let (mut normal, mut side) = (SMatrix::<f64, N, N>::identity() * PRIOR, Terms::<N>::zeros());
         for (terms, value) in values {
             let excess = (value - color.dot(terms)) / (2.0 * deviation);

@@ -106,7 +106,7 @@ impl Photograph {
         let points: Vec<DVec3> = match &input.depth {
             Some(depth) if wants_planes => {
                 let size_px = UVec2::from_array(input.image.size_px());
-                let every = depth.n_pixels().div_ceil(MOST_DEPTHS).max(1);
+                let every = depth.depths_mm().len().div_ceil(MOST_DEPTHS).max(1);
                 let points = depth.points(input.camera.intrinsics, size_px);
                 points.step_by(every).collect()
             }

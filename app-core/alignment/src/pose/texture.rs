@@ -13,6 +13,7 @@ use glam::{DVec2, DVec3, IVec2};
 
 use super::paint::Shaded;
 use super::placement::{Placement, Unknowns};
+use crate::median::DEVIATION_OF_MEDIAN;
 use crate::picture::{Color, Level, Picture, UNKNOWN, places};
 use crate::raster::{Coverage, project};
 use crate::robust;
@@ -50,8 +51,6 @@ const ALIKE_PX2: f64 = 60.0;
 const LEAST_CORRELATION: f64 = 0.5;
 /// Rounds of gains and weights.
 const N_GAINS: usize = 3;
-/// A normal deviation over the median of what is away.
-const DEVIATION_OF_MEDIAN: f64 = 1.4826;
 
 /// The model's paint over the picture, from the widest to the narrowest spread.
 pub(super) struct Texture {

@@ -2,7 +2,7 @@
 
 use glam::IVec2;
 
-use crate::picture::index_in;
+use crate::picture::{index_in, square};
 
 /// Neighbours of a pixel.
 pub(super) const STEPS: [IVec2; 4] = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
@@ -37,10 +37,15 @@ pub(crate) fn groups(size_px: IVec2, is_in: impl Fn(usize) -> bool) -> Vec<Vec<u
     groups
 }
 
+/// A pixel and four others, at a distance along the axes.
+pub(super) fn cross(at: IVec2, reach_px: i32) -> impl Iterator<Item = IVec2> {
+    let others = STEPS.map(|step| at + reach_px * step);
+    std::iter::once(at).chain(others)
+}
+
 /// Whether most of the nine pixels around one, including itself, have a property.
 pub(super) fn most_around(at: IVec2, is_so: impl Fn(IVec2) -> bool) -> bool {
-    let around = (-1..=1).flat_map(|y| (-1..=1).map(move |x| at + IVec2::new(x, y)));
-    around.filter(|at| is_so(*at)).count() >= 5
+    square(at, 1).filter(|at| is_so(*at)).count() >= 5
 }
 
 /// The position of a pixel with an index.

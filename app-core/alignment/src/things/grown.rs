@@ -12,7 +12,7 @@ use super::codes::{Codes, apart};
 use super::colors::Colors;
 use super::groups::{STEPS, groups, place_of};
 use super::seeds::{Seed, Seeds};
-use crate::picture::{bilinear, index_in, places};
+use crate::picture::{bilinear, index_in, places, square};
 
 /// Cost of a step: a constant, a factor for each code of change in the plate, and one for the log
 /// likelihood against it.
@@ -83,9 +83,7 @@ impl Grown {
         for group in groups {
             let touched = group.iter().flat_map(|index| {
                 let at = place_of(*index, self.size_px);
-                let around = (-TOUCH_PX..=TOUCH_PX)
-                    .flat_map(move |y| (-TOUCH_PX..=TOUCH_PX).map(move |x| at + IVec2::new(x, y)));
-                around.filter_map(|at| self.of_pixel(at))
+                square(at, TOUCH_PX).filter_map(|at| self.of_pixel(at))
             });
             let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
             touched.for_each(|thing| *counts.entry(thing).or_default() += 1);
@@ -161,11 +159,7 @@ fn like_place(size_px: IVec2, plate: &Codes, colors: &Colors) -> Vec<bool> {
             .is_some_and(|likelier| likelier < -LIKE_PLACE)
     };
     let is_like: Vec<bool> = plate.pixels.iter().map(|color| is_like(*color)).collect();
-    let around = |at: IVec2| {
-        let square = (-AROUND_PX..=AROUND_PX)
-            .flat_map(move |y| (-AROUND_PX..=AROUND_PX).map(move |x| at + IVec2::new(x, y)));
-        square.filter_map(|at| index_in(size_px, at))
-    };
+    let around = |at: IVec2| square(at, AROUND_PX).filter_map(|at| index_in(size_px, at));
     let most = |at: IVec2| 2 * around(at).filter(|index| is_like[*index]).count() > around(at).count();
     places(size_px).map(most).collect()
 }

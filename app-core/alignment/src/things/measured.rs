@@ -8,7 +8,8 @@ use std::collections::HashMap;
 use glam::{DMat3, DVec2, DVec3, IVec2, Vec3Swizzles};
 
 use super::extent::Outline;
-use crate::median::median;
+use super::groups::cross;
+use crate::median::{DEVIATION_OF_MEDIAN, median};
 
 /// Least points on a thing, and on the receiver around it.
 const LEAST_POINTS: usize = 40;
@@ -18,9 +19,8 @@ const WITHIN_PX: i32 = 3;
 /// metres.
 const ON_TABLE_M: f64 = 0.025;
 const AROUND_M: f64 = 0.3;
-/// Least noise in metres, and the deviation of noise over the median of its magnitude.
+/// Least noise in metres.
 const LEAST_NOISE_M: f64 = 5e-4;
-const DEVIATION: f64 = 1.4826;
 /// Side of the cells in pixels of the level whose means show the errors that neighbours share, the
 /// least points of a cell, and the least cells.
 const CELL_PX: i32 = 32;
@@ -80,7 +80,7 @@ impl Measured {
         let heights_m: Vec<f64> = on_table.iter().map(|(_, height_m)| *height_m).collect();
         let offset_m = median(heights_m.iter().copied(), f64::total_cmp)?;
         let away_m = heights_m.iter().map(|height_m| (height_m - offset_m).abs());
-        let noise_m = (DEVIATION * median(away_m, f64::total_cmp)?).max(LEAST_NOISE_M);
+        let noise_m = (DEVIATION_OF_MEDIAN * median(away_m, f64::total_cmp)?).max(LEAST_NOISE_M);
         on_thing.iter_mut().for_each(|point| point.y -= offset_m);
         fitted(&on_thing, (noise_m, shared_m(&on_table, offset_m)))
     }
@@ -116,15 +116,12 @@ fn shared_m(on_table: &[(IVec2, f64)], offset_m: f64) -> f64 {
     if away_m.len() < LEAST_CELLS {
         return SHARED_M;
     }
-    median(away_m, f64::total_cmp).map_or(SHARED_M, |away_m| DEVIATION * away_m)
+    median(away_m, f64::total_cmp).map_or(SHARED_M, |away_m| DEVIATION_OF_MEDIAN * away_m)
 }
 
 /// Whether a pixel and those around it are of a thing, or of none.
 fn is_within(outline: &Outline<'_>, at: IVec2, thing: Option<usize>) -> bool {
-    let steps = [IVec2::ZERO, IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
-    steps
-        .iter()
-        .all(|step| outline.grown.of_pixel(at + WITHIN_PX * *step) == thing)
+    cross(at, WITHIN_PX).all(|at| outline.grown.of_pixel(at) == thing)
 }
 
 /// The plane on which most points are, from many starts.

@@ -36,7 +36,7 @@ use app_scene::geometry::color::srgb_from_linear;
 use app_scene::scene::{Light, MAX_RECEIVERS};
 use app_scene::things::Mark;
 use codes::{Codes, UNLIKE_CODES, apart, from_shaded};
-use groups::{groups, most_around, place_of};
+use groups::{cross, groups, most_around, place_of};
 use grown::Grown;
 use planes::FoundPlane;
 use seeds::{Seed, Seeds};
@@ -100,10 +100,14 @@ pub(crate) struct Sighting {
 pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
     let level = sight.level();
     let toy = Toy::of(sight, level);
-    let (level, compared, in_plate) = sight.restored(level, &toy)?;
-    let level = &*level;
-    let plate = Codes::of(level.plate.as_ref()?);
     let frame = Codes::of(&level.frame);
+    let Restored {
+        level,
+        plate,
+        compared,
+        in_plate,
+    } = sight.restored((level, &frame), &toy)?;
+    let level = &*level;
     let seeds = Seeds::found(&compared.pixels, toy.hidden(&frame, &plate), (&frame, &plate));
     let grown = Grown::from(&seeds, Seed::Thing, &plate);
     let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
@@ -153,6 +157,17 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
         marks,
         planes,
     })
+}
+
+/// A level whose plate has all of its light.
+struct Restored<'a> {
+    level: Cow<'a, Level>,
+    /// Its plate.
+    plate: Codes,
+    /// Comparison of its pixels.
+    compared: Comparison,
+    /// The light in the plate as it was taken, if a shadow lay on it.
+    in_plate: Option<Brightness>,
 }
 
 /// Things in a level.
@@ -271,21 +286,25 @@ impl Sight<'_> {
         crate::lights::compare(self.lights, seen, level, self.world_from_camera)
     }
 
-    /// The level and the comparison of its pixels, without the shadow that the plate alone may show;
-    /// and the light in that.
-    fn restored<'b>(
-        &self,
-        level: &'b Level,
-        toy: &Toy,
-    ) -> Option<(Cow<'b, Level>, Comparison, Option<Brightness>)> {
+    /// The level without the shadow that the plate alone may show; `None` without a plate.
+    fn restored<'b>(&self, (level, frame): (&'b Level, &Codes), toy: &Toy) -> Option<Restored<'b>> {
         let compared = self.compared(level)?;
-        let pictures = (&Codes::of(&level.frame), &Codes::of(level.plate.as_ref()?));
-        let Some(light) = Brightness::of_plate(&compared.pixels, pictures, &toy.coverage) else {
-            return Some((Cow::Borrowed(level), compared, None));
+        let plate = Codes::of(level.plate.as_ref()?);
+        let Some(light) = Brightness::of_plate(&compared.pixels, (frame, &plate), &toy.coverage) else {
+            return Some(Restored {
+                level: Cow::Borrowed(level),
+                plate,
+                compared,
+                in_plate: None,
+            });
         };
-        let restored = light.restored(level);
-        let compared = self.compared(&restored).unwrap_or(compared);
-        Some((Cow::Owned(restored), compared, Some(light)))
+        let level = light.restored(level);
+        Some(Restored {
+            plate: Codes::of(level.plate.as_ref()?),
+            compared: self.compared(&level).unwrap_or(compared),
+            level: Cow::Owned(level),
+            in_plate: Some(light),
+        })
     }
 
     /// For each pixel of a level, whether it is in a part of a thing with few seeds, but shows
@@ -380,10 +399,7 @@ impl Toy {
     }
 
     fn is_within(&self, at: IVec2) -> bool {
-        let steps = [IVec2::ZERO, IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
-        steps
-            .iter()
-            .all(|step| self.coverage.at(at + WITHIN_PX * *step) >= 1.0)
+        cross(at, WITHIN_PX).all(|at| self.coverage.at(at) >= 1.0)
     }
 
     /// Whether a pixel in the toy's place shows the plate, although the toy should look different.

@@ -10,6 +10,7 @@ use std::collections::HashSet;
 use glam::{DMat4, DQuat, DVec2, DVec3, IVec2, Vec3Swizzles};
 
 use super::extent::{Extent, Outline};
+use super::groups::cross;
 use super::grown::Grown;
 use super::measured::Measured;
 use super::sides::{Side, sides};
@@ -190,8 +191,7 @@ fn upright(
 
 /// The inner pixels of a thing, row by row.
 fn pixels<'a>(comparison: &'a Comparison, grown: &Grown, thing: usize) -> Vec<&'a Compared> {
-    let steps = [IVec2::ZERO, IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
-    let is_within = |at: IVec2| steps.iter().all(|step| grown.of_pixel(at + *step) == Some(thing));
+    let is_within = |at: IVec2| cross(at, 1).all(|at| grown.of_pixel(at) == Some(thing));
     let all = comparison.pixels.iter();
     all.filter(|pixel| pixel.noise < NOISIEST && is_within(pixel.at))
         .collect()
@@ -373,10 +373,8 @@ impl<'a> Search<'a> {
 
     /// Losses of the known receivers and of the plane; `None` if the plane is no clear improvement.
     fn significant_losses(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Option<[f64; 2]> {
-        let of_receiver = self.loss_of(&self.expected);
-        let of_light = self.loss_of(&vec![Some([1.0; 3]); self.seen.len()]);
+        let (of_receiver, of_others) = self.known_losses();
         let loss = candidate.loss;
-        let of_others = of_receiver.min(of_light);
         if self.measured.is_some() {
             let is_agreed = loss < OF_MEASURED.min(of_others + NOISE);
             return is_agreed.then_some([of_receiver, loss]);
@@ -391,9 +389,15 @@ impl<'a> Search<'a> {
     /// explain the pixels better.
     fn agreed_losses(&self, raster: &mut Rasterizer, plane: &SeenReceiver) -> Option<[f64; 2]> {
         let loss = self.loss_of(&self.on_plane.ratios(raster, plane, &self.pixels));
+        let (of_receiver, of_others) = self.known_losses();
+        (loss < of_others + NOISE).then_some([of_receiver, loss])
+    }
+
+    /// Loss of the known receivers, and the smaller one of theirs and of no shadow at all.
+    fn known_losses(&self) -> (f64, f64) {
         let of_receiver = self.loss_of(&self.expected);
         let of_light = self.loss_of(&vec![Some([1.0; 3]); self.seen.len()]);
-        (loss < of_receiver.min(of_light) + NOISE).then_some([of_receiver, loss])
+        (of_receiver, of_receiver.min(of_light))
     }
 
     /// The best of some tries, with their losses.

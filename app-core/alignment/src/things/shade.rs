@@ -13,7 +13,7 @@ use super::codes::{Codes, UNLIKE_CODES, from_shaded};
 use super::groups::{STEPS, groups, place_of};
 use super::grown::Grown;
 use crate::lights::Compared;
-use crate::picture::{Color, Level, Mask, Picture, UNKNOWN, bilinear, index_in, places};
+use crate::picture::{Color, Level, Mask, Picture, UNKNOWN, bilinear, index_in, places, square};
 use crate::raster::Coverage;
 
 /// Light that the model takes from a pixel up to which the pixel is in the open.
@@ -245,11 +245,7 @@ fn measured(compared: &[Compared], size_px: IVec2) -> Vec<Color> {
 
 /// Indices of the pixels of a square around one.
 fn around(at: IVec2, reach_px: i32, size_px: IVec2) -> impl Iterator<Item = usize> {
-    let reach = -reach_px..=reach_px;
-    let square = reach
-        .clone()
-        .flat_map(move |y| reach.clone().map(move |x| at + IVec2::new(x, y)));
-    square.filter_map(move |at| index_in(size_px, at))
+    square(at, reach_px).filter_map(move |at| index_in(size_px, at))
 }
 
 /// Means of the known pixels around each known one, unless it is unlike its mean.

@@ -184,8 +184,7 @@ pub(super) fn point_at(world_from_plane: &DMat4, camera: &Camera, pixel: DVec2) 
 /// The image of a place of a plane, given as its x and z, in pixels; `None` behind the camera.
 pub(super) fn pixel_of(world_from_plane: &DMat4, camera: &Camera, place_m: DVec2) -> Option<DVec2> {
     let at = world_from_plane.transform_point3(DVec3::new(place_m.x, 0.0, place_m.y));
-    let in_camera = camera.world_from_camera.inverse().transform_point3(at);
-    camera.intrinsics.pixel_of(in_camera)
+    camera.pixel_of(at)
 }
 
 /// Corners of a circle, starting on the first axis.

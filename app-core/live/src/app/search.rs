@@ -76,10 +76,8 @@ impl Look {
     }
 
     fn sees(&self, at: DVec3) -> bool {
-        let camera = &self.input.camera;
-        let in_camera = camera.world_from_camera.inverse().transform_point3(at);
         let size_px = UVec2::from_array(self.input.image.size_px()).as_dvec2();
-        let pixel = camera.intrinsics.pixel_of(in_camera);
+        let pixel = self.input.camera.pixel_of(at);
         pixel.is_some_and(|pixel| pixel.cmpgt(DVec2::ZERO).all() && pixel.cmplt(size_px).all())
     }
 }

@@ -305,6 +305,12 @@ pub struct Camera {
 }
 
 impl Camera {
+    /// The pixel that shows a point of the world; `None` for a point that is not before the camera.
+    pub fn pixel_of(&self, point: DVec3) -> Option<DVec2> {
+        let in_camera = self.world_from_camera.inverse().transform_point3(point);
+        self.intrinsics.pixel_of(in_camera)
+    }
+
     /// The same camera with its focal length multiplied by `ratio`.
     pub fn with_focal_length(&self, ratio: f64) -> Self {
         let intrinsics = Intrinsics {

@@ -14,9 +14,8 @@ use app_core::alignment::{Alignment, Outlines, PoseAlignment};
 use app_core::frame::FrameInput;
 use app_core::lens::Distortion;
 use app_core::probe::ProbeReport;
-use app_core::scene::{Camera, Image};
+use app_core::scene::Image;
 use app_core::session::{Capture, Session, SessionWarning};
-use glam::{DVec2, DVec3};
 
 use crate::alignment::{Aligned, Alignments, Asked, LightError, Lights, Source};
 use crate::gizmo;
@@ -310,12 +309,6 @@ impl Findings {
             ));
         }
     }
-}
-
-/// The place of a world point in a camera's picture; `None` behind the camera.
-fn pixel(camera: &Camera, world: DVec3) -> Option<DVec2> {
-    let at = camera.world_from_camera.inverse().transform_point3(world);
-    camera.intrinsics.pixel_of(at)
 }
 
 fn drawn(capture: &Capture, given: &FrameInput, alignment: &Alignment) -> anyhow::Result<Image> {

@@ -5,7 +5,6 @@ use app_core::frame::FrameInput;
 use app_core::scene::{Image, Scene};
 use glam::{DVec2, DVec3};
 
-use super::pixel;
 use crate::gizmo::dot;
 
 /// Colour of given values: red.
@@ -43,7 +42,7 @@ pub fn receivers(picture: &mut Image, scene: &Scene, input: &FrameInput) {
                     let world = receiver
                         .world_from_plane
                         .transform_point3(DVec3::new(at.x, 0.0, at.y));
-                    if let Some(at_px) = pixel(&input.camera, world).filter(|_| is_on) {
+                    if let Some(at_px) = input.camera.pixel_of(world).filter(|_| is_on) {
                         dot(picture, at_px, RECEIVERS);
                     }
                 }

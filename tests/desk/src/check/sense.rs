@@ -5,7 +5,6 @@ use app_core::session::SessionFrame;
 use app_scene::geometry::bounds::Bounds;
 use glam::{DMat4, DVec2, DVec3, UVec2};
 
-use super::pixel;
 use crate::doubts;
 
 /// Plausible sizes of a toy, in metres.
@@ -69,7 +68,7 @@ pub(super) fn wrong_of_frame(scene: &Scene, index: usize, frame: &SessionFrame) 
     let size_px = UVec2::new(scene.width_px, scene.height_px).as_dvec2();
     let before_camera: Vec<DVec2> = corners
         .iter()
-        .filter_map(|corner| pixel(camera, *corner))
+        .filter_map(|corner| camera.pixel_of(*corner))
         .collect();
     let is_inside = |at_px: &DVec2| at_px.cmpge(DVec2::ZERO).all() && at_px.cmplt(size_px).all();
     if before_camera.is_empty() {

@@ -82,8 +82,7 @@ impl Person {
     pub(crate) fn pixel_of(&self, moved_m: DVec3) -> DVec2 {
         let (world_from_object, camera) = self.feed.toy();
         let at = world_from_object.w_axis.truncate() + moved_m;
-        let in_camera = camera.world_from_camera.inverse().transform_point3(at);
-        camera.intrinsics.pixel_of(in_camera).unwrap()
+        camera.pixel_of(at).unwrap()
     }
 }
 
