@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::report::PlaneAlignment;
+use super::things::Colored;
 use app_scene::scene::{Receiver, Scene};
 
 /// Most searches, in the first views that show things: each takes some seconds.
@@ -23,14 +24,30 @@ pub(super) struct FoundPlanes {
     found: Vec<FoundReceiver>,
     pub(super) report: Vec<PlaneAlignment>,
     n_searches: usize,
+    /// Whether things in the place's own colours were searched.
+    is_alike_searched: bool,
 }
 
 impl FoundPlanes {
     /// Whether a search is due.
-    pub(super) fn are_wanted(&self) -> bool {
+    fn are_wanted(&self) -> bool {
         // The sides of a listed top are known without a thing's own plane.
         let is_found = self.report.iter().any(|plane| !plane.is_upright());
         !is_found && self.n_searches < MOST_SEARCHES
+    }
+
+    /// Things whose planes are to be searched, if a search is due: `may_be_alike` once those in the
+    /// place's own colours, too, since these are sought anywhere.
+    pub(super) fn wanted(&mut self, may_be_alike: bool) -> Option<Colored> {
+        if !self.are_wanted() {
+            return None;
+        }
+        let is_alike = may_be_alike && !std::mem::replace(&mut self.is_alike_searched, true);
+        Some(if is_alike {
+            Colored::Alike
+        } else {
+            Colored::Otherwise
+        })
     }
 
     /// Adds the result of a search in a view that shows things; whether it found any.

@@ -37,6 +37,7 @@
 #![forbid(unsafe_code)]
 
 mod adapted;
+mod before_toy;
 mod camera;
 mod directions;
 mod error;
@@ -241,7 +242,11 @@ impl Aligner {
         }
         let seen = match self.view.take().filter(|_| is_view_known) {
             Some(view) => Seen::again(&self.scene, view, input),
-            None => self.see(input, kept.as_ref())?,
+            None => {
+                let seen = self.see(input, kept.as_ref())?;
+                let known = kept.as_ref().map_or(&*given, KeptLights::in_use);
+                self.past_things(seen, input, known)?
+            }
         };
         let seen = self.with_adapted_model(seen)?;
         let seen = self.on_placed_receivers(seen, input)?;
@@ -349,9 +354,19 @@ impl Aligner {
             .cameras
             .find(given, (plates, receivers), &self.scene.uncertainty.camera);
         let (camera, camera_report) = camera::corrected(&input.camera, found);
-        let mut input_seen = input.clone().with_camera(camera);
+        let input_seen = input.clone().with_camera(camera);
         let withheld = self.withheld(input, (&camera, POSE_GROWN), kept)?;
         let photograph = Photograph::new(&self.scene, &input_seen, withheld.as_ref());
+        self.posed(photograph, input, (input_seen, camera_report))
+    }
+
+    /// The view of an input's toy in a photograph, whose input has the estimated camera and the given pose.
+    fn posed(
+        &self,
+        photograph: Photograph,
+        input: &FrameInput,
+        (mut input_seen, camera_report): (FrameInput, Option<CameraAlignment>),
+    ) -> Result<Seen, ToyError> {
         let found = photograph.pose(&self.scene, &input_seen, self.held)?;
         input_seen.world_from_object = found.world_from_object;
         let outline_px = found.report.map(|pose| pose.spread_px);
@@ -361,7 +376,7 @@ impl Aligner {
                 image: input.image.clone(),
                 given_camera: input.camera,
                 given: input.world_from_object,
-                camera,
+                camera: input_seen.camera,
                 camera_report,
                 world_from_object: found.world_from_object,
                 plate_spread_px: found.plate_spread_px,

@@ -9,6 +9,7 @@ use super::lights::Watched;
 use super::photograph::MOST_OUTLINE_PX;
 use super::view::Seen;
 use crate::no_light::NoLight;
+use crate::things::Colored;
 use app_scene::scene::{Light, LightUncertainty, MAX_LIGHTS, Scene};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
@@ -174,7 +175,8 @@ impl Aligner {
             None
         } else {
             // A plane is not fitted under lights that may be degrees off.
-            match self.look_for_things(&known, seen, kept.is_some())? {
+            let planes_of = kept.as_ref().and_then(|_| self.planes.wanted(false));
+            match self.look_for_things(&known, seen, planes_of)? {
                 Looked::Things(things) => things,
                 Looked::Planes(again) => return self.look_at_lights(kept, given, &again),
             }
@@ -196,8 +198,9 @@ impl Aligner {
                 lights = self.find_lights(Arc::clone(&given), clear.as_ref().unwrap_or(as_it_is))?;
             }
         }
-        // In the first view planes are still to be found, on things.
-        let are_settled = lights.in_use() == &*known && (are_kept || things.is_none());
+        // In the first view planes are still to be found: on things, or on what the lights do not explain.
+        let is_plain = things.is_none() && lights.misfit().is_none();
+        let are_settled = lights.in_use() == &*known && (are_kept || is_plain);
         let things = if !are_trusted || are_settled {
             things
         } else {
@@ -206,7 +209,8 @@ impl Aligner {
             let relit = (!is_same).then(|| Seen::again(&self.scene, seen.view.clone(), &seen.input));
             let relit = relit.as_ref().unwrap_or(as_it_is);
             let freed = self.reflection.removed_from(&self.scene, relit)?;
-            match self.look_for_things(lights.in_use(), freed.as_ref().unwrap_or(relit), true)? {
+            let planes_of = self.planes.wanted(!are_kept);
+            match self.look_for_things(lights.in_use(), freed.as_ref().unwrap_or(relit), planes_of)? {
                 Looked::Things(things) => things,
                 Looked::Planes(again) => {
                     return self.look_at_lights(are_kept.then_some(lights), given, &again);
@@ -231,13 +235,12 @@ impl Aligner {
         &mut self,
         lights: &[Light],
         seen: &Seen,
-        may_have_planes: bool,
+        planes_of: Option<Colored>,
     ) -> Result<Looked, ToyError> {
-        let wants_planes = may_have_planes && self.planes.are_wanted();
         let sighted = seen
             .photograph
-            .things(&self.scene, &seen.input, lights, wants_planes)?;
-        if !wants_planes || sighted.things.is_none() || !self.planes.take(sighted.planes) {
+            .things(&self.scene, &seen.input, lights, planes_of)?;
+        if planes_of.is_none() || sighted.things.is_none() || !self.planes.take(sighted.planes) {
             return Ok(Looked::Things(sighted.things));
         }
         self.planes.add_to(&mut self.scene);

@@ -77,13 +77,13 @@ impl Observer {
             reflection: reflection.as_ref(),
         };
         let mut photograph = look.photograph(&known)?;
-        let wants_planes = self.planes.are_wanted();
-        let sighted = photograph.things(&known, input, &lights, wants_planes)?;
+        let planes_of = self.planes.wanted(true);
+        let sighted = photograph.things(&known, input, &lights, planes_of)?;
         let mut things = sighted.things;
-        if wants_planes && things.is_some() && self.planes.take(sighted.planes) {
+        if planes_of.is_some() && things.is_some() && self.planes.take(sighted.planes) {
             let known = self.scene(scene);
             photograph = look.photograph(&known)?;
-            things = photograph.things(&known, input, &lights, false)?.things;
+            things = photograph.things(&known, input, &lights, None)?.things;
         }
         let gloss = match self.gloss {
             Some(gloss) => gloss,

@@ -87,11 +87,7 @@ impl Things {
     pub fn new(size_px: UVec2, marks: impl Into<Arc<[Mark]>>, camera: Camera) -> Option<Self> {
         let marks = marks.into();
         let n_pixels = u64::from(size_px.x) * u64::from(size_px.y);
-        let count = |kind: usize| {
-            let marks = marks.iter().filter(|mark| mark.kind() == Some(kind));
-            u32::try_from(marks.count()).unwrap_or(u32::MAX)
-        };
-        let counts = [0, 1, 2, 3].map(count);
+        let counts = counts(&marks);
         (marks.len() as u64 == n_pixels).then_some(Self {
             size_px,
             marks,
@@ -110,6 +106,18 @@ impl Things {
     #[must_use]
     pub fn marks(&self) -> &[Mark] {
         &self.marks
+    }
+
+    /// Some of the marks alone.
+    #[must_use]
+    pub fn only(&self, is_kept: impl Fn(Mark) -> bool) -> Self {
+        let kept = |mark: &Mark| if is_kept(*mark) { *mark } else { Mark::None };
+        let marks: Vec<Mark> = self.marks.iter().map(kept).collect();
+        Self {
+            counts: counts(&marks),
+            marks: marks.into(),
+            ..*self
+        }
     }
 
     /// The camera that took the picture.
@@ -157,4 +165,12 @@ impl Things {
         let is_hidden = |mark: &Mark| matches!(mark, Mark::HiddenThing { .. });
         self.counts[3] > 0 || self.marks.iter().any(is_hidden)
     }
+}
+
+/// Number of marks of each kind.
+fn counts(marks: &[Mark]) -> [u32; 4] {
+    [0, 1, 2, 3].map(|kind| {
+        let of_kind = marks.iter().filter(|mark| mark.kind() == Some(kind));
+        u32::try_from(of_kind.count()).unwrap_or(u32::MAX)
+    })
 }

@@ -20,6 +20,15 @@ const HALF_M: DVec2 = DVec2::new(0.05, 0.06);
 const NOISE_MM: f64 = 5.0;
 const DEPTH_PX: UVec2 = UVec2::new(256, 144);
 
+/// The table's paint, times a brightness.
+fn waves(brightness: f64) -> Paint {
+    Paint::Waves {
+        color: brightness * DVec3::new(0.45, 0.35, 0.25),
+        amount: 0.2,
+        wave_m: 0.03,
+    }
+}
+
 /// A plane that catches the shadow of the boxes, and is turned against them.
 fn board(height_m: f64, tilt_rad: f64) -> DMat4 {
     board_at(-0.1, height_m, tilt_rad)
@@ -32,6 +41,11 @@ fn board_at(x_m: f64, height_m: f64, tilt_rad: f64) -> DMat4 {
 
 /// The boxes beside such planes, which the scene does not contain.
 fn session(planes: &[(DMat4, DVec2)]) -> (Scene, Shot) {
+    painted(planes, &Paint::Even(DVec3::new(0.2, 0.35, 0.6)))
+}
+
+/// The same with planes of a paint.
+fn painted(planes: &[(DMat4, DVec2)], paint: &Paint) -> (Scene, Shot) {
     let mut world = World::boxes().resized([480, 270]);
     world = world.lit_by(vec![Lamp::bulb(toward(50.0, 90.0), 0.01, 0.75)]);
     world.bounces = false;
@@ -40,17 +54,13 @@ fn session(planes: &[(DMat4, DVec2)]) -> (Scene, Shot) {
         n_light_rays: 24,
         n_sky_rays: 24,
     };
-    world.grounds[0].paint = Paint::Waves {
-        color: DVec3::new(0.45, 0.35, 0.25),
-        amount: 0.2,
-        wave_m: 0.03,
-    };
+    world.grounds[0].paint = waves(1.0);
     world
         .grounds
         .extend(planes.iter().map(|(world_from_plane, half_extent_m)| Ground {
             world_from_plane: *world_from_plane,
             half_extent_m: *half_extent_m,
-            paint: Paint::Even(DVec3::new(0.2, 0.35, 0.6)),
+            paint: paint.clone(),
         }));
     let shot = Shot::of(&world).unwrap();
     let mut scene = shot.scene.clone();
@@ -155,6 +165,23 @@ fn a_tilted_plane_is_found() {
     let (heights_m, tilts) = found(0.022, -0.16).expect("a plane");
     assert_height(heights_m);
     assert!((tilts[0] - tilts[1].abs()).abs() < TILT_RAD, "{tilts:?}");
+}
+
+/// A board of the table's material that is a little darker: its colours alone show neither that it
+/// is there nor how far it reaches, so its extent is not tested.
+#[test]
+fn a_tilted_plane_that_looks_like_the_table_is_found() {
+    let tilt_rad = -0.2;
+    let world_from_board = board(0.025, tilt_rad);
+    let (scene, shot) = painted(&[(world_from_board, HALF_M)], &waves(0.88));
+    let mut observer = Observer::default();
+    observer.observed(&scene, &shot.input).unwrap();
+    let told = observer.planes().first().expect("a plane");
+    let found = &observer.scene(&scene).receivers[1];
+    let middle = world_from_board.w_axis.truncate();
+    let off_m = found.world_from_plane.inverse().transform_point3(middle).y;
+    assert_height([off_m, 0.0]);
+    assert!((told.tilt_rad + tilt_rad).abs() < TILT_RAD, "{}", told.tilt_rad);
 }
 
 #[test]

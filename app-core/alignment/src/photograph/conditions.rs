@@ -5,6 +5,7 @@ use glam::{DMat4, DVec3, UVec2};
 use super::Photograph;
 use crate::found_planes::FoundReceiver;
 use crate::lights::FoundReflection;
+use crate::things::Colored;
 use crate::{gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
 use app_scene::geometry::nearest_receivers::nearest_to_toy;
@@ -99,12 +100,12 @@ impl Photograph {
         scene: &Scene,
         input: &FrameInput,
         lights: &[Light],
-        wants_planes: bool,
+        planes_of: Option<Colored>,
     ) -> Result<Sighted, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let paint = pose::Paint::new(scene, &self.camera_from_object(&input.world_from_object))?;
         let points: Vec<DVec3> = match &input.depth {
-            Some(depth) if wants_planes => {
+            Some(depth) if planes_of.is_some() => {
                 let size_px = UVec2::from_array(input.image.size_px());
                 let every = depth.depths_mm().len().div_ceil(MOST_DEPTHS).max(1);
                 let points = depth.points(input.camera.intrinsics, size_px);
@@ -120,7 +121,7 @@ impl Photograph {
             lights,
             world_from_camera: &input.camera.world_from_camera,
             points: &points,
-            wants_planes,
+            planes_of,
         });
         let Some(found) = found else {
             return Ok(Sighted::default());

@@ -5,6 +5,7 @@ use glam::{DMat4, DVec2, DVec3, Vec3Swizzles};
 
 use super::edges::{Side, moved_m};
 use super::grown::Grown;
+use super::seeds::Colored;
 use crate::picture::{Level, places};
 use crate::receivers::SeenReceiver;
 
@@ -28,6 +29,7 @@ pub(super) struct Outline<'a> {
     pub(super) table: &'a SeenReceiver,
     pub(super) grown: &'a Grown,
     pub(super) thing: usize,
+    pub(super) colored: Colored,
 }
 
 /// A rectangle on a plane.
@@ -87,13 +89,15 @@ impl Extent {
         let on_edges = |extent: Self| extent.on_edges(outline.level, plane_from_camera, face_m);
         // The first round corrects the lengths that the second one looks along.
         let smallest = on_edges(on_edges(smallest));
-        let filled = outline.filled(&smallest.plane(plane_from_camera));
+        // How far a thing in the place's own colours reaches is not seen.
+        let is_filled =
+            outline.colored == Colored::Alike || outline.filled(&smallest.plane(plane_from_camera)) >= FILLED;
         let whole = if is_level {
             smallest
         } else {
             smallest.down_to(outline.table, plane_from_camera)
         };
-        (filled >= FILLED).then_some(whole)
+        is_filled.then_some(whole)
     }
 
     /// The rectangle with its sides on edges of the plate, above upright faces of a height.

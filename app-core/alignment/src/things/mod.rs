@@ -21,12 +21,14 @@ mod seeds;
 mod shade;
 mod sides;
 mod simplex;
+mod upright;
+mod wrong;
 
 use std::borrow::Cow;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
-use crate::lights::{Compared, Comparison};
+use crate::lights::Comparison;
 use crate::picture::{Color, Level, Mask, Pyramid, index_in, places};
 use crate::pose::Paint;
 use crate::raster::{Coverage, Rasterizer, project};
@@ -36,9 +38,10 @@ use app_scene::geometry::color::srgb_from_linear;
 use app_scene::scene::{Light, MAX_RECEIVERS};
 use app_scene::things::Mark;
 use codes::{Codes, UNLIKE_CODES, apart, from_shaded};
-use groups::{cross, groups, most_around, place_of};
+use groups::{cross, most_around};
 use grown::Grown;
 use planes::FoundPlane;
+pub(crate) use seeds::Colored;
 use seeds::{Seed, Seeds};
 use shade::Brightness;
 
@@ -68,10 +71,6 @@ const PART_BEFORE: f32 = 0.04;
 /// Share of seeds among a thing's pixels that show a receiver, below which these belong to the
 /// receiver itself.
 const OF_PLANE: f32 = 0.1;
-/// Difference between plate and model around a wrong part of the plate, in plates, and the margin
-/// in pixels that is wrong, too.
-const DIFFERS: f32 = 0.05;
-const WRONG_PX: i32 = 2;
 
 /// Inputs of the search for things.
 pub(crate) struct Sight<'a> {
@@ -83,8 +82,8 @@ pub(crate) struct Sight<'a> {
     pub(crate) world_from_camera: &'a DMat4,
     /// Points that a depth sensor measured, in camera space.
     pub(crate) points: &'a [DVec3],
-    /// Whether planes of things are searched for.
-    pub(crate) wants_planes: bool,
+    /// Things whose planes are searched for, if any are.
+    pub(crate) planes_of: Option<Colored>,
 }
 
 /// Things beside the toy.
@@ -108,27 +107,36 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
         in_plate,
     } = sight.restored((level, &frame), &toy)?;
     let level = &*level;
-    let seeds = Seeds::found(&compared.pixels, toy.hidden(&frame, &plate), (&frame, &plate));
+    let seeds_of = |colored| {
+        let hidden = toy.hidden(&frame, &plate);
+        Seeds::found(&compared.pixels, hidden, (&frame, &plate), colored)
+    };
+    let planes_on = |grown: &Grown, colored| {
+        let place = planes::Place {
+            shape: sight.shape,
+            receivers: sight.receivers,
+            points: &toy.beside(sight.points, level),
+        };
+        planes::find(&place, level, &compared, (grown, colored))
+    };
+    let seeds = seeds_of(Colored::Otherwise);
     let grown = Grown::from(&seeds, Seed::Thing, &plate);
     let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
     let in_frame = toy.in_frame(&seeds, &frame);
-    if grown.is_none() && wrong.is_none() && in_frame.is_none() && in_plate.is_none() {
+    let planes = match (&grown, sight.planes_of) {
+        (Some(grown), Some(_)) => planes_on(grown, Colored::Otherwise),
+        (None, Some(Colored::Alike)) => {
+            let alike = Grown::from(&seeds_of(Colored::Alike), Seed::Thing, &plate);
+            alike.map_or(Vec::new(), |alike| planes_on(&alike, Colored::Alike))
+        }
+        _ => Vec::new(),
+    };
+    if planes.is_empty() && grown.is_none() && wrong.is_none() && in_frame.is_none() && in_plate.is_none() {
         return None;
     }
     let before = grown
         .as_ref()
         .map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
-    let planes = match &grown {
-        Some(grown) if sight.wants_planes => {
-            let place = planes::Place {
-                shape: sight.shape,
-                receivers: sight.receivers,
-                points: &toy.beside(sight.points, level),
-            };
-            planes::find(&place, level, &compared, grown)
-        }
-        _ => Vec::new(),
-    };
     let grown = grown.map(|mut grown| {
         let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, &plate);
         grown.absorb(&shadows);
@@ -138,7 +146,7 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
     let on_things = grown
         .as_ref()
         .map(|grown| Brightness::of_things(grown, &compared.pixels, of_level));
-    let wrong = wrong.map(|wrong| wrong_plate(&wrong, &toy, level.frame.size_px, &compared.pixels));
+    let wrong = wrong.map(|wrong| wrong::wrong_plate(&wrong, &toy, level.frame.size_px, &compared.pixels));
     let on_planes = grown.as_ref().map_or(Vec::new(), |grown| {
         sight.on_planes((grown, &seeds), level, &before)
     });
@@ -238,42 +246,6 @@ struct InFrame {
     grown: Grown,
     /// The mark of each thing: before the toy, beside it, or no mark.
     marks: Vec<Mark>,
-}
-
-/// Wrong part of a level's plate: everything that is connected with seeds and differs from the
-/// model; behind the toy, the area that it grew to.
-fn wrong_plate(grown: &Grown, toy: &Toy, size_px: IVec2, compared: &[Compared]) -> Mask {
-    let mut differs = vec![false; (size_px.x * size_px.y) as usize];
-    for pixel in compared {
-        if let Some(index) = index_in(size_px, pixel.at) {
-            differs[index] = pixel.away() > DIFFERS.max(2.0 * pixel.noise);
-        }
-    }
-    let mut wrong = Mask::new(size_px);
-    for at in places(size_px) {
-        let near_toy = toy.coverage.is_near(at, WRONG_PX);
-        let differs = index_in(size_px, at).is_some_and(|index| differs[index]);
-        if grown.of_pixel(at).is_some() && (near_toy || differs) {
-            wrong.mark(at);
-        }
-    }
-    filled(&wrong.grown(WRONG_PX), size_px)
-}
-
-/// The mask, with its holes filled.
-fn filled(mask: &Mask, size_px: IVec2) -> Mask {
-    let has = |index: usize| mask.has(place_of(index, size_px));
-    let last = size_px - 1;
-    let is_at_border = |at: IVec2| at.cmpeq(IVec2::ZERO).any() || at.cmpeq(last).any();
-    let mut filled = mask.clone();
-    for group in groups(size_px, |index| !has(index)) {
-        if !group.iter().any(|index| is_at_border(place_of(*index, size_px))) {
-            group
-                .iter()
-                .for_each(|index| filled.mark(place_of(*index, size_px)));
-        }
-    }
-    filled
 }
 
 impl Sight<'_> {

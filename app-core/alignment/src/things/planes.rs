@@ -5,16 +5,15 @@
 //! has a plane at all: a cup, a cloth or a hand has none. If a depth sensor measured the thing, the
 //! search begins with the plane of its points and stays close to it, and the loss only has to agree.
 
-use std::collections::HashSet;
-
 use glam::{DMat4, DQuat, DVec2, DVec3, IVec2, Vec3Swizzles};
 
 use super::extent::{Extent, Outline};
 use super::groups::cross;
 use super::grown::Grown;
 use super::measured::Measured;
-use super::sides::{Side, sides};
+use super::seeds::Colored;
 use super::simplex::descend;
+use super::upright;
 use crate::lights::{Compared, Comparison, OnPlane};
 use crate::picture::{Color, Level};
 use crate::raster::Rasterizer;
@@ -26,14 +25,12 @@ use app_scene::scene::{Intrinsics, MAX_RECEIVERS};
 /// Least pixels of a thing, in the level, for a search, and most pixels that a search samples.
 const LEAST_PIXELS: usize = 300;
 const MOST_PIXELS: usize = 2500;
-/// Least pixels of an upright side beside the toy for a comparison of losses.
-const LEAST_OF_SIDE: usize = 60;
 /// Least shadowed pixels that a level and a tilted plane need.
 const LEAST_SHADOWED: [usize; 2] = [90, 250];
 /// Least part of the light that a shadowed pixel loses.
 const SHADOWED: f32 = 0.25;
 /// Largest noise of a pixel that counts, in plates.
-const NOISIEST: f32 = 0.2;
+pub(super) const NOISIEST: f32 = 0.2;
 /// Largest loss of a pixel: a squared difference in plates.
 const MOST_LOSS: f64 = 0.03;
 /// Largest loss of an accepted plane: absolute, and over the smaller loss of the known receivers and
@@ -43,15 +40,18 @@ const OF_OTHERS: f64 = 0.35;
 /// Largest loss of a plane that a depth sensor measured, and the addition to the losses of the
 /// others for noise.
 const OF_MEASURED: f64 = 0.003;
-const NOISE: f64 = 1e-4;
+pub(super) const NOISE: f64 = 1e-4;
 /// Loss of a squared deviation from the plane of a depth sensor.
 const OFF_MEASURED: f64 = 1e-4;
 /// If these leave a smaller loss, there is nothing to explain.
 const LEAST_LEFT: f64 = 3e-4;
+/// How much smaller the loss must be if the thing may have the place's colours: a ramp of the
+/// table's own wood has 3e-6 in place of 5e-3.
+const ALIKE_TIMES: f64 = 2.0;
 /// Largest distance in metres between a found plane and the receiver that it replaces.
 const SAME_M: f64 = 0.012;
 /// The receiver nearest to the toy, which stands on it.
-const GROUND: usize = 0;
+pub(super) const GROUND: usize = 0;
 /// A level plane wins if its loss is at most this factor times a tilted plane's, plus a constant.
 const LEVEL_TIMES: f64 = 1.3;
 const LEVEL_MORE: f64 = 1e-4;
@@ -105,7 +105,7 @@ pub(super) fn find(
     place: &Place<'_>,
     level: &Level,
     comparison: &Comparison,
-    grown: &Grown,
+    (grown, colored): (&Grown, Colored),
 ) -> Vec<FoundPlane> {
     let (shape, receivers) = (place.shape.merged_in_px(CELL_PX, level), place.receivers);
     // Each search takes a second: only the largest things are searched.
@@ -121,6 +121,7 @@ pub(super) fn find(
             table: receivers.get(GROUND)?,
             grown,
             thing,
+            colored,
         };
         let by_points = || found(search()?.measured(&outline, place.points)?, &outline);
         let found = by_points().or_else(|| found(search()?, &outline))?;
@@ -130,63 +131,9 @@ pub(super) fn find(
         })
     });
     let mut planes: Vec<FoundPlane> = planes.collect();
-    let upright = upright((&shape, receivers), (level, grown), comparison, &planes);
-    planes.extend(upright);
+    let sides = upright::sides_of((&shape, receivers), (level, grown), comparison, &planes);
+    planes.extend(sides);
     planes
-}
-
-/// The upright sides of level planes, as many as there may be receivers, the largest in the picture
-/// first.
-fn upright(
-    (shape, receivers): (&Shape, &[SeenReceiver]),
-    (level, grown): (&Level, &Grown),
-    comparison: &Comparison,
-    planes: &[FoundPlane],
-) -> Vec<FoundPlane> {
-    let mut known = receivers.to_vec();
-    for found in planes {
-        match found.instead_of {
-            Some(index) => known[index] = found.plane.clone(),
-            None => known.push(found.plane.clone()),
-        }
-    }
-    let mut all: Vec<Side> = (GROUND + 1..known.len())
-        .flat_map(|top| {
-            let others: Vec<SeenReceiver> = known
-                .iter()
-                .enumerate()
-                .filter(|(index, _)| *index != top)
-                .map(|(_, other)| other.clone())
-                .collect();
-            sides(level, grown, &known[top], &others)
-        })
-        .collect();
-    all.sort_by_key(|side| std::cmp::Reverse(side.pixels.len()));
-    let raster = &mut Rasterizer::default();
-    let taken = all.into_iter().filter_map(|side| {
-        let shown: HashSet<IVec2> = side.pixels.iter().copied().collect();
-        let pixels: Vec<&Compared> = comparison
-            .pixels
-            .iter()
-            .filter(|pixel| pixel.noise < NOISIEST && shown.contains(&pixel.at))
-            .collect();
-        // The toy may hide it: then only the place of the top counts.
-        let losses = match Search::new((shape, receivers), level, comparison, &pixels) {
-            Some(search) if pixels.len() >= LEAST_OF_SIDE => search.agreed_losses(raster, &side.plane)?,
-            _ => [0.0; 2],
-        };
-        Some(FoundPlane {
-            report: PlaneAlignment {
-                height_m: side.half_m.y,
-                tilt_rad: std::f64::consts::FRAC_PI_2,
-                half_extent_m: side.half_m.to_array(),
-                losses,
-            },
-            plane: side.plane,
-            instead_of: None,
-        })
-    });
-    taken.take(MAX_RECEIVERS.saturating_sub(known.len())).collect()
 }
 
 /// The inner pixels of a thing, row by row.
@@ -221,7 +168,7 @@ fn found(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     let heights = first.heights;
     let level = [(first.loss, [heights[0], 0.0, 0.0])];
     let plane = search.refined(raster, &level, &[(first.loss, heights)])?;
-    let losses = search.significant_losses(raster, &plane)?;
+    let losses = search.significant_losses(raster, &plane, outline.colored)?;
     let endless = search.plane(&plane.heights).plane_from_camera;
     let extent = Extent::of(outline, &endless, plane.is_level)?;
     Some(FoundPlane {
@@ -248,7 +195,7 @@ struct Candidate {
 type Heights = [f64; 3];
 
 /// A search for one thing's plane.
-struct Search<'a> {
+pub(super) struct Search<'a> {
     on_plane: OnPlane<'a>,
     table: &'a SeenReceiver,
     intrinsics: Intrinsics,
@@ -267,7 +214,7 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(
+    pub(super) fn new(
         (shape, receivers): (&'a Shape, &'a [SeenReceiver]),
         level: &Level,
         comparison: &'a Comparison,
@@ -372,29 +319,30 @@ impl<'a> Search<'a> {
     }
 
     /// Losses of the known receivers and of the plane; `None` if the plane is no clear improvement.
-    fn significant_losses(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Option<[f64; 2]> {
+    fn significant_losses(
+        &self,
+        raster: &mut Rasterizer,
+        candidate: &Candidate,
+        colored: Colored,
+    ) -> Option<[f64; 2]> {
         let (of_receiver, of_others) = self.known_losses();
         let loss = candidate.loss;
         if self.measured.is_some() {
             let is_agreed = loss < OF_MEASURED.min(of_others + NOISE);
             return is_agreed.then_some([of_receiver, loss]);
         }
-        let is_significant = of_others > LEAST_LEFT && loss < OF_PLANE.min(OF_OTHERS * of_others);
+        let times = match colored {
+            Colored::Otherwise => 1.0,
+            Colored::Alike => ALIKE_TIMES,
+        };
+        let is_significant = of_others > LEAST_LEFT && times * loss < OF_PLANE.min(OF_OTHERS * of_others);
         let n_shadowed = self.n_shadowed(raster, &candidate.heights);
         let least = LEAST_SHADOWED[usize::from(!candidate.is_level)];
         (is_significant && n_shadowed >= least).then_some([of_receiver, loss])
     }
 
-    /// Losses of the known receivers and of an upright side; `None` if those, or no shadow at all,
-    /// explain the pixels better.
-    fn agreed_losses(&self, raster: &mut Rasterizer, plane: &SeenReceiver) -> Option<[f64; 2]> {
-        let loss = self.loss_of(&self.on_plane.ratios(raster, plane, &self.pixels));
-        let (of_receiver, of_others) = self.known_losses();
-        (loss < of_others + NOISE).then_some([of_receiver, loss])
-    }
-
     /// Loss of the known receivers, and the smaller one of theirs and of no shadow at all.
-    fn known_losses(&self) -> (f64, f64) {
+    pub(super) fn known_losses(&self) -> (f64, f64) {
         let of_receiver = self.loss_of(&self.expected);
         let of_light = self.loss_of(&vec![Some([1.0; 3]); self.seen.len()]);
         (of_receiver, of_receiver.min(of_light))
@@ -431,14 +379,14 @@ impl<'a> Search<'a> {
         if rise_m > steepest_m || heights[0] - rise_m < -BELOW_M - 0.5 * rise_m {
             return f64::INFINITY;
         }
-        let expected = self.on_plane.ratios(raster, &self.plane(heights), &self.pixels);
+        let expected = self.ratios(raster, &self.plane(heights));
         let measured = self.measured.as_ref();
         let off = measured.map_or(0.0, |measured| measured.square(heights, self.size_m));
         self.loss_of(&expected) + OFF_MEASURED * off
     }
 
     /// The same for a prediction of each pixel, if there is one.
-    fn loss_of(&self, expected: &[Option<Color>]) -> f64 {
+    pub(super) fn loss_of(&self, expected: &[Option<Color>]) -> f64 {
         let depth = self.depth(expected);
         let pixels = expected.iter().zip(&self.seen);
         let losses = pixels
@@ -470,7 +418,7 @@ impl<'a> Search<'a> {
     }
 
     fn n_shadowed(&self, raster: &mut Rasterizer, heights: &Heights) -> usize {
-        let expected = self.on_plane.ratios(raster, &self.plane(heights), &self.pixels);
+        let expected = self.ratios(raster, &self.plane(heights));
         let is_shadowed = |color: &Color| color.iter().sum::<f32>() / 3.0 < 1.0 - SHADOWED;
         self.apart
             * expected
@@ -478,6 +426,11 @@ impl<'a> Search<'a> {
                 .flatten()
                 .filter(|color| is_shadowed(color))
                 .count()
+    }
+
+    /// Prediction of a plane for each pixel that shows it.
+    pub(super) fn ratios(&self, raster: &mut Rasterizer, plane: &SeenReceiver) -> Vec<Option<Color>> {
+        self.on_plane.ratios(raster, plane, &self.pixels)
     }
 }
 

@@ -39,6 +39,17 @@ const OF_FRAME: [f32; 2] = [2.0, 1.5];
 /// minimum number of pixels; and the limit for large groups.
 const SIGNIFICANT: (f32, usize) = (3.0, 8);
 const SIGNIFICANT_LARGE: (f32, usize) = (1.0, 200);
+/// The minimum number of pixels of a group in the place's own colours.
+const LEAST_ALIKE: usize = 200;
+
+/// How much the colours of a thing must differ from the place's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Colored {
+    /// Beyond doubt: they alone show that there is a thing.
+    Otherwise,
+    /// Not at all, perhaps: the thing is there if it has a plane.
+    Alike,
+}
 
 /// Content of a pixel, as far as it is certain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +80,7 @@ impl Seeds {
         compared: &[Compared],
         hidden: impl Iterator<Item = IVec2>,
         (frame, plate): (&Codes, &Codes),
+        colored: Colored,
     ) -> Self {
         let size_px = plate.size_px;
         let mut seeds = vec![Seed::None; plate.pixels.len()];
@@ -99,7 +111,7 @@ impl Seeds {
             }
         }
         found.drop_lone();
-        found.tell(frame, &lit(compared, (frame, plate)), plate);
+        found.tell(frame, &lit(compared, (frame, plate)), plate, colored);
         found
     }
 
@@ -123,7 +135,7 @@ impl Seeds {
 
     /// Keeps groups of seeds whose colours, in the frame without its shadow or in the plate, differ
     /// from the place's, and sets their kind.
-    fn tell(&mut self, frame: &Codes, lit: &Codes, plate: &Codes) {
+    fn tell(&mut self, frame: &Codes, lit: &Codes, plate: &Codes, colored: Colored) {
         let groups = groups(self.size_px, |index| self.seeds[index] == Seed::Thing);
         let receivers = self.of(Seed::Receiver);
         // A thing is compared with the whole place, and grows against the shadowed receiver.
@@ -140,7 +152,7 @@ impl Seeds {
                 .iter()
                 .map(|index| from_shaded(frame.pixels[*index], plate.pixels[*index]));
             let differs = median(differs, f32::total_cmp).unwrap_or(0.0);
-            let seed = classified([by_frame, by_plate], differs, group.len());
+            let seed = classified([by_frame, by_plate], differs, group.len(), colored);
             for index in group {
                 self.seeds[*index] = seed;
             }
@@ -247,13 +259,15 @@ fn lit(compared: &[Compared], (frame, plate): (&Codes, &Codes)) -> Codes {
 
 /// Kind of a group of seeds, from the log likelihood ratios of its colours in frame and plate, and
 /// from the difference in codes between the frame and the plate in less light.
-fn classified([by_frame, by_plate]: [f32; 2], differs: f32, n_seeds: usize) -> Seed {
+fn classified([by_frame, by_plate]: [f32; 2], differs: f32, n_seeds: usize, colored: Colored) -> Seed {
     let passes = |(least, n): (f32, usize)| by_plate > least && n_seeds >= n;
     let is_of_one = differs > UNLIKE_CODES;
     let is_of_frame =
         differs > 0.5 * UNLIKE_CODES && by_plate < OF_FRAME[0] && by_frame > by_plate + OF_FRAME[1];
     if is_of_frame {
         Seed::InFrame
+    } else if colored == Colored::Alike && n_seeds >= LEAST_ALIKE && !is_of_one {
+        Seed::Thing
     } else if !(passes(SIGNIFICANT) || passes(SIGNIFICANT_LARGE)) {
         Seed::None
     } else if is_of_one && by_frame < OF_PLACE {

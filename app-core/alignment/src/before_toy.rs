@@ -1,0 +1,48 @@
+//! A second look at the toy if something stands before it, or if its plate is wrong: a part of its
+//! outline is then not its own, and no pose fits, or a blur seems to.
+
+use super::Aligner;
+use super::photograph::MOST_OUTLINE_PX;
+use super::view::Seen;
+use app_scene::frame::FrameInput;
+use app_scene::scene::Light;
+use app_scene::things::{Mark, Things};
+use app_scene::toy::ToyError;
+
+impl Aligner {
+    /// The view again without the pixels that do not show the toy or its plate, if its outline does
+    /// not fit with them, or only a blurred one does, and if it fits without them. A toy in a wrong
+    /// pose looks as if something stood before it, too, but the rest of its outline does not fit.
+    pub(super) fn past_things(
+        &self,
+        seen: Seen,
+        input: &FrameInput,
+        lights: &[Light],
+    ) -> Result<Seen, ToyError> {
+        let is_trusted = seen.view.is_trusted(MOST_OUTLINE_PX);
+        let is_sharp = seen.view.sharpness.outline_spread == seen.view.sharpness.plate_spread;
+        if self.are_shadows_withheld || seen.view.report.is_none() || (is_trusted && is_sharp) {
+            return Ok(seen);
+        }
+        let sighted = seen.photograph.things(&self.scene, &seen.input, lights, None)?;
+        let misleading = sighted.things.map(|things| things.only(is_misleading));
+        let Some(misleading) = misleading.filter(Things::has_any) else {
+            return Ok(seen);
+        };
+        let clear = seen.photograph.clear_of(&misleading);
+        let as_given = seen.input.clone().with_world_from_object(input.world_from_object);
+        let again = self.posed(clear, input, (as_given, seen.view.camera_report))?;
+        if !again.view.is_trusted(MOST_OUTLINE_PX) {
+            return Ok(seen);
+        }
+        Ok(Seen::again(&self.scene, again.view, input))
+    }
+}
+
+/// Whether an outline at such a mark is not that of the toy before its plate.
+fn is_misleading(mark: Mark) -> bool {
+    matches!(
+        mark,
+        Mark::BeforeToy | Mark::WrongPlate | Mark::ShadedPlate { .. }
+    )
+}
