@@ -237,7 +237,10 @@ fn claims_that_are_too_small_show_in_the_table_of_the_basin() {
     let expected = "2 sessions, 2 of 3 poses applied: 50 % of 6 ";
     assert!(summary.starts_with(expected), "{summary}");
     let drawing = claims_drawing(&sessions).unwrap();
-    assert!(drawing.starts_with("<svg") && drawing.contains(expected), "{drawing}");
+    assert!(
+        drawing.starts_with("<svg") && drawing.contains(expected),
+        "{drawing}"
+    );
     assert_eq!(drawing.matches("<circle").count(), 6, "{drawing}");
     assert_eq!(claims_summary(&[vec![unapplied]]), None);
     assert!(claims_drawing(&[vec![unapplied]]).is_ok());
