@@ -176,6 +176,9 @@ pub(super) struct Level {
     pub(super) frame: Picture,
     /// The plate from the same view, if there is one.
     pub(super) plate: Option<Picture>,
+    /// Standard deviation of the blur that made the plate as soft as the photograph, in pixels of
+    /// this level; the photograph's shadows are as soft.
+    pub(super) softened_px: f64,
 }
 
 /// Photograph and plate, each level half as large as the one before.
@@ -198,6 +201,7 @@ impl Pyramid {
             intrinsics,
             frame,
             plate,
+            softened_px: 0.0,
         };
         let mut picture_px = 1.0;
         while level.frame.size_px.x * level.frame.size_px.y > Self::MOST_PIXELS {
@@ -292,6 +296,7 @@ impl Level {
             intrinsics: self.intrinsics,
             frame: self.frame.clone(),
             plate: Some(plate),
+            softened_px: self.softened_px.hypot(deviation_px),
         })
     }
 
@@ -300,6 +305,7 @@ impl Level {
             intrinsics: self.intrinsics.scaled(0.5),
             frame: self.frame.halved(),
             plate: self.plate.as_ref().map(Picture::halved),
+            softened_px: 0.5 * self.softened_px,
         }
     }
 }

@@ -2,6 +2,7 @@
 //! compilation.
 
 mod basin;
+mod claims;
 mod exact;
 mod front;
 mod kinds;
@@ -31,6 +32,7 @@ use desk::replay::{ReplayError, replay_aligned};
 use desk::report::Report;
 
 pub use basin::{Draw, PoseAndLightErrors, basin, basin_csv, basin_drawing, basin_table};
+pub use claims::{claims_drawing, claims_summary};
 pub use front::{Point, front, front_drawing, points};
 pub use kinds::{FRAME_KINDS, FrameKind, KindTimes, with_new};
 pub use pull::Pull;

@@ -102,6 +102,19 @@ fn a_picture_out_of_focus_is_told_by_its_texture_and_its_outline() {
     }
 }
 
+/// Softness of a shadow by the lens is none of its light: a bulb is found in its own size.
+#[test]
+fn a_light_is_no_larger_out_of_focus() {
+    let (scene, input) = spread_session(Some([gaussian(2.0), gaussian(2.0)]), None);
+    let found = Aligner::new(scene).align(&input).unwrap();
+    let [light] = &found.report.lights[..] else {
+        panic!("{:?}", found.report.lights);
+    };
+    let size_ratio = light.size_ratio.unwrap();
+    assert!((size_ratio - 1.0).abs() < 0.15, "{light:?}");
+    assert!(light.turned_rad < 0.003, "{light:?}");
+}
+
 /// Frame and plate by the same lens: only the outline shows the blur.
 #[test]
 fn a_plate_that_is_as_soft_is_told_by_the_outline() {

@@ -5,7 +5,7 @@ use desk::alignment::{Lights, Ratio};
 use harness::{bundled_session, open_core};
 use measure::bench::{
     Draw, FrameKind, Options, Point, PoseAndLightErrors, Pull, Row, basin, basin_csv, basin_drawing,
-    basin_table, bench, csv, front, front_drawing, json, points,
+    basin_table, bench, claims_drawing, claims_summary, csv, front, front_drawing, json, points,
 };
 use serde_json::Value;
 
@@ -230,4 +230,18 @@ fn claims_that_are_too_small_show_in_the_table_of_the_basin() {
         ..draw(0.1)
     };
     assert!(!last_line(&[unapplied]).contains('%'));
+
+    // Of several sessions together, three errors of each applied pose are drawn.
+    let sessions = [vec![draw(0.05), unapplied], vec![draw(0.3)]];
+    let summary = claims_summary(&sessions).unwrap();
+    let expected = "2 sessions, 2 of 3 poses applied: 50 % of 6 ";
+    assert!(summary.starts_with(expected), "{summary}");
+    let drawing = claims_drawing(&sessions).unwrap();
+    assert!(
+        drawing.starts_with("<svg") && drawing.contains(expected),
+        "{drawing}"
+    );
+    assert_eq!(drawing.matches("<circle").count(), 6, "{drawing}");
+    assert_eq!(claims_summary(&[vec![unapplied]]), None);
+    assert!(claims_drawing(&[vec![unapplied]]).is_ok());
 }

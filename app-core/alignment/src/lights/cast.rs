@@ -1,4 +1,5 @@
-//! Shadows in the picture: the toy projected onto each receiver from points over a light.
+//! Shadows in the picture: the toy projected onto each receiver from points over a light. A blurred
+//! picture's shadow is the mean over shifts in the picture as well: each point has its own.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, IVec2};
 
@@ -26,9 +27,12 @@ pub(super) struct Caster<'a> {
     in_planes: Vec<Vec<DVec3>>,
     intrinsics: Intrinsics,
     size_px: IVec2,
+    /// Standard deviation of the picture's blur, in its pixels.
+    pub(super) softness_px: f64,
 }
 
 impl<'a> Caster<'a> {
+    /// In a sharp picture.
     pub(super) fn new(
         shape: &'a Shape,
         receivers: &'a [SeenReceiver],
@@ -41,7 +45,13 @@ impl<'a> Caster<'a> {
             in_planes: in_planes(shape, receivers),
             intrinsics,
             size_px,
+            softness_px: 0.0,
         }
+    }
+
+    /// In a picture that is blurred by a Gaussian, with its standard deviation in pixels.
+    pub(super) fn softened(self, softness_px: f64) -> Self {
+        Self { softness_px, ..self }
     }
 
     /// With another toy.
@@ -55,6 +65,7 @@ impl<'a> Caster<'a> {
             in_planes: in_planes(shape, self.receivers),
             intrinsics: self.intrinsics,
             size_px: self.size_px,
+            softness_px: self.softness_px,
         }
     }
 
@@ -67,11 +78,16 @@ impl<'a> Caster<'a> {
         disc: &[DVec2],
     ) -> Vec<f32> {
         let mut taken = vec![[0.0]; pixels.len()];
+        let shifts_px = shifts(disc.len(), self.softness_px);
         for (index, receiver) in self.receivers.iter().enumerate() {
             let plane_from_camera = &receiver.plane_from_camera;
             let foot = plane_from_camera.transform_point3(self.shape.centre) * DVec3::new(1.0, 0.0, 1.0);
             let points = lamp.points(plane_from_camera, self.shape.centre, disc);
-            let weighted = points.into_iter().map(|point| (point, [irradiance(point, foot)]));
+            let weighted = points.into_iter().zip(&shifts_px).map(|(at, shift_px)| Point {
+                at,
+                shift_px: *shift_px,
+                weights: [irradiance(at, foot)],
+            });
             self.add(raster, pixels, index, weighted.collect(), &mut taken);
         }
         taken.into_iter().map(|[taken]| taken).collect()
@@ -86,7 +102,7 @@ impl<'a> Caster<'a> {
     ) -> Vec<f32> {
         let mut hidden = vec![[0.0]; pixels.len()];
         if !self.receivers.is_empty() {
-            let eyes = eyes.iter().map(|eye| (*eye, [1.0]));
+            let eyes = eyes.iter().map(|eye| Point::sharp(*eye, [1.0]));
             self.add(raster, pixels, 0, eyes.collect(), &mut hidden);
         }
         hidden.into_iter().map(|[hidden]| hidden).collect()
@@ -120,7 +136,7 @@ impl<'a> Caster<'a> {
         let mut rects = Vec::new();
         for (index, receiver) in self.receivers.iter().enumerate() {
             for point in lamp.points(&receiver.plane_from_camera, self.shape.centre, disc) {
-                let coverage = self.hard(raster, index, point);
+                let coverage = self.hard(raster, index, (point, DVec2::ZERO));
                 if coverage.size_px != IVec2::ZERO {
                     let first = coverage.origin_px;
                     rects.push([first, first + coverage.size_px - 1]);
@@ -141,7 +157,7 @@ impl<'a> Caster<'a> {
         // Malley's method: points on a disc lifted to the hemisphere are cosine-weighted.
         let lifted = |at: DVec2| {
             let sine = (1.0 - at.length_squared()).max(0.0).sqrt().max(LOWEST);
-            (DVec4::new(at.x, sine, at.y, 0.0), [1.0, at.x, at.y])
+            Point::sharp(DVec4::new(at.x, sine, at.y, 0.0), [1.0, at.x, at.y])
         };
         let mut taken = vec![[0.0; N_AMBIENT]; pixels.len()];
         for index in 0..self.receivers.len() {
@@ -151,20 +167,20 @@ impl<'a> Caster<'a> {
         taken
     }
 
-    /// Adds each point with a weight for each component; the first is its light's.
+    /// Adds the shadow from each point.
     fn add<const N: usize>(
         &self,
         raster: &mut Rasterizer,
         pixels: &[ReceiverPixel],
         receiver: usize,
-        points: Vec<(DVec4, [f64; N])>,
+        points: Vec<Point<N>>,
         taken: &mut [[f32; N]],
     ) {
-        let total: f64 = points.iter().map(|(_, weights)| weights[0]).sum();
-        for (point, weights) in points.into_iter().filter(|(_, weights)| weights[0] > 0.0) {
-            let coverage = self.hard(raster, receiver, point);
+        let total: f64 = points.iter().map(|point| point.weights[0]).sum();
+        for point in points.into_iter().filter(|point| point.weights[0] > 0.0) {
+            let coverage = self.hard(raster, receiver, (point.at, point.shift_px));
             #[allow(clippy::cast_possible_truncation, reason = "a fraction of one")]
-            let weights = weights.map(|weight| (weight / total) as f32);
+            let weights = point.weights.map(|weight| (weight / total) as f32);
             let mut first = pixels.partition_point(|pixel| pixel.at.y < coverage.origin_px.y);
             for (at, end) in coverage.rows() {
                 // At most two rows further.
@@ -182,14 +198,60 @@ impl<'a> Caster<'a> {
         }
     }
 
-    /// The hard shadow from one point.
-    fn hard(&self, raster: &mut Rasterizer, receiver: usize, light: DVec4) -> Coverage {
+    /// The hard shadow from one point, shifted in the picture by some pixels.
+    fn hard(&self, raster: &mut Rasterizer, receiver: usize, (light, shift_px): (DVec4, DVec2)) -> Coverage {
         let camera_from_plane = self.receivers[receiver].plane_from_camera.inverse();
         let in_plane = self.in_planes[receiver].iter();
         let flat = in_plane.map(|point| on_plane(*point, light, &camera_from_plane));
-        let corners = project(flat, &self.intrinsics);
+        let mut corners = project(flat, &self.intrinsics);
+        for corner in &mut corners {
+            *corner += shift_px.extend(0.0);
+        }
         raster.coverage(&corners, &self.shape.faces, self.size_px)
     }
+}
+
+/// A point of a light.
+struct Point<const N: usize> {
+    /// In plane space, homogeneous.
+    at: DVec4,
+    /// Shift of its shadow in the picture.
+    shift_px: DVec2,
+    /// Weight for each component; the first is its light's.
+    weights: [f64; N],
+}
+
+impl<const N: usize> Point<N> {
+    fn sharp(at: DVec4, weights: [f64; N]) -> Self {
+        Self {
+            at,
+            shift_px: DVec2::ZERO,
+            weights,
+        }
+    }
+}
+
+/// Shifts with a Gaussian distribution, in pixels, each independent of its point's place on a disc.
+///
+/// Source: the sequence R2 of Roberts 2018, and the transform of Box and Muller 1958.
+fn shifts(n: usize, deviation_px: f64) -> Vec<DVec2> {
+    /// Inverse powers of the plastic number.
+    const STEPS: DVec2 = DVec2::new(0.754_877_666_246_693, 0.569_840_290_998_053);
+    let shift = |index: usize| {
+        let [u, v] = (0.5 + (index + 1) as f64 * STEPS).fract().to_array();
+        (-2.0 * u.max(f64::MIN_POSITIVE).ln()).sqrt() * DVec2::from_angle(std::f64::consts::TAU * v)
+    };
+    let mut shifts: Vec<DVec2> = (0..n).map(shift).collect();
+    // With the distribution's own mean and variance, from which few points deviate slightly.
+    let mean_of = |values: &dyn Fn(&DVec2) -> DVec2, shifts: &[DVec2]| {
+        shifts.iter().map(values).sum::<DVec2>() / n.max(1) as f64
+    };
+    let mean = mean_of(&|shift| *shift, &shifts);
+    let variance = mean_of(&|shift| (*shift - mean) * (*shift - mean), &shifts);
+    for shift in &mut shifts {
+        *shift = deviation_px * (*shift - mean) / variance.max(DVec2::splat(f64::EPSILON)).map(f64::sqrt);
+    }
+    shifts
 }
 
 fn in_planes(shape: &Shape, receivers: &[SeenReceiver]) -> Vec<Vec<DVec3>> {

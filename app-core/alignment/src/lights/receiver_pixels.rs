@@ -7,8 +7,10 @@ use crate::picture::{Color, Level, noise_deviation, places};
 use crate::raster::Coverage;
 use crate::receivers::{SeenReceiver, receiver_at};
 
-/// Margin around the toy, in which pixels may be mixed with it.
+/// Margin around the toy, in which pixels may be mixed with it, and its growth with the blur of the
+/// photograph.
 const CLEAR_PX: i32 = 2;
+const CLEAR_OF_BLUR: f64 = 1.5;
 /// Error of the light model, over the plate.
 const UNEXPLAINED: f32 = 0.02;
 /// Linear light of the codes 4 and 250, the range of reliable pixels.
@@ -67,7 +69,9 @@ pub(super) fn receiver_pixels(
     // A single receiver has no interreflection, and a plate shows its texture.
     let is_even = receivers.len() == 1 && level.plate.is_some();
     let n_terms = if is_even { 1 } else { QUADRATIC };
-    let clear = places(level.frame.size_px).filter(|at| is_wanted(*at) && !coverage.is_near(*at, CLEAR_PX));
+    #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
+    let clear_px = CLEAR_PX + (CLEAR_OF_BLUR * level.softened_px).round() as i32;
+    let clear = places(level.frame.size_px).filter(|at| is_wanted(*at) && !coverage.is_near(*at, clear_px));
     let pixels = clear.filter_map(|at| {
         let (receiver, point) = receiver_at(receivers, &level.intrinsics, at)?;
         let frame = level.frame.get(at)?;

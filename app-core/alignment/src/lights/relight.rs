@@ -41,6 +41,7 @@ impl Relight {
             intrinsics: level.intrinsics,
             frame: over(&level.frame, level.plate.as_ref()?),
             plate: None,
+            softened_px: level.softened_px,
         };
         let corners = project(shape.points.iter().copied(), &level.intrinsics);
         let coverage = Rasterizer::default().coverage(&corners, &shape.faces, level.frame.size_px);
@@ -68,9 +69,8 @@ impl Relight {
         let size_px = level.frame.size_px;
         let pixels = places(size_px).map(|at| relit(at).unwrap_or(UNKNOWN));
         Level {
-            intrinsics: level.intrinsics,
-            frame: level.frame.clone(),
             plate: Some(Picture::of(size_px, pixels.collect())),
+            ..level.clone()
         }
     }
 

@@ -86,7 +86,7 @@ impl<'a> Shadows<'a> {
         let size_px = level.frame.size_px;
         let corners = project(shape.points.iter().copied(), &level.intrinsics);
         let coverage = raster.coverage(&corners, &shape.faces, size_px);
-        let caster = Caster::new(shape, receivers, level.intrinsics, size_px);
+        let caster = Caster::new(shape, receivers, level.intrinsics, size_px).softened(level.softened_px);
         let is_wanted =
             |at: IVec2| rect.is_none_or(|[low, high]| at.cmpge(low).all() && at.cmple(high).all());
         let around = (shape.centre, REACH * shape.radius_m);
@@ -151,15 +151,17 @@ impl<'a> Shadows<'a> {
         }
     }
 
-    /// Points over a lamp, whose number grows with its penumbra.
+    /// Points over a lamp, whose number grows with its penumbra and with the picture's blur.
     pub(super) fn disc(&self, lamp: &Lamp) -> Vec<DVec2> {
         let most = if self.is_rough {
             MOST_ROUGH_POINTS
         } else {
             MOST_POINTS
         };
+        // A disc's deviation along each axis is a quarter of its width.
+        let soft_px = self.penumbra_px(lamp).hypot(4.0 * self.caster.softness_px);
         #[allow(clippy::cast_possible_truncation, reason = "clamped")]
-        let n_points = self.penumbra_px(lamp).powi(2).clamp(LEAST_POINTS, most) as usize;
+        let n_points = soft_px.powi(2).clamp(LEAST_POINTS, most) as usize;
         disc(n_points)
     }
 

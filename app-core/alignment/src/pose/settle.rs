@@ -41,6 +41,10 @@ const BLOCK_PX: i32 = 40;
 /// errors in ten are within two deviations; four other scenes then had 97 %.
 const OF_BLOCKS: f64 = 2.5;
 const OF_MISFIT: f64 = 0.5;
+/// The same ratio for the turn over that of shifts: without it 73 % of 67 turns were within two
+/// deviations in nine sessions of three toys (sharp, out of focus, and from a phone), with it 90 %;
+/// shifts along the view had 96 %. In two others it was none of 10, and then all.
+const OF_TURN: f64 = 1.45;
 
 /// Standard deviation of the smoothing along the outline, in pixels.
 const SMOOTHED_PX: f64 = 10.0;
@@ -194,7 +198,8 @@ impl<'a> Balance<'a> {
         PoseDeviation {
             lateral_m: root(3).hypot(root(4)).hypot(floor_m),
             depth_m: root(5).hypot(floor_m),
-            rotation_rad: root(0).hypot(root(1)).hypot(root(2)).hypot(floor_m) / self.known.radius_m,
+            rotation_rad: OF_TURN * root(0).hypot(root(1)).hypot(root(2)).hypot(floor_m)
+                / self.known.radius_m,
         }
     }
 }

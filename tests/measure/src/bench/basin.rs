@@ -198,8 +198,8 @@ pub fn basin_table(draws: &[Draw]) -> String {
         }
         cells.push(line);
     }
-    let pulls: Vec<Pull> = draws.iter().filter_map(|draw| draw.pull).collect();
-    let claims = summary(&pulls).map_or(String::new(), |claims| claims + "\n");
+    let claims = summary(draws.iter().filter_map(|draw| draw.pull));
+    let claims = claims.map_or(String::new(), |claims| claims + "\n");
     aligned(&cells) + &claims
 }
 

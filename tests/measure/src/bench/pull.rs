@@ -5,7 +5,7 @@ use app_core::frame::FrameInput;
 use glam::DVec3;
 
 /// Number of deviations within which an error counts as expected.
-const WITHIN: f64 = 2.0;
+pub(super) const WITHIN: f64 = 2.0;
 
 /// An error of a pose, and its claimed deviation: along the view and lateral in millimetres, of the
 /// turn in degrees.
@@ -44,16 +44,38 @@ impl Pull {
     }
 }
 
+/// The calibration of errors, by their ratios to their claimed deviations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Calibration {
+    n: usize,
+    /// The fraction within two deviations.
+    pub(super) within: f64,
+    /// The median ratio.
+    pub(super) median: f64,
+}
+
+/// `None` without any error.
+pub(super) fn calibration(ratios: impl Iterator<Item = f64>) -> Option<Calibration> {
+    let mut ratios: Vec<f64> = ratios.collect();
+    ratios.sort_by(f64::total_cmp);
+    let n = ratios.len();
+    let n_within = ratios.iter().filter(|ratio| **ratio <= WITHIN).count();
+    Some(Calibration {
+        n,
+        within: n_within as f64 / n as f64,
+        median: *ratios.get(n / 2)?,
+    })
+}
+
 /// A sentence: the fraction of errors within two deviations, and the median of error over
 /// deviation. `None` if nothing was applied.
-pub(super) fn summary(pulls: &[Pull]) -> Option<String> {
-    let mut ratios: Vec<f64> = pulls.iter().flat_map(Pull::ratios).collect();
-    ratios.sort_by(f64::total_cmp);
-    let median = ratios.get(ratios.len() / 2)?;
-    let n_within = ratios.iter().filter(|ratio| **ratio <= WITHIN).count();
+pub(super) fn summary(pulls: impl IntoIterator<Item = Pull>) -> Option<String> {
+    let ratios = pulls
+        .into_iter()
+        .flat_map(|pull| pull.ratios().collect::<Vec<f64>>());
+    let Calibration { n, within, median } = calibration(ratios)?;
     Some(format!(
-        "{:.0} % of {} errors of poses are within {WITHIN} claimed deviations; median of error over deviation {median:.2}",
-        100.0 * n_within as f64 / ratios.len() as f64,
-        ratios.len(),
+        "{:.0} % of {n} errors of poses are within {WITHIN} claimed deviations; median of error over deviation {median:.2}",
+        100.0 * within,
     ))
 }

@@ -20,8 +20,8 @@ use desk::output::{make_folder, remove_file, write_png, write_whole};
 use desk::program::{exit_code, open_session, print, repository};
 use desk::shaders::ShaderArgs;
 use measure::bench::{
-    Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, csv, front_drawing, json, rebuild,
-    rebuilt_table, table,
+    Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, claims_drawing, claims_summary, csv,
+    front_drawing, json, rebuild, rebuilt_table, table,
 };
 use measure::sized::{SizePx, parse_size};
 
@@ -33,6 +33,8 @@ const CSV_FILE: &str = "bench.csv";
 const JSON_FILE: &str = "bench.json";
 /// Error against time.
 const FRONT_FILE: &str = "front.svg";
+/// Errors of poses over claimed deviations, of all sessions together.
+const CLAIMS_FILE: &str = "claims.svg";
 
 /// Measure presets over recorded sessions: error, time of a frame and of the capture path, as a table, bench.csv and bench.json.
 #[derive(Parser)]
@@ -147,9 +149,11 @@ fn run(args: &Args) -> anyhow::Result<()> {
     print(&format!("{text}{}\n", result.display()))
 }
 
-/// Prints the basin of convergence of alignment, and writes tables and drawings. Needs no device.
+/// Prints the basin of convergence of alignment, and writes tables and drawings, of several sessions
+/// also one of all. Needs no device.
 fn basins(folders: &[PathBuf], args: &Args, out: &Path) -> anyhow::Result<()> {
     let mut text = String::new();
+    let mut all = Vec::new();
     for folder in folders {
         let _ = writeln!(io::stderr(), "{}", folder.display());
         let capture = Capture::open(open_session(folder)?)?;
@@ -163,6 +167,12 @@ fn basins(folders: &[PathBuf], args: &Args, out: &Path) -> anyhow::Result<()> {
         )?;
         write_whole(&out.join(format!("{name}-basin.svg")), drawing.as_bytes())?;
         text.push_str(&format!("{name}\n{}", basin_table(&draws)));
+        all.push(draws);
+    }
+    if folders.len() > 1 {
+        let drawing = claims_drawing(&all).map_err(anyhow::Error::msg)?;
+        write_whole(&out.join(CLAIMS_FILE), drawing.as_bytes())?;
+        text.extend(claims_summary(&all).map(|summary| format!("all\n{summary}\n")));
     }
     text.push_str(
         "Median and worst remaining error, relative to the recorded values; starts are in sixths of the largest.\n",
