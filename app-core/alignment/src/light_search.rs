@@ -234,9 +234,9 @@ impl Aligner {
         may_have_planes: bool,
     ) -> Result<Looked, ToyError> {
         let wants_planes = may_have_planes && self.planes.are_wanted();
-        let sighted = seen
-            .photograph
-            .things(&self.scene, &seen.input, lights, wants_planes)?;
+        let before = (wants_planes, self.memories[0].as_ref());
+        let sighted = seen.photograph.things(&self.scene, &seen.input, lights, before)?;
+        self.memories[1] = sighted.memory;
         if !wants_planes || sighted.things.is_none() || !self.planes.take(sighted.planes) {
             return Ok(Looked::Things(sighted.things));
         }

@@ -105,6 +105,7 @@ pub(super) struct Commanded {
     tracking: bool,
     finds_planes: bool,
     finds_card: bool,
+    finds_people: bool,
     locks_exposure: bool,
     underexposes: bool,
     is_awake: bool,
@@ -120,6 +121,8 @@ impl Commanded {
             tracking,
             finds_planes: tracking && step == Step::FindTable,
             finds_card: tracking && asked.card,
+            // Of all that warms a phone, it is what a picture can most easily do without.
+            finds_people: tracking && step == Step::Play && platform.thermal == Thermal::Nominal,
             // Plate and frames are compared with one another.
             locks_exposure: tracking && (step >= Step::PlaceToy || asked.held_exposure),
             underexposes: tracking && step == Step::PlaceToy && asked.lens,
@@ -174,6 +177,9 @@ impl Commanded {
             );
         } else if !wanted.tracking && self.tracking {
             commands.push(PlatformCommand::PauseTracking.into());
+        }
+        if wanted.finds_people != self.finds_people {
+            commands.push(PlatformCommand::FindPeople(wanted.finds_people).into());
         }
         // A restarted camera has no exposure lock.
         let is_locked = self.locks_exposure && self.tracking && wanted.tracking;

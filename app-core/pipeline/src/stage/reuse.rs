@@ -31,7 +31,7 @@ use crate::plates::exposure::match_frame;
 use crate::preset::{BaselineSettings, ModelSettings, Settings};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, Plate};
-use app_scene::things::Mark;
+use app_scene::things::{Mark, Things as GivenThings};
 
 /// Step of the region's size under a moving camera, so that the size stays the same for a while.
 const REGION_STEP_PX: u32 = 64;
@@ -138,19 +138,18 @@ impl Stage {
         let is_placement_outdated = mem::take(&mut state.is_placement_outdated);
         let is_known = state.image.as_ref().is_some_and(|known| known.is(&input.image));
         let (known, given) = (state.things.as_ref(), self.things.as_ref().map(Things::given));
-        let are_things_known = match (known, given) {
-            (None, None) => true,
-            (Some(known), Some(given)) => known.is(given),
-            _ => false,
-        };
+        let people = self.people.marks().map(Things::given);
+        let are_things_known = are_same(known, given);
+        let are_people_known = are_same(state.people.as_ref(), people);
         // Things in a learned picture are part of the learned state.
         let is_fit_outdated = !are_things_known && given.is_some() && (known.is_none() || is_known);
         state.things = given.cloned();
+        state.people = people.cloned();
         if !has_grids {
             Reuse::Nothing
         } else if is_placement_outdated || is_fit_outdated {
             Reuse::Targets
-        } else if !are_things_known || !is_within || are_settings_outdated {
+        } else if !are_things_known || !are_people_known || !is_within || are_settings_outdated {
             Reuse::SceneState
         } else if is_visibility_outdated {
             Reuse::Region
@@ -181,6 +180,7 @@ impl Stage {
             n_pictures: 0,
             image: None,
             things: self.things.as_ref().map(|things| things.given().clone()),
+            people: self.people.marks().map(|people| people.given().clone()),
             light_indices: self.lights.indices.clone(),
             is_first_view: true,
             is_visibility_outdated: false,
@@ -294,7 +294,7 @@ impl Stage {
             n_receivers,
             is_plate_complete: self.is_plate_complete(footprint, &region)
                 && !self.things.as_ref().is_some_and(Things::is_plate_wrong),
-            has_things: self.things.is_some(),
+            has_things: self.things.is_some() || self.people.marks().is_some(),
             are_plates_scaled: footprint.plate_views.are_scaled(),
             sharpness: self.sharpness,
             is_softened: soft::is_soft(self.sharpness) || known.is_some_and(|plan| plan.is_softened),
@@ -363,7 +363,12 @@ impl Stage {
             (Mark::BeforeToy, Thing::BeforeToy),
             (Mark::WrongPlate, Thing::InPlateAlone),
         ];
-        let count = move |mark| things.map_or(0, |things| things.given().count(mark));
+        let all = things.into_iter().chain(self.people.marks());
+        let count = move |mark| {
+            all.clone()
+                .map(|things| things.given().count(mark))
+                .sum::<usize>()
+        };
         let n_in_plate = things.map_or(0, |things| things.given().n_in_plate_alone());
         // A thing before the toy mostly comes with a shadow.
         let is_reported = move |mark: Mark| match mark {
@@ -426,6 +431,15 @@ impl Stage {
         let uniform = uniform(&self.layout(), &footprint.bounds, settings);
         let plan = BaselinePlan::new(&self.facts(footprint, (region, None)), settings);
         (plan, globals, uniform)
+    }
+}
+
+/// Whether both mark the same pictures, or neither any.
+fn are_same(known: Option<&GivenThings>, given: Option<&GivenThings>) -> bool {
+    match (known, given) {
+        (None, None) => true,
+        (Some(known), Some(given)) => known.is(given),
+        _ => false,
     }
 }
 
