@@ -13,6 +13,7 @@ mod reuse;
 mod soft;
 mod style;
 mod supported;
+mod things;
 
 use std::sync::{Arc, OnceLock};
 
@@ -473,20 +474,6 @@ impl Stage {
             self.toy.shown.write(gpu, &self.posed);
         }
         is_new
-    }
-
-    /// Sets the things of a picture, unless they are the same; the baseline ignores things.
-    fn take_things(&mut self, gpu: &Gpu, input: &FrameInput) {
-        let given = input.things.as_ref();
-        let given = given.filter(|things| matches!(self.settings, Settings::Model(_)) && things.has_any());
-        let is_known = match (given, &self.things) {
-            (None, None) => true,
-            (Some(given), Some(known)) => known.given().is(given),
-            _ => false,
-        };
-        if !is_known {
-            self.things = given.map(|given| Things::new(gpu, given));
-        }
     }
 
     fn layout(&self) -> SceneLayout<'_> {

@@ -8,11 +8,12 @@ use glam::{UVec2, Vec4};
 use super::footprint::{AROUND_TOY_PX, Footprint, SPARE_PX};
 use super::method::Method;
 use super::soft;
+use super::things::are_same;
 use super::{MethodState, Stage};
 use crate::baseline::Baseline;
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{Baseline as Uniform, uniform};
-use crate::frame::warning::{Thing, Warning};
+use crate::frame::warning::Warning;
 use crate::geometry::displacement::is_same_view;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::view::View;
@@ -31,7 +32,6 @@ use crate::plates::exposure::match_frame;
 use crate::preset::{BaselineSettings, ModelSettings, Settings};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, Plate};
-use app_scene::things::{Mark, Things as GivenThings};
 
 /// Step of the region's size under a moving camera, so that the size stays the same for a while.
 const REGION_STEP_PX: u32 = 64;
@@ -355,31 +355,6 @@ impl Stage {
             .then_some(Warning::NoLight { has_ambient })
     }
 
-    /// Warnings about things beside the toy in the pictures.
-    pub(super) fn thing_warnings(&self) -> impl Iterator<Item = Warning> {
-        let things = self.things.as_ref();
-        let reported = [
-            (Mark::Thing, Thing::OnReceiver),
-            (Mark::BeforeToy, Thing::BeforeToy),
-            (Mark::WrongPlate, Thing::InPlateAlone),
-        ];
-        let all = things.into_iter().chain(self.people.marks());
-        let count = move |mark| {
-            all.clone()
-                .map(|things| things.given().count(mark))
-                .sum::<usize>()
-        };
-        let n_in_plate = things.map_or(0, |things| things.given().n_in_plate_alone());
-        // A thing before the toy mostly comes with a shadow.
-        let is_reported = move |mark: Mark| match mark {
-            Mark::Thing => count(mark) > count(Mark::BeforeToy),
-            Mark::WrongPlate => n_in_plate > 0,
-            _ => count(mark) > 0,
-        };
-        let reported = reported.into_iter().filter(move |(mark, _)| is_reported(*mark));
-        reported.map(|(_, thing)| Warning::Thing(thing))
-    }
-
     fn model(&self, gpu: &Gpu, plan: Plan, footprint: &Footprint) -> Method {
         let globals = globals(&footprint.view, &plan.region, &self.layout())
             .with_boxes(&plan.toy_box, &plan.physical_box)
@@ -431,15 +406,6 @@ impl Stage {
         let uniform = uniform(&self.layout(), &footprint.bounds, settings);
         let plan = BaselinePlan::new(&self.facts(footprint, (region, None)), settings);
         (plan, globals, uniform)
-    }
-}
-
-/// Whether both mark the same pictures, or neither any.
-fn are_same(known: Option<&GivenThings>, given: Option<&GivenThings>) -> bool {
-    match (known, given) {
-        (None, None) => true,
-        (Some(known), Some(given)) => known.is(given),
-        _ => false,
     }
 }
 
