@@ -178,7 +178,8 @@ impl Commanded {
         } else if !wanted.tracking && self.tracking {
             commands.push(PlatformCommand::PauseTracking.into());
         }
-        if wanted.finds_people != self.finds_people {
+        // A paused camera masks nobody.
+        if wanted.tracking && wanted.finds_people != self.finds_people {
             commands.push(PlatformCommand::FindPeople(wanted.finds_people).into());
         }
         // A restarted camera has no exposure lock.
@@ -196,7 +197,14 @@ impl Commanded {
         if wanted.is_awake != self.is_awake {
             commands.push(PlatformCommand::KeepAwake(wanted.is_awake).into());
         }
-        *self = wanted;
+        *self = Self {
+            finds_people: if wanted.tracking {
+                wanted.finds_people
+            } else {
+                self.finds_people
+            },
+            ..wanted
+        };
         commands
     }
 }

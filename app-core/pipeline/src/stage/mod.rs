@@ -4,6 +4,7 @@ pub(crate) mod camera_texture;
 mod cost_limit;
 mod footprint;
 mod glossy;
+mod marks;
 pub(crate) mod method;
 mod output;
 mod people;
@@ -13,7 +14,6 @@ mod reuse;
 mod soft;
 mod style;
 mod supported;
-mod things;
 
 use std::sync::{Arc, OnceLock};
 

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use glam::{UVec2, Vec4};
 
 use super::footprint::{AROUND_TOY_PX, Footprint, SPARE_PX};
+use super::marks::are_same;
 use super::method::Method;
 use super::soft;
-use super::things::are_same;
 use super::{MethodState, Stage};
 use crate::baseline::Baseline;
 use crate::baseline::plan::BaselinePlan;
