@@ -18,7 +18,7 @@ pub struct WatchJob {
 }
 
 impl WatchJob {
-    /// Runs the search, which takes some hundredths of a second.
+    /// Runs the search, which takes a tenth of a second or two.
     #[must_use]
     pub fn run(mut self) -> WatchedJob {
         let result = self.watcher.look(&self.conditions, &self.input);
