@@ -270,6 +270,7 @@ impl Shell {
         match command {
             PlatformCommand::AskPermission => camera::ask_permission(),
             PlatformCommand::OpenSettings => self.open_settings(),
+            PlatformCommand::FindPeople(finds) => self.session.find_people(finds),
             PlatformCommand::RunTracking {
                 finds_planes,
                 finds_card,

@@ -122,6 +122,8 @@ impl Session {
             // ARCore's estimate would cost time with each picture, and improved none of the
             // measured sessions.
             light_estimate: None,
+            // ARCore masks no people: its scene semantics are made for streets.
+            people: None,
             display: Display {
                 quarter_turns: self.quarter_turns(),
                 ..Display::default()

@@ -8,6 +8,7 @@ use super::report::AlignmentReport;
 use super::warning::AlignmentWarning;
 use app_scene::frame::FrameInput;
 use app_scene::gloss::Gloss;
+use app_scene::grain::Grain;
 use app_scene::reflection::Reflection;
 use app_scene::scene::{Camera, Light, Scene};
 use app_scene::sharpness::Sharpness;
@@ -31,6 +32,8 @@ pub struct Alignment {
     pub things: Option<Things>,
     /// The softness of the picture.
     pub sharpness: Sharpness,
+    /// The noise of the picture and of its plate from the same view; `None` if the picture is clean.
+    pub grain: Option<Grain>,
     /// The reflection of the receiver below the toy; `None` if it is matt, as far as the picture shows.
     pub reflection: Option<Reflection>,
     /// Gloss of the toy.
@@ -52,6 +55,7 @@ impl Alignment {
             scene: None,
             things: input.things.clone(),
             sharpness: input.sharpness,
+            grain: input.grain,
             reflection: input.reflection,
             gloss: input.gloss,
             report: AlignmentReport::default(),
@@ -69,6 +73,7 @@ impl Alignment {
             .with_lights(self.lights.clone().or_else(|| input.lights.clone()))
             .with_things(self.things.clone())
             .with_sharpness(self.sharpness)
+            .with_grain(self.grain)
             .with_reflection(self.reflection)
             .with_gloss(self.gloss)
     }

@@ -17,7 +17,7 @@
 //! session, and removed for the shadows (`lights/reflection`).
 //!
 //! The softness of the photograph, relative to its plate and at the toy's outline, is measured as
-//! well (`softness`).
+//! well (`softness`), and so is its noise beside the plate's ([`Grain`](app_scene::grain::Grain)).
 //!
 //! On request, the **focal length** or the **scale** of the world is estimated first, from toy and
 //! shadow together (`ratio`), and before all else the distortion of the **lens**
@@ -68,8 +68,10 @@ mod rigid_motion;
 mod robust;
 mod shape;
 mod silhouette;
+mod smaller;
 mod softness;
 mod standing_search;
+mod thing_watcher;
 mod things;
 mod toy_search;
 mod view;
@@ -106,6 +108,7 @@ pub use report::{
 };
 pub use silhouette::Silhouette;
 pub use standing_search::{NewObject, StandingPose, StandingSearch, TableChange};
+pub use thing_watcher::{Conditions, ThingWatcher, Watched};
 pub use toy_search::{FoundToy, ToySearch, ViewDirection, find_toy};
 pub use warning::AlignmentWarning;
 
@@ -143,6 +146,8 @@ pub struct Aligner {
     lights: Option<KeptLights>,
     /// The things in the latest view.
     things: Option<Things>,
+    /// Memories of the search for things in the previous view, and in this one.
+    memories: [Option<things::Memory>; 2],
     /// The reflection of the receiver under the toy, once it was searched.
     reflection: KeptReflection,
     /// Planes of things on the table.
@@ -175,6 +180,7 @@ impl Aligner {
             held: None,
             lights: None,
             things: None,
+            memories: [None, None],
             gloss: None,
             reflection: KeptReflection::default(),
             planes: found_planes::FoundPlanes::default(),
@@ -216,6 +222,17 @@ impl Aligner {
         &self.scene
     }
 
+    /// The conditions of a search for things in the pictures that follow; `None` if the latest one does not show the
+    /// toy at its place.
+    #[must_use]
+    pub fn conditions(&self) -> Option<Conditions> {
+        let view = self.view.as_ref()?;
+        let lights = self.lights.as_ref()?.in_use();
+        let (scene, reflection) = (&self.scene, self.reflection.found);
+        let is_trusted = view.is_trusted(MOST_OUTLINE_PX) && !self.are_shadows_withheld;
+        is_trusted.then(|| Conditions::new(scene, lights, reflection, view.sharpness.plate_spread))
+    }
+
     /// Estimates the camera of a frame, the pose of the toy in it and the lights, and corrects each if the picture is
     /// then explained better by more than noise and the model's own errors: the table must match more of its plates,
     /// the more the camera moves; the picture of the outline must be e^6 times as likely, with neighbouring pixels
@@ -239,6 +256,9 @@ impl Aligner {
         self.align_plates();
         if given.is_empty() && self.probe.is_none() {
             self.probe = self.scene.probe.as_ref().map(ProbeReport::of).transpose()?;
+        }
+        if !is_view_known {
+            self.memories[0] = self.memories[1].take();
         }
         let seen = match self.view.take().filter(|_| is_view_known) {
             Some(view) => Seen::again(&self.scene, view, input),
@@ -313,6 +333,7 @@ impl Aligner {
                 self.are_plates_aligned = false;
                 (self.view, self.held, self.lights) = (None, None, None);
                 (self.gloss, self.things) = (None, None);
+                self.memories = [None, None];
                 self.reflection = KeptReflection::default();
             }
         }
@@ -346,6 +367,7 @@ impl Aligner {
     /// Camera and pose in a new view.
     fn see(&mut self, input: &FrameInput, kept: Option<&KeptLights>) -> Result<Seen, ToyError> {
         let withheld = self.withheld(input, (&input.camera, CAMERA_GROWN), kept)?;
+        let withheld = withheld::without_people(input, withheld);
         let Scene {
             plates, receivers, ..
         } = &*self.scene;
@@ -381,6 +403,7 @@ impl Aligner {
                 world_from_object: found.world_from_object,
                 plate_spread_px: found.plate_spread_px,
                 report: found.report,
+                grain: photograph.grain(sharpness.plate_spread),
                 sharpness,
             },
             photograph: photograph.with_plate_spread(found.plate_spread_px),
@@ -465,6 +488,7 @@ impl Aligner {
             scene: (!Arc::ptr_eq(&reported, &self.scene)).then(|| Arc::clone(&self.scene)),
             things: self.things.clone(),
             sharpness: view.map_or(input.sharpness, |view| view.sharpness),
+            grain: view.map_or(input.grain, |view| view.grain),
             gloss: self.gloss.unwrap_or(input.gloss),
             reflection: self.reflection.found.map(|found| found.reflection),
             report,

@@ -237,9 +237,9 @@ impl Aligner {
         seen: &Seen,
         planes_of: Option<Colored>,
     ) -> Result<Looked, ToyError> {
-        let sighted = seen
-            .photograph
-            .things(&self.scene, &seen.input, lights, planes_of)?;
+        let before = (planes_of, self.memories[0].as_ref());
+        let sighted = seen.photograph.things(&self.scene, &seen.input, lights, before)?;
+        self.memories[1] = sighted.memory;
         if planes_of.is_none() || sighted.things.is_none() || !self.planes.take(sighted.planes) {
             return Ok(Looked::Things(sighted.things));
         }

@@ -7,6 +7,7 @@ use super::found_planes::FoundPlanes;
 use super::lights::FoundReflection;
 use super::photograph::Photograph;
 use super::report::PlaneAlignment;
+use super::things::Memory;
 use app_scene::frame::FrameInput;
 use app_scene::gloss::Gloss;
 use app_scene::scene::Scene;
@@ -19,6 +20,8 @@ pub struct Observer {
     /// Gloss of the toy, once it was estimated.
     gloss: Option<Gloss>,
     planes: FoundPlanes,
+    /// Memory of the search for things in the previous picture.
+    memory: Option<Memory>,
     /// The reflection of the receiver under the toy, once it was searched for.
     reflection: Option<Option<FoundReflection>>,
 }
@@ -62,6 +65,7 @@ impl Observer {
         let known = self.scene(scene);
         let photograph = Photograph::new(&known, input, None);
         let sharpness = photograph.sharpness_as_given(&known, &input.world_from_object)?;
+        let grain = photograph.grain(sharpness.plate_spread);
         let lights = input.lights_in(&known);
         // It belongs to the receiver under the toy: found planes and later frames do not change it.
         let reflection = match self.reflection {
@@ -78,12 +82,15 @@ impl Observer {
         };
         let mut photograph = look.photograph(&known)?;
         let planes_of = self.planes.wanted(true);
-        let sighted = photograph.things(&known, input, &lights, planes_of)?;
+        let before = self.memory.take();
+        let sighted = photograph.things(&known, input, &lights, (planes_of, before.as_ref()))?;
         let mut things = sighted.things;
+        self.memory = sighted.memory;
         if planes_of.is_some() && things.is_some() && self.planes.take(sighted.planes) {
             let known = self.scene(scene);
             photograph = look.photograph(&known)?;
-            things = photograph.things(&known, input, &lights, None)?.things;
+            let sighted = photograph.things(&known, input, &lights, (None, before.as_ref()))?;
+            (things, self.memory) = (sighted.things, sighted.memory);
         }
         let gloss = match self.gloss {
             Some(gloss) => gloss,
@@ -96,6 +103,7 @@ impl Observer {
         // Without lights no highlight constrains it: a later frame may.
         self.gloss = (!lights.is_empty()).then_some(gloss);
         let input = input.clone().with_things(things).with_sharpness(sharpness);
+        let input = input.with_grain(grain);
         let reflection = reflection.map(|found| found.reflection);
         Ok(input.with_reflection(reflection).with_gloss(gloss))
     }

@@ -11,6 +11,7 @@ use super::picture::{Mask, Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
 use super::report::{AssumedLight, EstimatedLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::shape::Shape;
+use super::withheld::without_people;
 use super::{lights, pose};
 use crate::no_light::NoLight;
 use crate::probe::TrackedLight;
@@ -36,12 +37,13 @@ pub(super) struct Photograph {
 }
 
 impl Photograph {
-    /// Withheld pixels are not read.
+    /// Withheld pixels are not read, nor are those of people.
     pub(super) fn new(scene: &Scene, input: &FrameInput, withheld: Option<&Mask>) -> Self {
         let camera_from_world = input.camera.world_from_camera.inverse();
         let receivers = SeenReceiver::near(scene, &input.world_from_object, &camera_from_world);
         let plate = plate_for(&scene.plates, &receivers, &input.camera);
-        let frame = Picture::without(input.image.rgba(), withheld);
+        let withheld = without_people(input, withheld.cloned());
+        let frame = Picture::without(input.image.rgba(), withheld.as_ref());
         Self {
             pyramid: Pyramid::new(frame, plate, input.camera.intrinsics),
             receivers,

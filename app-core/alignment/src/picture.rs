@@ -69,8 +69,13 @@ impl Picture {
 
     /// A pixel; `None` outside the picture, or if it is unknown.
     pub(super) fn get(&self, at: IVec2) -> Option<Color> {
-        let pixel = self.pixels.get(index_in(self.size_px, at)?);
-        pixel.copied().filter(|color| !color[0].is_nan())
+        self.pixel(index_in(self.size_px, at)?)
+    }
+
+    /// The same by the pixel's index.
+    pub(super) fn pixel(&self, index: usize) -> Option<Color> {
+        let pixel = self.pixels.get(index).copied();
+        pixel.filter(|color| !color[0].is_nan())
     }
 
     /// The value at a place in pixels, bilinear between four centres; `None` if one of them is

@@ -7,6 +7,7 @@ use super::photograph::Photograph;
 use super::report::{CameraAlignment, PoseAlignment};
 use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
+use app_scene::grain::Grain;
 use app_scene::scene::{Camera, Scene};
 use app_scene::sharpness::Sharpness;
 use app_scene::things::Things;
@@ -32,6 +33,7 @@ pub(super) struct AlignedView {
     pub(super) plate_spread_px: f64,
     pub(super) report: Option<PoseAlignment>,
     pub(super) sharpness: Sharpness,
+    pub(super) grain: Option<Grain>,
 }
 
 impl Seen {

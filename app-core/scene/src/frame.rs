@@ -8,6 +8,7 @@ use crate::camera_frame::CameraImage;
 use crate::depth::Depth;
 use crate::gloss::Gloss;
 use crate::grain::Grain;
+use crate::people::People;
 use crate::reflection::Reflection;
 use crate::scene::check;
 use crate::scene::{Camera, InputError, Light, LightEstimate, Pose, Scene};
@@ -40,6 +41,10 @@ pub struct FrameInput {
     /// Depths of the picture, if a sensor measured them. Only alignment uses them, to find planes on
     /// which things let the shadow fall.
     pub depth: Option<Depth>,
+    /// The people in the picture, if the platform shows where they are: one whose mask overlaps the
+    /// toy is before it, others are beside it. They stay as the camera shows them, and nothing is
+    /// learned from their pixels.
+    pub people: Option<People>,
     /// Other things in the picture, if any are known.
     pub things: Option<Things>,
     /// Measured softness of the picture, which is applied to everything that is composed into it.
@@ -61,7 +66,7 @@ pub struct FrameInput {
     /// lights are unknown. At 0 nothing is learned.
     pub effect: f64,
     /// The picture's noise, which is added to synthesised pixels; `None` if the picture is clean.
-    /// It is read with a new picture or pose, and only by presets of the model.
+    /// It is read with a new picture or pose, and only by presets of the model. Alignment measures it.
     pub grain: Option<Grain>,
     /// Artistic strength and softness of the shown shadow, for presets of the model. The first
     /// frame with a strength other than 1 compiles a shader; a softness above all earlier ones may
@@ -74,6 +79,7 @@ pub struct FrameInput {
 pub struct Observations {
     things: Option<Things>,
     sharpness: Sharpness,
+    grain: Option<Grain>,
     reflection: Option<Reflection>,
     gloss: Gloss,
 }
@@ -91,6 +97,7 @@ impl FrameInput {
             lights: None,
             light_estimate: None,
             depth: None,
+            people: None,
             things: None,
             sharpness: Sharpness::SHARP,
             gloss: Gloss::NONE,
@@ -152,12 +159,20 @@ impl FrameInput {
         self
     }
 
+    /// Sets the people in the picture.
+    #[must_use]
+    pub fn with_people(mut self, people: Option<People>) -> Self {
+        self.people = people;
+        self
+    }
+
     /// All observations of the picture, for another input with the same picture.
     #[must_use]
     pub fn observations(&self) -> Observations {
         Observations {
             things: self.things.clone(),
             sharpness: self.sharpness,
+            grain: self.grain,
             reflection: self.reflection,
             gloss: self.gloss,
         }
@@ -168,6 +183,7 @@ impl FrameInput {
     pub fn with_observations(self, observations: Observations) -> Self {
         self.with_things(observations.things)
             .with_sharpness(observations.sharpness)
+            .with_grain(observations.grain)
             .with_reflection(observations.reflection)
             .with_gloss(observations.gloss)
     }
@@ -266,6 +282,10 @@ impl FrameInput {
             let [width_px, height_px] = things.size_px().to_array();
             InputError::at("things", check::picture_size(width_px, height_px))?;
             check::camera("things.camera", things.camera())?;
+        }
+        if let Some(people) = &self.people {
+            let [width_px, height_px] = people.size_px().to_array();
+            InputError::at("people", check::picture_size(width_px, height_px))?;
         }
         let estimate = self.light_estimate.as_ref();
         estimate.map_or(Ok(()), |estimate| estimate.check("light_estimate"))

@@ -1,6 +1,6 @@
 //! Grain: the noise of a picture, measured against a plate of the same view.
 
-use crate::geometry::color::{linear_of_codes, linear_per_srgb};
+use crate::geometry::color::{linear_from_srgb, linear_of_codes, linear_per_srgb};
 use crate::scene::{Camera, Image, InputError, Scene, check};
 
 /// Side of a block of pixels in which noise is separated from texture.
@@ -11,7 +11,7 @@ const MAX_BLOCKS: u32 = 6000;
 const N_PX: usize = (BLOCK_PX * BLOCK_PX) as usize;
 const N: f64 = N_PX as f64;
 /// Codes that are neither clipped nor mostly rounding.
-const USABLE_CODES: std::ops::RangeInclusive<u8> = 10..=250;
+const USABLE_CODES: [f32; 2] = [10.0, 250.0];
 /// Classes of brightness, uniform in the square root of light.
 const N_CLASSES: usize = 16;
 /// Number of blocks that a class needs.
@@ -85,7 +85,23 @@ impl Grain {
         if !(frame.is_of_size(size_px) && plate.is_of_size(size_px)) {
             return None;
         }
-        let (statistics, common) = statistics(frame, plate);
+        let light_of = linear_of_codes();
+        let pixel = |image: &Image, index: usize| {
+            let codes = image.rgba8.get(4 * index..4 * index + 3)?;
+            Some([0, 1, 2].map(|channel| light_of[usize::from(codes[channel])]))
+        };
+        Self::between(size_px, |index| pixel(frame, index), |index| pixel(plate, index))
+    }
+
+    /// The same for two pictures in linear light, each a function from a pixel's index, rows from
+    /// the top, to its channels; `None` for a pixel that is unknown.
+    #[must_use]
+    pub fn between(
+        size_px: [u32; 2],
+        frame: impl Fn(usize) -> Option<[f32; 3]>,
+        plate: impl Fn(usize) -> Option<[f32; 3]>,
+    ) -> Option<Self> {
+        let (statistics, common) = statistics(size_px, [&frame, &plate]);
         // Medians over blocks: shadows, things and edges that the plate lacks are no noise.
         let typical_codes2 = |value: fn(&Statistics) -> f64| {
             median(
@@ -168,16 +184,22 @@ impl Noise {
     }
 }
 
-/// Statistics of blocks all over the picture, channel by channel, and the correlation between
-/// channels.
-fn statistics(frame: &Image, plate: &Image) -> (Vec<Statistics>, f64) {
-    let light_of = linear_of_codes();
-    let [columns, rows] = [frame.width_px, frame.height_px].map(|side| side / BLOCK_PX);
+/// Light of a pixel by its index; `None` if it is unknown.
+type Lights<'a> = &'a dyn Fn(usize) -> Option<[f32; 3]>;
+
+/// Statistics of blocks all over two pictures, the frame and its plate, channel by channel, and the
+/// correlation between channels.
+fn statistics(size_px: [u32; 2], pictures: [Lights<'_>; 2]) -> (Vec<Statistics>, f64) {
+    let usable = USABLE_CODES.map(|code| linear_from_srgb(code / 255.0));
+    let [columns, rows] = size_px.map(|side| side / BLOCK_PX);
     let step = (columns * rows).div_ceil(MAX_BLOCKS).max(1) as usize;
     let (mut statistics, mut common) = (Vec::new(), Vec::new());
     for block in (0..columns * rows).step_by(step) {
         let corner = [block % columns, block / columns].map(|at| at * BLOCK_PX);
-        let channels = [0, 1, 2].map(|channel| Channel::new([frame, plate], corner, channel, &light_of));
+        let Some(blocks) = blocks(size_px[0], corner, pictures) else {
+            continue;
+        };
+        let channels = [0, 1, 2].map(|channel| Channel::new(&blocks, channel, usable));
         let tell = |pair: [usize; 2]| {
             let [a, b] = pair.map(|index| channels[index].as_ref());
             Some(a?.covariance(b?))
@@ -192,19 +214,32 @@ fn statistics(frame: &Image, plate: &Image) -> (Vec<Statistics>, f64) {
     (statistics, median(common.into_iter()))
 }
 
+/// The pixels of a block.
+type Block = [[f32; 3]; N_PX];
+
+/// The block at a corner in either picture; `None` if one of its pixels is unknown.
+fn blocks(width_px: u32, [left, top]: [u32; 2], pictures: [Lights<'_>; 2]) -> Option<[Block; 2]> {
+    let mut blocks = [[[0.0; 3]; N_PX]; 2];
+    for (picture, block) in pictures.into_iter().zip(&mut blocks) {
+        for (index, pixel) in (0..).zip(block.iter_mut()) {
+            let [x, y] = [left + index % BLOCK_PX, top + index / BLOCK_PX];
+            *pixel = picture((y * width_px + x) as usize)?;
+        }
+    }
+    Some(blocks)
+}
+
 impl Channel {
-    /// `None` if a pixel of either picture is unusable.
-    fn new(pictures: [&Image; 2], corner: [u32; 2], channel: usize, light_of: &[f32; 256]) -> Option<Self> {
+    /// `None` if a pixel of either picture is darker or brighter than usable.
+    fn new(blocks: &[Block; 2], channel: usize, [darkest, brightest]: [f32; 2]) -> Option<Self> {
         let [mut frame, mut plate] = [[0.0; N_PX]; 2];
-        let width = pictures[0].width_px;
-        for (picture, values) in pictures.iter().zip([&mut frame, &mut plate]) {
-            for (index, value) in (0..).zip(values.iter_mut()) {
-                let [x, y] = [corner[0] + index % BLOCK_PX, corner[1] + index / BLOCK_PX];
-                let code = *picture.rgba8.get(4 * (y * width + x) as usize + channel)?;
-                if !USABLE_CODES.contains(&code) {
+        for (block, values) in blocks.iter().zip([&mut frame, &mut plate]) {
+            for (pixel, value) in block.iter().zip(values.iter_mut()) {
+                let light = pixel[channel];
+                if !(darkest..=brightest).contains(&light) {
                     return None;
                 }
-                *value = f64::from(light_of[usize::from(code)]);
+                *value = f64::from(light);
             }
         }
         let [light, plate_light] = [&frame, &plate].map(|values| values.iter().sum::<f64>() / N);

@@ -11,6 +11,7 @@ pub mod geometry;
 pub mod gloss;
 pub mod grain;
 pub mod lens;
+pub mod people;
 pub mod picture;
 pub mod reflection;
 pub mod scene;

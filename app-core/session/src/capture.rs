@@ -24,11 +24,15 @@ use self::field::{LENS, WHOLE_FILE, at, frame_field, in_index, read_named};
 use self::record::{CaptureRecord, FORMAT, Header, VERSION};
 use super::error::{PictureError, SessionError, SessionErrorKind};
 use super::files::{Files, INDEX_FILE, MAX_INDEX_BYTES};
-use super::picture::{PictureSize, check_depth, check_head, decode_depth, decode_mask, decode_photo};
+use super::picture::{
+    PictureSize, check_depth, check_head, check_people, decode_depth, decode_mask, decode_people,
+    decode_photo,
+};
 use super::tags::exif_orientation;
 use super::{GroundTruth, Session, SessionFrame, SessionWarning, Truth};
 use app_scene::depth::Depth;
 use app_scene::lens::{Distortion, Lens};
+use app_scene::people::People;
 use app_scene::scene::{Camera, Image, Intrinsics, LightEstimate, Pose, Scene};
 
 #[cfg(feature = "schema")]
@@ -46,8 +50,9 @@ pub struct Capture {
     frames: Vec<Frame>,
     /// The last frame's picture: a still camera repeats one picture many times.
     last_picture: Mutex<Option<(FrameKey, Photo)>>,
-    /// The last frame's depths.
+    /// The last frame's depths, and its mask of people.
     last_depth: Mutex<Option<(String, Depth)>>,
+    last_people: Mutex<Option<(String, People)>>,
 }
 
 /// A picture, and the camera whose distortion is removed from it.
@@ -84,6 +89,8 @@ struct Frame {
     light_estimate: Option<LightEstimate>,
     /// File of its depth picture.
     depth: Option<String>,
+    /// File of its mask of people.
+    people: Option<String>,
     shown_pose: Pose,
     world_from_shown: Option<DMat4>,
     warnings: Vec<SessionWarning>,
@@ -143,21 +150,38 @@ impl Capture {
         Ok((frame, photo))
     }
 
-    fn depth(&self, index: usize, frame: &Frame) -> Result<Option<Depth>, SessionError> {
-        let Some(path) = &frame.depth else {
+    /// A picture of a frame that is in a file of its own, decoded once for frames that repeat it.
+    fn beside<T: Clone>(
+        &self,
+        (path, field): (Option<&String>, &str),
+        last: &Mutex<Option<(String, T)>>,
+        decode: impl Fn(&[u8], PictureSize) -> Result<T, PictureError>,
+    ) -> Result<Option<T>, SessionError> {
+        let Some(path) = path else {
             return Ok(None);
         };
-        let mut last = self.last_depth.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, depth)) = last.as_ref().filter(|(of_last, _)| of_last == path) {
-            return Ok(Some(depth.clone()));
+        let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, decoded)) = last.as_ref().filter(|(of_last, _)| of_last == path) {
+            return Ok(Some(decoded.clone()));
         }
-        let depth = self
-            .store
-            .read(path, &frame_field(index, ".depth"), decode_depth)?;
-        *last = Some((path.clone(), depth.clone()));
-        Ok(Some(depth))
+        let decoded = self.store.read(path, field, decode)?;
+        *last = Some((path.clone(), decoded.clone()));
+        Ok(Some(decoded))
+    }
+
+    fn depth(&self, index: usize, frame: &Frame) -> Result<Option<Depth>, SessionError> {
+        let field = frame_field(index, ".depth");
+        self.beside((frame.depth.as_ref(), &field), &self.last_depth, decode_depth)
+    }
+
+    fn people(&self, index: usize, frame: &Frame) -> Result<Option<People>, SessionError> {
+        let field = frame_field(index, ".people");
+        self.beside((frame.people.as_ref(), &field), &self.last_people, decode_people)
     }
 }
+
+/// Checks format and size of a picture without decoding it.
+type Check = fn(&[u8], PictureSize) -> Result<(), PictureError>;
 
 impl Session for Capture {
     fn scene(&self) -> &Scene {
@@ -183,6 +207,7 @@ impl Session for Capture {
             exposure: frame.exposure,
             light_estimate: frame.light_estimate,
             depth: self.depth(index, frame)?,
+            people: self.people(index, frame)?,
             shown_pose: frame.shown_pose.clone(),
             world_from_shown: frame.world_from_shown,
             warnings: frame.warnings.iter().cloned().chain(turned).collect(),
@@ -190,7 +215,7 @@ impl Session for Capture {
     }
 
     fn check_pictures(&self, frames: Range<usize>) -> Result<(), SessionError> {
-        let (mut known, mut known_depths) = (HashSet::new(), HashSet::new());
+        let (mut known, mut known_others) = (HashSet::new(), HashSet::new());
         for index in frames {
             let frame = self.frame_at(index)?;
             let truth = frame.truth.as_ref();
@@ -205,13 +230,14 @@ impl Session for Capture {
                     self.store.read(path, &frame_field(index, field), check)?;
                 }
             }
-            if let Some(path) = frame
-                .depth
-                .as_ref()
-                .filter(|path| known_depths.insert(path.as_str()))
-            {
-                self.store
-                    .read(path, &frame_field(index, ".depth"), check_depth)?;
+            let others: [(_, _, Check); 2] = [
+                (frame.depth.as_ref(), ".depth", check_depth),
+                (frame.people.as_ref(), ".people", check_people),
+            ];
+            for (path, field, check) in others {
+                if let Some(path) = path.filter(|path| known_others.insert((path.as_str(), field))) {
+                    self.store.read(path, &frame_field(index, field), check)?;
+                }
             }
         }
         Ok(())

@@ -118,6 +118,23 @@ pub enum PictureError {
     /// Depths that are no grey PNG of 16 bits.
     #[error("not a grey PNG of 16 bits, as depths in millimetres must be")]
     NotDepths,
+    /// A mask of people of another shape than the session's pictures.
+    #[error(
+        "the mask is {width_px} x {height_px} px, which is not the shape of the session's pictures, {picture_width_px} x {picture_height_px} px: turn or cut it like the pictures"
+    )]
+    PeopleSize {
+        /// Width in the header.
+        width_px: u32,
+        /// Height in the header.
+        height_px: u32,
+        /// Width of the session's pictures.
+        picture_width_px: u32,
+        /// Height of the session's pictures.
+        picture_height_px: u32,
+    },
+    /// A mask of people that is no grey PNG of 8 bits.
+    #[error("not a grey PNG of 8 bits, as a mask of people must be")]
+    NotPeople,
     /// Damaged or cut short.
     #[error("damaged picture: {0}")]
     Decode(#[from] image::ImageError),

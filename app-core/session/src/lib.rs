@@ -25,6 +25,7 @@ use thiserror::Error;
 use app_scene::depth::Depth;
 use app_scene::frame::FrameInput;
 use app_scene::lens::Lens;
+use app_scene::people::People;
 use app_scene::scene::{Camera, Image, LightEstimate, Pose, Scene};
 use app_scene::toy::ToyWarning;
 use app_scene::words::Number;
@@ -101,6 +102,8 @@ pub struct SessionFrame {
     pub light_estimate: Option<LightEstimate>,
     /// Depths of the picture, if they are recorded.
     pub depth: Option<Depth>,
+    /// People in the picture, if a mask of them is recorded.
+    pub people: Option<People>,
     /// The pose to show.
     pub shown_pose: Pose,
     /// The place to show the toy, if it differs from the real toy's.
@@ -115,6 +118,7 @@ impl From<&SessionFrame> for FrameInput {
             .with_exposure(frame.exposure)
             .with_light_estimate(frame.light_estimate)
             .with_depth(frame.depth.clone())
+            .with_people(frame.people.clone())
             .with_shown_pose(frame.shown_pose.clone())
             .with_world_from_shown(frame.world_from_shown)
     }

@@ -8,14 +8,15 @@ use image::{ColorType, DynamicImage, ImageDecoder, Limits};
 use super::error::PictureError;
 use super::tags::{JPEG_MAGIC, PNG_MAGIC};
 use app_scene::depth::Depth;
+use app_scene::people::People;
 use app_scene::scene::{Image, check};
 use glam::UVec2;
 
 /// Room for data of a picture file besides pixels: colour profiles, previews, text.
 const EXTRA_BYTES: u64 = 16 << 20;
 
-/// Memory for the decoder of a depth picture of the largest size.
-const MAX_DEPTH_BYTES: u64 = 2 * check::MAX_PICTURE_PIXELS + EXTRA_BYTES;
+/// Memory for the decoder of a picture of the largest size with 16 bits per pixel.
+const MAX_GREY_BYTES: u64 = 2 * check::MAX_PICTURE_PIXELS + EXTRA_BYTES;
 
 /// The size of all pictures of a session.
 #[derive(Clone, Copy)]
@@ -68,29 +69,68 @@ pub(super) fn check_depth(bytes: &[u8], size: PictureSize) -> Result<(), Picture
 }
 
 fn depth_decoder(bytes: &[u8], size: PictureSize) -> Result<PngDecoder<Cursor<&[u8]>>, PictureError> {
+    let decoder = grey_decoder(bytes, ColorType::L16)?.ok_or(PictureError::NotDepths)?;
+    if is_alike(&decoder, size) {
+        return Ok(decoder);
+    }
+    let (width_px, height_px) = decoder.dimensions();
+    Err(PictureError::DepthSize {
+        width_px,
+        height_px,
+        picture_width_px: size.width_px,
+        picture_height_px: size.height_px,
+    })
+}
+
+/// Decodes a mask of people, which may be of another size than the pictures but not of another
+/// shape.
+pub(super) fn decode_people(bytes: &[u8], size: PictureSize) -> Result<People, PictureError> {
+    let decoder = people_decoder(bytes, size)?;
+    let DynamicImage::ImageLuma8(image) = DynamicImage::from_decoder(decoder)? else {
+        return Err(PictureError::NotPeople);
+    };
+    let size_px = UVec2::new(image.width(), image.height());
+    People::new(size_px, image.into_raw()).ok_or(PictureError::NotPeople)
+}
+
+/// Checks format and size of a mask of people without decoding it.
+pub(super) fn check_people(bytes: &[u8], size: PictureSize) -> Result<(), PictureError> {
+    people_decoder(bytes, size).map(|_| ())
+}
+
+fn people_decoder(bytes: &[u8], size: PictureSize) -> Result<PngDecoder<Cursor<&[u8]>>, PictureError> {
+    let decoder = grey_decoder(bytes, ColorType::L8)?.ok_or(PictureError::NotPeople)?;
+    if is_alike(&decoder, size) {
+        return Ok(decoder);
+    }
+    let (width_px, height_px) = decoder.dimensions();
+    Err(PictureError::PeopleSize {
+        width_px,
+        height_px,
+        picture_width_px: size.width_px,
+        picture_height_px: size.height_px,
+    })
+}
+
+/// Decoder of a PNG of one channel; `None` if it is none of this type.
+fn grey_decoder(bytes: &[u8], kind: ColorType) -> Result<Option<PngDecoder<Cursor<&[u8]>>>, PictureError> {
     if !bytes.starts_with(PNG_MAGIC) {
-        return Err(PictureError::NotDepths);
+        return Ok(None);
     }
     let mut limits = Limits::default();
-    limits.max_alloc = Some(MAX_DEPTH_BYTES);
+    limits.max_alloc = Some(MAX_GREY_BYTES);
     let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits)?;
-    if decoder.color_type() != ColorType::L16 {
-        return Err(PictureError::NotDepths);
-    }
+    Ok((decoder.color_type() == kind).then_some(decoder))
+}
+
+/// Whether a picture has the shape of a session's pictures and a size within the limits.
+fn is_alike(decoder: &impl ImageDecoder, size: PictureSize) -> bool {
     let (width_px, height_px) = decoder.dimensions();
     let [width, height, of_width, of_height] =
         [width_px, height_px, size.width_px, size.height_px].map(f64::from);
     // Sides of the same shape, each rounded to whole pixels.
     let is_alike = (width * of_height - height * of_width).abs() <= of_width.max(of_height);
-    if !is_alike || check::picture_size(width_px, height_px).is_err() {
-        return Err(PictureError::DepthSize {
-            width_px,
-            height_px,
-            picture_width_px: size.width_px,
-            picture_height_px: size.height_px,
-        });
-    }
-    Ok(decoder)
+    is_alike && check::picture_size(width_px, height_px).is_ok()
 }
 
 /// Checks format and size of a photograph or a mask, and a JPEG's end, without decoding it.

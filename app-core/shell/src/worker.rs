@@ -5,6 +5,7 @@
 //! | `Plate` | on a thread | `Plated` |
 //! | `Search` | on a thread | `Searched` |
 //! | `Align` | on a thread | `Aligned` |
+//! | `Watch` | on a thread | `Watched` |
 //! | `SavePhoto` | read the picture, and write it on a thread | `Saved`, and the file for the gallery |
 //! | `Video` | pass each drawn picture to a thread, until the video ends | `Saved`, and the file for the gallery |
 //! | `Record` | on a thread, until the recording ends | `Recorded` |
@@ -143,6 +144,9 @@ impl Worker {
                 Pace::Live => self.align(*job),
                 Pace::Repeatable => self.waiting.push(*job),
             },
+            WorkCommand::Watch(job) => self.run("watch", ShellEvent::Watched(None), move |_| {
+                ShellEvent::Watched(Some(Box::new(job.run())))
+            }),
             WorkCommand::SavePhoto => self.save_photo(live),
             WorkCommand::Video(true) => self.begin_video(),
             WorkCommand::Video(false) => self.video = None,

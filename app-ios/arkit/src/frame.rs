@@ -151,6 +151,7 @@ pub fn camera_frame(
             color_temperature_k: Some(kelvin).filter(|kelvin| kelvin.is_finite() && *kelvin > 0.0),
             ..LightEstimate::default()
         }),
+        people: None,
         display: Display {
             quarter_turns: convert::quarter_turns(raw.orientation),
             ..Display::default()

@@ -3,6 +3,7 @@
 
 pub mod convert;
 pub mod frame;
+pub mod people;
 
 #[cfg(target_os = "ios")]
 pub mod camera;
@@ -16,6 +17,8 @@ mod pixels;
 pub mod read;
 #[cfg(target_os = "ios")]
 mod scan;
+#[cfg(target_os = "ios")]
+mod segments;
 #[cfg(target_os = "ios")]
 pub mod session;
 #[cfg(target_arch = "aarch64")]

@@ -1,5 +1,5 @@
 //! Reads an `ARFrame` into plain numbers. This is the shell's only file that reads a frame of
-//! ARKit.
+//! ARKit, but for its mask of people.
 
 use std::ffi::c_void;
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::rc::Rc;
 
 use app_core::app::{ArSession, ShellEvent};
+use app_core::camera_frame::CameraFrame;
 use app_core::gpu::DeviceHandle;
 use glam::DMat4;
 use objc2::rc::{Allocated, Retained, autoreleasepool};
@@ -22,7 +23,7 @@ use objc2_ui_kit::UIView;
 use super::coaching::Coach;
 use super::frame::{Count, camera_frame};
 use super::textures::TextureCache;
-use super::{card, read, scan, shim};
+use super::{card, read, scan, segments, shim};
 use crate::convert::{self, AfterFailure};
 use app_shell::guard::guarded;
 
@@ -47,6 +48,8 @@ struct Shared {
     orientation: Cell<isize>,
     /// Detections of the latest run.
     finds: Cell<Finds>,
+    /// Whether masks of people are asked for.
+    finds_people: Cell<bool>,
     /// The card's reference image, if a person uses the card and ARKit has not refused it.
     card: RefCell<Card>,
     /// Reference object of the toy; `None` without a scan, or if ARKit has refused it.
@@ -103,6 +106,9 @@ impl Shared {
                 configuration.setDetectionImages(Some(&NSSet::from_slice(&[&*card])));
                 configuration.setMaximumNumberOfTrackedImages(1);
             }
+            if self.finds_people.get() {
+                segments::ask(&configuration);
+            }
             if let Some(scan) = &*self.scan.borrow() {
                 configuration.setDetectionObjects(&NSSet::from_slice(&[&**scan]));
             }
@@ -157,7 +163,10 @@ impl Shared {
         let textures = self.textures.borrow();
         let orientation = self.orientation.get();
         let taken = read::with_raw(frame, held, orientation, textures.as_ref(), |raw, lent| {
-            camera_frame(raw, lent, count)
+            camera_frame(raw, lent, count).map(|taken| CameraFrame {
+                people: segments::read(frame),
+                ..taken
+            })
         });
         match taken {
             Some(Ok(frame)) => {
@@ -258,6 +267,7 @@ impl Session {
             is_interrupted: Cell::new(false),
             orientation: Cell::new(0),
             finds: Cell::default(),
+            finds_people: Cell::default(),
             card: RefCell::default(),
             scan: RefCell::default(),
             coach: RefCell::default(),
@@ -297,6 +307,14 @@ impl Session {
             return;
         }
         self.forget_toys();
+        if self.is_running.get() {
+            self.shared.run(&self.session, ARSessionRunOptions::empty());
+        }
+    }
+
+    /// Masks people from now on, at once if the session runs, if this phone can; `false` ends that.
+    pub fn find_people(&self, finds: bool) {
+        self.shared.finds_people.set(finds);
         if self.is_running.get() {
             self.shared.run(&self.session, ARSessionRunOptions::empty());
         }

@@ -9,7 +9,6 @@ use app_core::alignment::LensAlignment;
 use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
 use app_core::governor::QualityStep;
-use app_core::grain::Grain;
 use app_core::preset::Preset;
 use app_core::scene::{Image, Scene};
 use app_core::session::{GroundTruth, Session, SessionFrame, Truth};
@@ -191,14 +190,12 @@ impl Replay<'_> {
         let session = self.session;
         let frame = session.frame(index)?;
         alignments.align(session.scene(), index, &frame)?;
-        let recorded = FrameInput::from(&frame);
         let photograph = session.photograph(index)?;
         let truth = self.truth.map(|truth| truth.truth(index)).transpose()?.flatten();
         let failed = |reason| ReplayError::Score { index, reason };
         let floor = truth.as_ref().map(|truth| floor(&photograph, truth));
         let shot = Shot {
             floor_rmse: floor.transpose().map_err(failed)?.flatten(),
-            grain: Grain::of(session.scene(), recorded.image.rgba(), &recorded.camera),
             session,
             alignments,
             index,
@@ -249,8 +246,6 @@ pub(crate) struct Shot<'a> {
     pub(crate) alignments: &'a Alignments,
     pub(crate) index: usize,
     pub(crate) frame: SessionFrame,
-    /// Grain of the camera's picture.
-    pub(crate) grain: Option<Grain>,
     pub(crate) truth: Option<Truth>,
     /// The part of an error that is noise and rounding alone.
     floor_rmse: Option<f64>,
@@ -259,9 +254,7 @@ pub(crate) struct Shot<'a> {
 impl Shot<'_> {
     /// The core's input.
     pub(crate) fn input(&self, preset: Preset) -> FrameInput {
-        self.alignments
-            .input(self.index, &self.frame, preset)
-            .with_grain(self.grain)
+        self.alignments.input(self.index, &self.frame, preset)
     }
 
     fn failed(&self, reason: CoreError) -> ReplayError {

@@ -20,6 +20,7 @@ mod real_pictures;
 mod reflection;
 mod softness;
 mod texture;
+mod thing_watcher;
 mod things;
 mod uncertainty;
 mod withheld;

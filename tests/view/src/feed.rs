@@ -155,6 +155,8 @@ impl Feed {
             anchors: Arc::from(Vec::<Anchor>::new()),
             world_from_card: self.world_from_card().filter(|_| is_known && !self.is_dark),
             light_estimate: of.light_estimate,
+            // They belong to the frame's own picture.
+            people: of.people.clone().filter(|_| self.is_toy_there && !self.is_dark),
             display: self.display,
         }
     }

@@ -50,6 +50,7 @@ impl Moment {
             exposure: input.exposure,
             light_estimate: input.light_estimate,
             depth: input.depth.clone(),
+            people: input.people.clone(),
             shown_pose: input.shown_pose,
             world_from_shown: input.world_from_shown,
             warnings: Vec::new(),

@@ -10,6 +10,7 @@ use crate::{gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
 use app_scene::geometry::nearest_receivers::nearest_to_toy;
 use app_scene::gloss::Gloss;
+use app_scene::grain::Grain;
 use app_scene::scene::{Camera, Light, Scene};
 use app_scene::sharpness::{Sharpness, Spread};
 use app_scene::things::Things;
@@ -25,6 +26,8 @@ pub(crate) struct Sighted {
     pub(crate) things: Option<Things>,
     /// Planes of things.
     pub(crate) planes: Vec<FoundReceiver>,
+    /// Memory for the search in the next picture; `None` if the pictures cannot show any things.
+    pub(crate) memory: Option<things::Memory>,
 }
 
 impl Photograph {
@@ -94,13 +97,13 @@ impl Photograph {
     }
 
     /// Other things beside the toy in its place, under given lights; `None` if they cannot be
-    /// detected.
+    /// detected. `memory` is that of the search in the previous picture, if there was any.
     pub(crate) fn things(
         &self,
         scene: &Scene,
         input: &FrameInput,
         lights: &[Light],
-        planes_of: Option<Colored>,
+        (planes_of, memory): (Option<Colored>, Option<&things::Memory>),
     ) -> Result<Sighted, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let paint = pose::Paint::new(scene, &self.camera_from_object(&input.world_from_object))?;
@@ -113,7 +116,7 @@ impl Photograph {
             }
             _ => Vec::new(),
         };
-        let found = things::find(&things::Sight {
+        let (found, memory) = things::find(&things::Sight {
             shape: &shape,
             paint: &paint,
             receivers: &self.receivers,
@@ -122,9 +125,13 @@ impl Photograph {
             world_from_camera: &input.camera.world_from_camera,
             points: &points,
             planes_of,
+            memory,
         });
         let Some(found) = found else {
-            return Ok(Sighted::default());
+            return Ok(Sighted {
+                memory,
+                ..Sighted::default()
+            });
         };
         let in_scene = nearest_to_toy(scene, &input.world_from_object);
         let planes = found.planes.into_iter().map(|found| {
@@ -147,6 +154,7 @@ impl Photograph {
         };
         Ok(Sighted {
             planes: planes.collect(),
+            memory,
             things: Things::new(found.size_px.as_uvec2(), found.marks, camera),
         })
     }
@@ -164,6 +172,25 @@ impl Photograph {
         let surfels = paint.surfels(level, &pose::covered(&shape, level), gloss::MOST_SURFELS);
         let lights = gloss::Lights::new(lights, &self.camera_from_world);
         Ok(gloss::gloss(&gloss::Look::new(&shape, &surfels, &lights)))
+    }
+
+    /// Grain of the picture beside its plate, which is made as soft; `None` if the picture is clean.
+    pub(crate) fn grain(&self, plate_spread: Spread) -> Option<Grain> {
+        let level = self.pyramid.level(0);
+        // The means of several pixels have less noise than the picture.
+        if self.pyramid.picture_px() > 1.0 {
+            return None;
+        }
+        let deviation_px = plate_spread.mean_px();
+        let softened = (deviation_px > 0.0).then(|| level.with_plate_spread(deviation_px));
+        let level = softened.as_ref().map_or(Some(level), Option::as_ref)?;
+        let plate = level.plate.as_ref()?;
+        let size_px = level.frame.size_px.as_uvec2().to_array();
+        Grain::between(
+            size_px,
+            |index| level.frame.pixel(index),
+            |index| plate.pixel(index),
+        )
     }
 
     /// Softness for given camera and pose.

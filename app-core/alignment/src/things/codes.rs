@@ -9,6 +9,7 @@ use app_scene::geometry::color::srgb_from_linear;
 pub(super) const UNLIKE_CODES: f32 = 12.0;
 
 /// A picture in sRGB codes, 0 to 255; NaN where nothing is known.
+#[derive(Clone, Debug)]
 pub(super) struct Codes {
     pub(super) size_px: IVec2,
     pub(super) pixels: Vec<Color>,

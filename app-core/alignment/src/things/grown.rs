@@ -11,6 +11,7 @@ use glam::{DVec2, IVec2};
 use super::codes::{Codes, apart};
 use super::colors::Colors;
 use super::groups::{STEPS, groups, place_of};
+use super::memory::Known;
 use super::seeds::{Seed, Seeds};
 use crate::picture::{bilinear, index_in, places, square};
 
@@ -32,6 +33,9 @@ const LARGEST_HOLE: usize = 100;
 /// Maximum distance of growth.
 const FARTHEST: f32 = 40.0;
 
+/// Minimum number of seeds of a thing that is not before the toy: fewer may come from the camera's
+/// own processing.
+const LEAST_ALONE: usize = 60;
 /// Distance in pixels at which an added group touches a thing, and its distance from the receiver.
 const TOUCH_PX: i32 = 3;
 const ABSORBED: f32 = 10.0;
@@ -109,12 +113,25 @@ impl Grown {
         index_in(self.size_px, place.floor().as_ivec2())
     }
 
+    pub(super) fn size_px(&self) -> IVec2 {
+        self.size_px
+    }
+
     pub(super) fn n_things(&self) -> usize {
         self.n_seeds.len()
     }
 
     pub(super) fn n_seeds(&self, thing: usize) -> usize {
         self.n_seeds[thing]
+    }
+
+    /// For each thing, whether it has the seeds of one that is not before the toy; `needed` is the
+    /// evidence that each needs.
+    pub(super) fn alone(&self, needed: &[f32]) -> Vec<Known> {
+        let things = self.n_seeds.iter().zip(needed);
+        let known = things
+            .map(|(n_seeds, needed)| Known::of(*needed, |part| *n_seeds as f32 >= part * LEAST_ALONE as f32));
+        known.collect()
     }
 
     /// The thing of a pixel.

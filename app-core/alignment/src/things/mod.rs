@@ -13,9 +13,11 @@ mod codes;
 mod colors;
 mod edges;
 mod extent;
+mod found;
 pub(crate) mod groups;
 mod grown;
 mod measured;
+mod memory;
 pub(crate) mod planes;
 mod seeds;
 mod shade;
@@ -26,10 +28,10 @@ mod wrong;
 
 use std::borrow::Cow;
 
-use glam::{DMat4, DVec2, DVec3, IVec2};
+use glam::{DMat4, DVec3, IVec2};
 
 use crate::lights::Comparison;
-use crate::picture::{Color, Level, Mask, Pyramid, index_in, places};
+use crate::picture::{Color, Level, Pyramid, index_in, places};
 use crate::pose::Paint;
 use crate::raster::{Coverage, Rasterizer, project};
 use crate::receivers::{SeenReceiver, receiver_at};
@@ -37,9 +39,13 @@ use crate::shape::Shape;
 use app_scene::geometry::color::srgb_from_linear;
 use app_scene::scene::{Light, MAX_RECEIVERS};
 use app_scene::things::Mark;
+pub(crate) use memory::Memory;
+
 use codes::{Codes, UNLIKE_CODES, apart, from_shaded};
+use found::{Found, InFrame};
 use groups::{cross, most_around};
 use grown::Grown;
+use memory::{Known, Place};
 use planes::FoundPlane;
 pub(crate) use seeds::Colored;
 use seeds::{Seed, Seeds};
@@ -58,9 +64,6 @@ const ALIKE_CODES: f32 = 5.0;
 /// beside the toy.
 const LEAST_BEFORE: usize = 5;
 const LEAST_BESIDE: usize = 20;
-/// Minimum number of seeds of a thing that is not before the toy: fewer may come from the camera's
-/// own processing.
-const LEAST_ALONE: usize = 60;
 /// The same for a thing that the frame alone shows.
 const LEAST_IN_FRAME: usize = 12;
 /// Minimum number of seeds of a thing in the frame alone that is not before the toy: shadows and
@@ -84,6 +87,8 @@ pub(crate) struct Sight<'a> {
     pub(crate) points: &'a [DVec3],
     /// Things whose planes are searched for, if any are.
     pub(crate) planes_of: Option<Colored>,
+    /// Memory of the search in the previous picture; `None` for a picture by itself.
+    pub(crate) memory: Option<&'a Memory>,
 }
 
 /// Things beside the toy.
@@ -95,76 +100,39 @@ pub(crate) struct Sighting {
     pub(crate) planes: Vec<FoundPlane>,
 }
 
-/// Finds the things; `None` if there are none beside the toy, or none can be detected.
-pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
+/// Finds the things: `None` if there are none beside the toy, or none can be detected; and the
+/// memory for the next picture, `None` if none can be detected.
+pub(crate) fn find(sight: &Sight<'_>) -> (Option<Sighting>, Option<Memory>) {
     let level = sight.level();
     let toy = Toy::of(sight, level);
     let frame = Codes::of(&level.frame);
-    let Restored {
-        level,
-        plate,
-        compared,
-        in_plate,
-    } = sight.restored((level, &frame), &toy)?;
-    let level = &*level;
-    let seeds_of = |colored| {
-        let hidden = toy.hidden(&frame, &plate);
-        Seeds::found(&compared.pixels, hidden, (&frame, &plate), colored)
+    let Some(restored) = sight.restored((level, &frame), &toy) else {
+        return (None, None);
     };
-    let planes_on = |grown: &Grown, colored| {
-        let place = planes::Place {
-            shape: sight.shape,
-            receivers: sight.receivers,
-            points: &toy.beside(sight.points, level),
-        };
-        planes::find(&place, level, &compared, (grown, colored))
+    let found = sight.found((restored, &frame), &toy);
+    let known = found.known(frame.size_px);
+    let place = Place {
+        intrinsics: level.intrinsics,
+        world_from_camera: *sight.world_from_camera,
+        middle: sight.shape.centre,
+        lights: sight.lights.to_vec(),
     };
-    let seeds = seeds_of(Colored::Otherwise);
-    let grown = Grown::from(&seeds, Seed::Thing, &plate);
-    let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
-    let in_frame = toy.in_frame(&seeds, &frame);
-    let planes = match (&grown, sight.planes_of) {
-        (Some(grown), Some(_)) => planes_on(grown, Colored::Otherwise),
-        (None, Some(Colored::Alike)) => {
-            let alike = Grown::from(&seeds_of(Colored::Alike), Seed::Thing, &plate);
-            alike.map_or(Vec::new(), |alike| planes_on(&alike, Colored::Alike))
-        }
-        _ => Vec::new(),
-    };
-    if planes.is_empty() && grown.is_none() && wrong.is_none() && in_frame.is_none() && in_plate.is_none() {
-        return None;
+    let memory = Memory::new(place, frame, known);
+    if found.is_empty() {
+        return (None, Some(memory));
     }
-    let before = grown
-        .as_ref()
-        .map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
-    let grown = grown.map(|mut grown| {
-        let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, &plate);
-        grown.absorb(&shadows);
-        grown
-    });
-    let of_level = (&toy.coverage, level.frame.size_px);
-    let on_things = grown
-        .as_ref()
-        .map(|grown| Brightness::of_things(grown, &compared.pixels, of_level));
-    let wrong = wrong.map(|wrong| wrong::wrong_plate(&wrong, &toy, level.frame.size_px, &compared.pixels));
-    let on_planes = grown.as_ref().map_or(Vec::new(), |grown| {
-        sight.on_planes((grown, &seeds), level, &before)
-    });
-    let found = Found {
-        on_planes,
-        grown,
-        before,
-        wrong,
-        in_plate,
-        on_things,
-        in_frame,
-    };
     let (size_px, marks) = sight.marks(level, &found);
-    Some(Sighting {
+    let marks = match sight.memory {
+        Some(before) => before.steadied(&memory, size_px, marks),
+        None => marks,
+    };
+    let memory = memory.with_marks(size_px, &marks);
+    let sighting = Sighting {
         size_px,
         marks,
-        planes,
-    })
+        planes: found.planes,
+    };
+    (Some(sighting), Some(memory))
 }
 
 /// A level whose plate has all of its light.
@@ -178,76 +146,6 @@ struct Restored<'a> {
     in_plate: Option<Brightness>,
 }
 
-/// Things in a level.
-struct Found {
-    /// Things that plate and frame show, and for each whether it is before the toy.
-    grown: Option<Grown>,
-    before: Vec<bool>,
-    /// For each pixel, whether it is in a thing, but shows a receiver that is not part of it.
-    on_planes: Vec<bool>,
-    /// The wrong part of the plate.
-    wrong: Option<Mask>,
-    /// The light in the plate, if a shadow lies on it that the frame does not show.
-    in_plate: Option<Brightness>,
-    /// The light on the parts of things that the toy hides.
-    on_things: Option<Brightness>,
-    /// Things that the frame alone shows, such as a hand.
-    in_frame: Option<InFrame>,
-}
-
-impl Found {
-    /// The mark at a place in pixels of the level, for things in the plate.
-    fn at(&self, place: DVec2) -> Mark {
-        let thing = self
-            .grown
-            .as_ref()
-            .and_then(|grown| Some((grown, grown.at(place)?)));
-        let is_on_plane = thing.is_some_and(|(grown, _)| {
-            grown
-                .index(place)
-                .is_some_and(|index| self.on_planes.get(index).is_some_and(|is_on| *is_on))
-        });
-        match thing {
-            Some(_) if is_on_plane => self.in_plate_at(place),
-            Some((grown, thing)) if self.before[thing] && !grown.is_like_place(place) => Mark::BeforeToy,
-            Some((grown, thing)) if self.before[thing] || grown.n_seeds(thing) >= LEAST_ALONE => {
-                self.behind_toy_at(place).unwrap_or(Mark::Thing)
-            }
-            _ => self.in_plate_at(place),
-        }
-    }
-
-    /// The same for a part of a thing that the toy hides; `None` if it does not, or if the light
-    /// there is unknown.
-    fn behind_toy_at(&self, place: DVec2) -> Option<Mark> {
-        self.on_things.as_ref()?.at(place).map(Mark::hidden_thing)
-    }
-
-    /// The same for what the plate alone shows.
-    fn in_plate_at(&self, place: DVec2) -> Mark {
-        let wrong = self.wrong.as_ref();
-        if wrong.is_some_and(|wrong| wrong.has(place.floor().as_ivec2())) {
-            return Mark::WrongPlate;
-        }
-        let left = self.in_plate.as_ref().and_then(|light| light.missing_at(place));
-        left.map_or(Mark::None, Mark::shaded_plate)
-    }
-
-    /// The same for things in the frame alone.
-    fn in_frame_at(&self, place: DVec2) -> Mark {
-        let in_frame = self.in_frame.as_ref();
-        let thing = in_frame.and_then(|in_frame| Some(in_frame.marks[in_frame.grown.at(place)?]));
-        thing.unwrap_or_default()
-    }
-}
-
-/// Things that the frame alone shows.
-struct InFrame {
-    grown: Grown,
-    /// The mark of each thing: before the toy, beside it, or no mark.
-    marks: Vec<Mark>,
-}
-
 impl Sight<'_> {
     fn level(&self) -> &Level {
         self.pyramid.largest_within(MOST_PIXELS)
@@ -256,6 +154,81 @@ impl Sight<'_> {
     fn compared(&self, level: &Level) -> Option<Comparison> {
         let seen = (self.shape, self.receivers);
         crate::lights::compare(self.lights, seen, level, self.world_from_camera)
+    }
+
+    /// The things of a level.
+    fn found(&self, (restored, frame): (Restored<'_>, &Codes), toy: &Toy) -> Found {
+        let Restored {
+            level,
+            plate,
+            compared,
+            in_plate,
+        } = restored;
+        let level = &*level;
+        let seeds_of = |colored| {
+            let hidden = toy.hidden(frame, &plate);
+            Seeds::found(&compared.pixels, hidden, (frame, &plate), colored)
+        };
+        let seeds = seeds_of(Colored::Otherwise);
+        let grown = Grown::from(&seeds, Seed::Thing, &plate);
+        let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
+        let needed = |grown: &Grown| self.needed(grown, level);
+        let in_frame = toy.in_frame(&seeds, frame, needed);
+        let evidence = grown.as_ref().map(|grown| (grown, self.needed(grown, level)));
+        let before = evidence.as_ref().map_or(Vec::new(), |(grown, needed)| {
+            toy.before(grown, (frame, &plate), needed)
+        });
+        let alone = evidence.map_or(Vec::new(), |(grown, needed)| grown.alone(&needed));
+        let planes_on = |grown: &Grown, colored| {
+            let place = planes::Place {
+                shape: self.shape,
+                receivers: self.receivers,
+                points: &toy.beside(self.points, level),
+            };
+            planes::find(&place, level, &compared, (grown, colored))
+        };
+        let planes = match (&grown, self.planes_of) {
+            (Some(grown), Some(_)) => planes_on(grown, Colored::Otherwise),
+            (None, Some(Colored::Alike)) => {
+                let alike = Grown::from(&seeds_of(Colored::Alike), Seed::Thing, &plate);
+                alike.map_or(Vec::new(), |alike| planes_on(&alike, Colored::Alike))
+            }
+            _ => Vec::new(),
+        };
+        let grown = grown.map(|mut grown| {
+            let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, &plate);
+            grown.absorb(&shadows);
+            grown
+        });
+        let size_px = level.frame.size_px;
+        let on_things = grown
+            .as_ref()
+            .map(|grown| Brightness::of_things(grown, &compared.pixels, (&toy.coverage, size_px)));
+        let on_planes = grown.as_ref().map_or(Vec::new(), |grown| {
+            self.on_planes((grown, &seeds), level, &before)
+        });
+        Found {
+            planes,
+            on_planes,
+            grown,
+            before,
+            alone,
+            wrong: wrong.map(|wrong| wrong::wrong_plate(&wrong, toy, size_px, &compared.pixels)),
+            in_plate,
+            on_things,
+            in_frame,
+        }
+    }
+
+    /// The evidence that each thing needs, over that of a picture by itself.
+    fn needed(&self, grown: &Grown, level: &Level) -> Vec<f32> {
+        match self.memory {
+            Some(memory) => {
+                let camera = (&level.intrinsics, self.world_from_camera);
+                memory.needed(grown, self.receivers, camera)
+            }
+            None => vec![1.0; grown.n_things()],
+        }
     }
 
     /// The level without the shadow that the plate alone may show; `None` without a plate.
@@ -282,7 +255,7 @@ impl Sight<'_> {
     /// For each pixel of a level, whether it is in a part of a thing with few seeds, but shows
     /// another receiver than the thing stands on: for example the top of a book that is a receiver,
     /// in contrast to its sides.
-    fn on_planes(&self, (grown, seeds): (&Grown, &Seeds), level: &Level, before: &[bool]) -> Vec<bool> {
+    fn on_planes(&self, (grown, seeds): (&Grown, &Seeds), level: &Level, before: &[Known]) -> Vec<bool> {
         let mut counts = vec![[[0; 2]; MAX_RECEIVERS]; before.len()];
         let pixels: Vec<Option<(usize, usize)>> = places(level.frame.size_px)
             .map(|at| {
@@ -403,9 +376,9 @@ impl Toy {
     }
 
     /// Things in a level's frame alone. They are before the toy if they are visible beside it and
-    /// the toy does not look as expected, and beside it if they are large. `None` if there are
-    /// neither. `seeds` are those of the plate.
-    fn in_frame(&self, seeds: &Seeds, frame: &Codes) -> Option<InFrame> {
+    /// the toy does not look as expected, and beside it if they are large. `None` without any seeds. `seeds` are those of the plate.
+    /// `needed` gives the evidence that each thing needs.
+    fn in_frame(&self, seeds: &Seeds, frame: &Codes, needed: impl Fn(&Grown) -> Vec<f32>) -> Option<InFrame> {
         let within: Vec<IVec2> = self.coverage.pixels().filter(|at| self.is_within(*at)).collect();
         let as_expected = within
             .iter()
@@ -420,18 +393,27 @@ impl Toy {
                 hidden[thing] += 1;
             }
         }
-        let mark = |thing: usize| match (hidden[thing], grown.n_seeds(thing)) {
-            (LEAST_IN_FRAME.., LEAST_BESIDE..) => Mark::BeforeToy,
-            (_, LEAST_IN_FRAME_ALONE..) => Mark::Thing,
-            _ => Mark::None,
+        let needed = needed(&grown);
+        let judged = |thing: usize| {
+            let n_seeds = grown.n_seeds(thing);
+            let before = Known::of(needed[thing], |part| {
+                has(hidden[thing], LEAST_IN_FRAME, part) && has(n_seeds, LEAST_BESIDE, part)
+            });
+            let alone = Known::of(needed[thing], |part| has(n_seeds, LEAST_IN_FRAME_ALONE, part));
+            let mark = match (before, alone) {
+                (Known::Marked, _) => Mark::BeforeToy,
+                (_, Known::Marked) => Mark::Thing,
+                _ => Mark::None,
+            };
+            (mark, before.max(alone))
         };
-        let marks: Vec<Mark> = (0..grown.n_things()).map(mark).collect();
-        let has_any = marks.iter().any(|mark| *mark != Mark::None);
-        has_any.then_some(InFrame { grown, marks })
+        let (marks, known): (Vec<Mark>, Vec<Known>) = (0..grown.n_things()).map(judged).unzip();
+        Some(InFrame { grown, marks, known })
     }
 
     /// For each thing of a level, whether it is before the toy.
-    fn before(&self, grown: &Grown, (frame, plate): (&Codes, &Codes)) -> Vec<bool> {
+    /// `needed` is the evidence that each needs.
+    fn before(&self, grown: &Grown, (frame, plate): (&Codes, &Codes), needed: &[f32]) -> Vec<Known> {
         let mut hidden = vec![0; grown.n_things()];
         let mut n_within = vec![0; grown.n_things()];
         for at in self.coverage.pixels().filter(|at| self.is_within(*at)) {
@@ -440,12 +422,15 @@ impl Toy {
                 hidden[thing] += usize::from(self.is_hidden(at, frame, plate));
             }
         }
-        let is_before = |thing: usize| {
-            hidden[thing] >= LEAST_BEFORE
-                && hidden[thing] as f32 >= PART_BEFORE * n_within[thing] as f32
-                && grown.n_seeds(thing) >= LEAST_BESIDE
+        let known = |thing: usize| {
+            let is_of_toy = hidden[thing] as f32 >= PART_BEFORE * n_within[thing] as f32;
+            Known::of(needed[thing], |part| {
+                is_of_toy
+                    && has(hidden[thing], LEAST_BEFORE, part)
+                    && has(grown.n_seeds(thing), LEAST_BESIDE, part)
+            })
         };
-        (0..grown.n_things()).map(is_before).collect()
+        (0..grown.n_things()).map(known).collect()
     }
 
     /// Whether a pixel shows the toy, and not a thing in the toy's shadow: the picture around it is
@@ -457,6 +442,11 @@ impl Toy {
         };
         self.coverage.at(at) > 0.0 && most_around(at, is_toy)
     }
+}
+
+/// Whether a number of pixels is a part of the least one, or more.
+fn has(n: usize, least: usize, part: f32) -> bool {
+    n as f32 >= part * least as f32
 }
 
 /// Whether most pixels around one agree with the plate in less light, as in a thing's shadow.

@@ -5,15 +5,17 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::recorder::Recorder;
+use super::watching::{Watch, WatchJob, WatchedJob};
 use app_alignment::NoLight;
 use app_alignment::pose_filter::{PoseFilter, PoseNoise};
 use app_alignment::{AlignError, Aligner, Alignment};
 use app_scene::camera_frame::Anchor;
 use app_scene::frame::FrameInput;
 use app_scene::gloss::Gloss;
+use app_scene::grain::Grain;
 use app_scene::reflection::Reflection;
 use app_scene::scene::{Camera, Light, Scene};
-use app_scene::things::Things;
+use app_scene::sharpness::Sharpness;
 
 /// Largest distance between the outlines of a found toy and the picture, root mean square in
 /// pixels: exact poses reach 1.2 if a shadow hides a part of the outline, and a picture without a
@@ -21,6 +23,8 @@ use app_scene::things::Things;
 const FOUND_PX: f64 = 1.5;
 /// Number of consecutive pictures without the toy at its place after which it counts as lost.
 const N_MISSES: u32 = 2;
+/// Number of consecutive pictures without grain after which none is drawn.
+const N_CLEAN: u32 = 2;
 /// Time between the starts of two alignments, in seconds: trackers drift by millimetres in some
 /// seconds.
 const PERIOD_S: f64 = 1.0;
@@ -117,10 +121,35 @@ pub(super) struct Place {
     world_from_anchored: DMat4,
     world_from_object: DMat4,
     lights: Option<Arc<[Light]>>,
-    things: Option<Things>,
+    /// The things beside it.
+    watch: Watch,
+    sharpness: Sharpness,
+    grain: HeldGrain,
     reflection: Option<Reflection>,
     gloss: Gloss,
     pub(super) verdict: Option<Verdict>,
+}
+
+/// The grain of the latest pictures.
+#[derive(Debug, Default)]
+struct HeldGrain {
+    grain: Option<Grain>,
+    /// Number of consecutive pictures without any.
+    n_clean: u32,
+}
+
+impl HeldGrain {
+    /// Adopts the grain of a picture. One clean picture is ignored, so that grain near the least
+    /// that is drawn does not come and go.
+    fn take(&mut self, measured: Option<Grain>) {
+        self.n_clean = match measured {
+            Some(_) => 0,
+            None => self.n_clean.saturating_add(1),
+        };
+        if measured.is_some() || self.n_clean >= N_CLEAN {
+            self.grain = measured;
+        }
+    }
 }
 
 impl Place {
@@ -136,7 +165,9 @@ impl Place {
             world_from_anchored: DMat4::IDENTITY,
             world_from_object: scene.world_from_object,
             lights: None,
-            things: None,
+            watch: Watch::new(number),
+            sharpness: Sharpness::SHARP,
+            grain: HeldGrain::default(),
             reflection: None,
             gloss: Gloss::NONE,
             verdict: None,
@@ -184,7 +215,9 @@ impl Place {
             .with_camera(camera)
             .with_world_from_object(self.world_from_object)
             .with_lights(self.lights.clone())
-            .with_things(self.things.clone())
+            .with_things(self.watch.things())
+            .with_sharpness(self.sharpness)
+            .with_grain(self.grain.grain)
             .with_reflection(self.reflection)
             .with_gloss(self.gloss)
     }
@@ -217,7 +250,7 @@ impl Place {
         match done.result {
             Ok(alignment) => self.apply(&done.given, &done.aligner, alignment),
             Err(reason) => {
-                self.things = None;
+                self.watch.forget();
                 self.verdict = Some(Verdict::Failed(reason.to_string()));
             }
         }
@@ -236,14 +269,31 @@ impl Place {
     /// Starts with a new aligner if the thread of an alignment did not end.
     pub(super) fn begin_anew(&mut self) {
         self.aligner = Some(Aligner::new(Arc::clone(&self.scene)));
-        self.things = None;
+        self.watch.forget();
+    }
+
+    /// A search for things in `input`, if one is due and there is a plate to compare with.
+    pub(super) fn watch_job(&mut self, time_s: f64, input: FrameInput) -> Option<WatchJob> {
+        if self.scene.plates.is_empty() || self.n_misses > 0 {
+            return None;
+        }
+        let input = self.corrected(input);
+        self.watch.job(time_s, input)
+    }
+
+    /// Adopts the result of a search for things; `None` if its thread did not end.
+    pub(super) fn take_watched(&mut self, done: Option<WatchedJob>) {
+        match done {
+            Some(done) => self.watch.take(done),
+            None => self.watch.begin_anew(),
+        }
     }
 
     fn apply(&mut self, given: &Camera, aligner: &Aligner, alignment: Alignment) {
         let verdict = verdict(&alignment);
         if let Verdict::Missed { .. } = verdict {
             self.n_misses = self.n_misses.saturating_add(1);
-            self.things = None;
+            self.watch.forget();
             self.verdict = Some(verdict);
             return;
         }
@@ -251,7 +301,10 @@ impl Place {
         self.world_from_anchored = alignment.camera.world_from_camera * given.world_from_camera.inverse();
         self.world_from_object = alignment.world_from_object;
         self.lights = alignment.lights;
-        self.things = alignment.things;
+        self.watch
+            .align(aligner.conditions(), alignment.things, self.started_s);
+        self.sharpness = alignment.sharpness;
+        self.grain.take(alignment.grain);
         self.reflection = alignment.reflection;
         self.gloss = alignment.gloss;
         // Results of an alignment that missed the toy are used from now on, too.

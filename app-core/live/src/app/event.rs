@@ -11,6 +11,7 @@ use super::plates::{PlateJob, PlatedJob};
 use super::search::{SearchJob, SearchedJob};
 use super::step::Step;
 use super::toy_refusal::ToyRefusal;
+use super::watching::{WatchJob, WatchedJob};
 use app_scene::camera_frame::CameraFrame;
 use app_scene::toy::{ClipId, Toy};
 use app_session::recording::{RecordingJob, RecordingOutcome};
@@ -180,6 +181,8 @@ pub enum ShellEvent {
     Searched(Option<Box<SearchedJob>>),
     /// [`WorkCommand::Align`] ended; `None` if its thread did not end normally.
     Aligned(Option<Box<AlignedJob>>),
+    /// [`WorkCommand::Watch`] ended; `None` if its thread did not end normally.
+    Watched(Option<Box<WatchedJob>>),
     /// Names of available toy files, in answer to [`WorkCommand::PickToy`].
     ToyFiles(Vec<String>),
     /// A toy was read, or could not be read for this reason.
@@ -238,6 +241,8 @@ pub enum PlatformCommand {
         /// Whether the session starts a new world.
         is_new_world: bool,
     },
+    /// Mask the people in the camera's pictures, if the platform can, or end that.
+    FindPeople(bool),
     /// Pause the AR session.
     PauseTracking,
     /// Lock exposure, white balance and focus, or release them.
@@ -274,6 +279,8 @@ pub enum WorkCommand {
     Search(Box<SearchJob>),
     /// Run this on another thread, and report its result.
     Align(Box<AlignJob>),
+    /// Run this on another thread, and report its result.
+    Watch(Box<WatchJob>),
     /// Save the next finished picture.
     SavePhoto,
     /// Start a video of the finished pictures, or end and save it.

@@ -9,6 +9,7 @@ use super::ghost::Ghost;
 use super::notice::Notice;
 use super::step::{Cause, Step};
 use super::table::{as_reported_now, beside};
+use super::watching::WatchedJob;
 use app_scene::camera_frame::{Arrival, CameraFrame, FoundPlane, Tracking};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Receiver, Scene, Surface};
@@ -56,7 +57,10 @@ impl App {
                 self.search(camera.is_some(), elapsed_s, commands);
             }
             Step::TakePlate => self.offer_plate(&frame, elapsed_s, commands),
-            Step::Align | Step::Play => self.align(camera.is_some(), commands),
+            Step::Align | Step::Play => {
+                self.align(camera.is_some(), commands);
+                self.watch(camera.is_some(), commands);
+            }
             _ => {}
         }
         self.playback
@@ -174,6 +178,24 @@ impl App {
         }
     }
 
+    /// Searches for things, unless the device is warm.
+    fn watch(&mut self, is_trusted: bool, commands: &mut Vec<ShellCommand>) {
+        if !is_trusted || self.step != Step::Play || self.platform.thermal >= Thermal::Serious {
+            return;
+        }
+        let input = self.input(1.0);
+        if let (Some(place), Some(input)) = (&mut self.place, input) {
+            let job = place.watch_job(self.time_s, input);
+            commands.extend(job.map(|job| WorkCommand::Watch(Box::new(job)).into()));
+        }
+    }
+
+    pub(super) fn watched(&mut self, done: Option<Box<WatchedJob>>) {
+        if let Some(place) = &mut self.place {
+            place.take_watched(done.map(|done| *done));
+        }
+    }
+
     /// The frame's exposure relative to that of the plates; 1 if the platform does not report it.
     pub(super) fn exposure_of(&self, frame: &CameraFrame) -> f64 {
         let amount = frame.exposure.and_then(|exposure| exposure.amount());
@@ -190,6 +212,7 @@ impl App {
         let input = FrameInput::new(latest.image.clone(), camera, place.scene.world_from_object)
             .with_exposure(self.exposure_of(latest))
             .with_light_estimate(latest.light_estimate)
+            .with_people(latest.people.clone())
             .with_shown_pose(self.playback.pose())
             .with_effect(effect);
         Some(input)

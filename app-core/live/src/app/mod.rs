@@ -33,6 +33,7 @@ mod step;
 mod table;
 mod toy_refusal;
 mod toys;
+mod watching;
 
 use std::sync::Arc;
 
@@ -74,6 +75,7 @@ pub use search::{Placing, SearchJob, SearchedJob};
 pub use show::Show;
 pub use step::{Cause, Step};
 pub use toy_refusal::{RefusalKind, ToyRefusal};
+pub use watching::{WatchJob, WatchedJob};
 
 use notice::Notices;
 
@@ -205,6 +207,7 @@ impl App {
             ShellEvent::Plated(done) => self.plated(done),
             ShellEvent::Searched(done) => self.searched(done, &mut commands),
             ShellEvent::Aligned(done) => self.aligned(done, &mut commands),
+            ShellEvent::Watched(done) => self.watched(done),
             ShellEvent::ToyFiles(files) => self.toy_files = Some(files),
             ShellEvent::Toy(read) => self.take_toy(read),
             ShellEvent::Saved(saved) => self.saved(saved),

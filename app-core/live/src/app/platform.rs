@@ -105,6 +105,7 @@ pub(super) struct Commanded {
     tracking: bool,
     finds_planes: bool,
     finds_card: bool,
+    finds_people: bool,
     locks_exposure: bool,
     underexposes: bool,
     is_awake: bool,
@@ -120,6 +121,8 @@ impl Commanded {
             tracking,
             finds_planes: tracking && step == Step::FindTable,
             finds_card: tracking && asked.card,
+            // Of all that warms a phone, it is what a picture can most easily do without.
+            finds_people: tracking && step == Step::Play && platform.thermal == Thermal::Nominal,
             // Plate and frames are compared with one another.
             locks_exposure: tracking && (step >= Step::PlaceToy || asked.held_exposure),
             underexposes: tracking && step == Step::PlaceToy && asked.lens,
@@ -175,6 +178,10 @@ impl Commanded {
         } else if !wanted.tracking && self.tracking {
             commands.push(PlatformCommand::PauseTracking.into());
         }
+        // A paused camera masks nobody.
+        if wanted.tracking && wanted.finds_people != self.finds_people {
+            commands.push(PlatformCommand::FindPeople(wanted.finds_people).into());
+        }
         // A restarted camera has no exposure lock.
         let is_locked = self.locks_exposure && self.tracking && wanted.tracking;
         let was_dark = self.underexposes && self.tracking;
@@ -190,7 +197,14 @@ impl Commanded {
         if wanted.is_awake != self.is_awake {
             commands.push(PlatformCommand::KeepAwake(wanted.is_awake).into());
         }
-        *self = wanted;
+        *self = Self {
+            finds_people: if wanted.tracking {
+                wanted.finds_people
+            } else {
+                self.finds_people
+            },
+            ..wanted
+        };
         commands
     }
 }

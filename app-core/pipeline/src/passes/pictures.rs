@@ -130,6 +130,8 @@ pub(crate) struct Pictures<'a> {
     pub(crate) is_same_view: bool,
     /// Objects in the frame beside the toy.
     pub(crate) things: Option<&'a Things>,
+    /// People in the frame.
+    pub(crate) people: Option<&'a Things>,
 }
 
 /// The picture that is shown: the camera image, and the region's picture over it.

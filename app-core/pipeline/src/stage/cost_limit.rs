@@ -111,6 +111,7 @@ impl Stage {
         let frame = Texture::target(&gpu, "frame", plan.region.size_px, REGION_FORMAT);
         let pictures = Pictures {
             things: None,
+            people: None,
             grain: None,
             frame: Frame::Picture(Picture {
                 light: &frame.view,

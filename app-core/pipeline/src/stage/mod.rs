@@ -4,8 +4,10 @@ pub(crate) mod camera_texture;
 mod cost_limit;
 mod footprint;
 mod glossy;
+mod marks;
 pub(crate) mod method;
 mod output;
+mod people;
 mod placement;
 mod reflection;
 mod reuse;
@@ -53,6 +55,7 @@ use app_scene::toy::{PosedMesh, Toy, ToyError};
 use camera_texture::CameraTexture;
 use footprint::Footprint;
 use method::Method;
+use people::Crowd;
 use supported::{Lights, Receivers};
 
 /// A scene on the device.
@@ -94,6 +97,8 @@ pub(crate) struct Stage {
     plates: PlateStore,
     /// Things beside the toy in the latest picture.
     things: Option<Things>,
+    /// People in the latest picture.
+    people: Crowd,
     present: present::Pass,
     state: Option<MethodState>,
     /// Part of each receiver that the clips shown so far reach.
@@ -139,6 +144,8 @@ struct MethodState {
     is_visibility_outdated: bool,
     /// Things beside the toy at the time of learning.
     things: Option<GivenThings>,
+    /// People in the picture that was learned last.
+    people: Option<GivenThings>,
     /// Whether settings were turned down or up after learning.
     are_settings_outdated: bool,
     /// Whether the object or the lights moved after learning.
@@ -191,6 +198,7 @@ impl Stage {
             camera: CameraTexture::new(size_px),
             plates: PlateStore::new(gpu, &scene, &receivers.anchored),
             things: None,
+            people: Crowd::default(),
             present: present::Pass::new(gpu),
             state: None,
             reached_rects: Vec::new(),
@@ -302,6 +310,7 @@ impl Stage {
         self.camera.forget();
         self.plates.forget();
         self.things = None;
+        self.people = Crowd::default();
         self.is_object_placed = false;
     }
 
@@ -371,6 +380,7 @@ impl Stage {
         let is_pose_new = self.take_shown_pose(gpu);
         recorder.stages.begin("reuse");
         self.take_things(gpu, input);
+        self.take_people(gpu, input, footprint);
         self.take_gloss(gpu, input);
         let (change, keeps_sharpness) = self.update_method(gpu, input, footprint);
         self.style_shadow(gpu, change);
@@ -404,9 +414,11 @@ impl Stage {
             gpu.write(&self.plates.views, &[views]);
         }
         // The region of the marks depends on the view.
-        if let Some(things) = self.things.as_ref().filter(|_| change >= Change::View) {
+        if change >= Change::View {
             let world_from_plane = self.layout().world_from_anchor();
-            things.follow(gpu, &footprint.view, &method.region(), &world_from_plane);
+            for things in self.things.iter().chain(self.people.marks()) {
+                things.follow(gpu, &footprint.view, &method.region(), &world_from_plane);
+            }
         }
         recorder.n_pixels = n_pixels(method.region().size_px);
         let frame = match method {
@@ -425,6 +437,7 @@ impl Stage {
             plate_views: &self.plates.views,
             is_same_view: footprint.choice.is_same_view,
             things: self.things.as_ref(),
+            people: self.people.marks(),
         };
         method.encode(recorder, &self.toy, &pictures, delta);
         if delta.keeps_pose() {
@@ -461,20 +474,6 @@ impl Stage {
             self.toy.shown.write(gpu, &self.posed);
         }
         is_new
-    }
-
-    /// Sets the things of a picture, unless they are the same; the baseline ignores things.
-    fn take_things(&mut self, gpu: &Gpu, input: &FrameInput) {
-        let given = input.things.as_ref();
-        let given = given.filter(|things| matches!(self.settings, Settings::Model(_)) && things.has_any());
-        let is_known = match (given, &self.things) {
-            (None, None) => true,
-            (Some(given), Some(known)) => known.given().is(given),
-            _ => false,
-        };
-        if !is_known {
-            self.things = given.map(|given| Things::new(gpu, given));
-        }
     }
 
     fn layout(&self) -> SceneLayout<'_> {

@@ -6,13 +6,14 @@ use std::sync::Arc;
 use glam::{UVec2, Vec4};
 
 use super::footprint::{AROUND_TOY_PX, Footprint, SPARE_PX};
+use super::marks::are_same;
 use super::method::Method;
 use super::soft;
 use super::{MethodState, Stage};
 use crate::baseline::Baseline;
 use crate::baseline::plan::BaselinePlan;
 use crate::baseline::uniform::{Baseline as Uniform, uniform};
-use crate::frame::warning::{Thing, Warning};
+use crate::frame::warning::Warning;
 use crate::geometry::displacement::is_same_view;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::view::View;
@@ -31,7 +32,6 @@ use crate::plates::exposure::match_frame;
 use crate::preset::{BaselineSettings, ModelSettings, Settings};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, Plate};
-use app_scene::things::Mark;
 
 /// Step of the region's size under a moving camera, so that the size stays the same for a while.
 const REGION_STEP_PX: u32 = 64;
@@ -138,19 +138,18 @@ impl Stage {
         let is_placement_outdated = mem::take(&mut state.is_placement_outdated);
         let is_known = state.image.as_ref().is_some_and(|known| known.is(&input.image));
         let (known, given) = (state.things.as_ref(), self.things.as_ref().map(Things::given));
-        let are_things_known = match (known, given) {
-            (None, None) => true,
-            (Some(known), Some(given)) => known.is(given),
-            _ => false,
-        };
+        let people = self.people.marks().map(Things::given);
+        let are_things_known = are_same(known, given);
+        let are_people_known = are_same(state.people.as_ref(), people);
         // Things in a learned picture are part of the learned state.
         let is_fit_outdated = !are_things_known && given.is_some() && (known.is_none() || is_known);
         state.things = given.cloned();
+        state.people = people.cloned();
         if !has_grids {
             Reuse::Nothing
         } else if is_placement_outdated || is_fit_outdated {
             Reuse::Targets
-        } else if !are_things_known || !is_within || are_settings_outdated {
+        } else if !are_things_known || !are_people_known || !is_within || are_settings_outdated {
             Reuse::SceneState
         } else if is_visibility_outdated {
             Reuse::Region
@@ -181,6 +180,7 @@ impl Stage {
             n_pictures: 0,
             image: None,
             things: self.things.as_ref().map(|things| things.given().clone()),
+            people: self.people.marks().map(|people| people.given().clone()),
             light_indices: self.lights.indices.clone(),
             is_first_view: true,
             is_visibility_outdated: false,
@@ -294,7 +294,7 @@ impl Stage {
             n_receivers,
             is_plate_complete: self.is_plate_complete(footprint, &region)
                 && !self.things.as_ref().is_some_and(Things::is_plate_wrong),
-            has_things: self.things.is_some(),
+            has_things: self.things.is_some() || self.people.marks().is_some(),
             are_plates_scaled: footprint.plate_views.are_scaled(),
             sharpness: self.sharpness,
             is_softened: soft::is_soft(self.sharpness) || known.is_some_and(|plan| plan.is_softened),
@@ -353,26 +353,6 @@ impl Stage {
             .used
             .is_empty()
             .then_some(Warning::NoLight { has_ambient })
-    }
-
-    /// Warnings about things beside the toy in the pictures.
-    pub(super) fn thing_warnings(&self) -> impl Iterator<Item = Warning> {
-        let things = self.things.as_ref();
-        let reported = [
-            (Mark::Thing, Thing::OnReceiver),
-            (Mark::BeforeToy, Thing::BeforeToy),
-            (Mark::WrongPlate, Thing::InPlateAlone),
-        ];
-        let count = move |mark| things.map_or(0, |things| things.given().count(mark));
-        let n_in_plate = things.map_or(0, |things| things.given().n_in_plate_alone());
-        // A thing before the toy mostly comes with a shadow.
-        let is_reported = move |mark: Mark| match mark {
-            Mark::Thing => count(mark) > count(Mark::BeforeToy),
-            Mark::WrongPlate => n_in_plate > 0,
-            _ => count(mark) > 0,
-        };
-        let reported = reported.into_iter().filter(move |(mark, _)| is_reported(*mark));
-        reported.map(|(_, thing)| Warning::Thing(thing))
     }
 
     fn model(&self, gpu: &Gpu, plan: Plan, footprint: &Footprint) -> Method {

@@ -88,6 +88,7 @@ pub(super) fn capture_from_record(
         frames,
         last_picture: Mutex::new(None),
         last_depth: Mutex::new(None),
+        last_people: Mutex::new(None),
     })
 }
 
@@ -180,6 +181,7 @@ fn frame_from_record(
     let picture_fields = [
         ("image", Some(&record.image)),
         ("depth", record.depth.as_ref()),
+        ("people", record.people.as_ref()),
         ("truth", record.truth.as_ref()),
         ("mask", record.mask.as_ref()),
     ];
@@ -216,6 +218,7 @@ fn frame_from_record(
             .map(|estimate| light_estimate(&format!("{field}.light_estimate"), estimate))
             .transpose()?,
         depth: record.depth.clone(),
+        people: record.people.clone(),
         shown_pose: pose(
             toy,
             &format!("{field}.animation"),

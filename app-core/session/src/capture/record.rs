@@ -339,6 +339,12 @@ pub struct FrameRecord {
     #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth: Option<String>,
+    /// Path of a mask of the people in the frame's picture, in the session's folder: a grey PNG of 8 bit that shows
+    /// what `image` shows, without a lens's distortion, in a size of its own. A pixel is 255 on a person, and 0
+    /// elsewhere.
+    #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub people: Option<String>,
     /// Pose of the camera: from camera space (+X right, +Y up, looks along -Z, metres) to world. Rigid.
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::COORDINATE_M)))]
     pub world_from_camera: [f64; 16],

@@ -91,6 +91,7 @@ fn the_example_has_every_key_and_the_reader_takes_it() {
     let photo = encode(&DynamicImage::new_rgb8(width_px, height_px), ImageFormat::Png);
     let mask = encode(&DynamicImage::new_rgba8(width_px, height_px), ImageFormat::Png);
     let depth = encode(&DynamicImage::new_luma16(256, 192), ImageFormat::Png);
+    let people = encode(&DynamicImage::new_luma8(256, 192), ImageFormat::Png);
     let files = [
         ("toy.glb", toy_glb(true)),
         ("plate.png", photo.clone()),
@@ -99,6 +100,7 @@ fn the_example_has_every_key_and_the_reader_takes_it() {
         ("truth_0000.png", photo.clone()),
         ("mask_0000.png", mask),
         ("depth_0000.png", depth),
+        ("people_0000.png", people),
         ("probe_0000.png", photo.clone()),
         ("probe_0001.png", photo),
     ];

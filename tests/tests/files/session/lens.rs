@@ -63,9 +63,11 @@ fn open(lens: serde_json::Value) -> Result<Capture, SessionError> {
     }
     parts.index["lens"] = lens;
     let depth = DynamicImage::new_luma16(SIZE_PX[0] / 2, SIZE_PX[1] / 2);
-    parts
-        .files
-        .insert("depth.png".to_owned(), encode(&depth, ImageFormat::Png));
+    let people = DynamicImage::new_luma8(SIZE_PX[0] / 2, SIZE_PX[1] / 2);
+    for (name, picture) in [("depth.png", depth), ("people.png", people)] {
+        let bytes = encode(&picture, ImageFormat::Png);
+        parts.files.insert(name.to_owned(), bytes);
+    }
     parts.open()
 }
 

@@ -59,15 +59,18 @@ fn a_good_capture_is_read_as_written() {
         Arc::ptr_eq(&first.image, &second.image),
         "a repeated picture is shared"
     );
-    let n_files = 2;
+    let n_files = 3;
     assert_eq!(
         n_reads.load(Ordering::Relaxed),
         before + n_files,
-        "a picture and depths, each read once"
+        "a picture, depths and people, each read once"
     );
     let depth = first.depth.unwrap();
     assert_eq!((depth.size_px().to_array(), depth.known()), ([4, 4], 0.0));
     assert!(second.depth.is_none());
+    let people = first.people.unwrap();
+    assert_eq!((people.size_px().to_array(), people.has_any()), ([4, 4], false));
+    assert!(second.people.is_none());
     assert_eq!(first.light_estimate, None);
     let estimate = second.light_estimate.unwrap();
     assert_eq!(estimate.direction_to_light_in_world, Some(glam::DVec3::Y));
@@ -197,6 +200,7 @@ fn each_wrong_value_is_named() {
         ("frames[0].image", json!("../frame.png"), "`..`"),
         ("frames[0].truth", json!("C:frame.png"), "not portable"),
         ("frames[0].depth", json!("../depth.png"), "`..`"),
+        ("frames[0].people", json!("../people.png"), "`..`"),
         ("frames[0].mask", json!("a\\b.png"), "not portable"),
         ("frames[0].world_from_camera", with(0, json!(1.01)), "not rigid"),
         ("frames[0].world_from_camera", with(12, json!(1e300)), "is not from"),
@@ -257,6 +261,10 @@ fn each_damaged_file_is_named() {
         ("depth.png", "frames[0].depth", png(DynamicImage::new_luma8(2, 2)), "not a grey PNG of 16 bits"),
         ("depth.png", "frames[0].depth", png(DynamicImage::new_luma16(4, 2)), "not the shape of the session's pictures, 2 x 2 px"),
         ("depth.png", "frames[0].depth", cut("depth.png", 20), "damaged"),
+        ("people.png", "frames[0].people", None, "does not exist"),
+        ("people.png", "frames[0].people", png(DynamicImage::new_luma16(2, 2)), "not a grey PNG of 8 bits"),
+        ("people.png", "frames[0].people", png(DynamicImage::new_luma8(4, 2)), "not the shape of the session's pictures, 2 x 2 px"),
+        ("people.png", "frames[0].people", cut("people.png", 20), "damaged"),
         ("plate.jpg", "backgrounds[0].image", None, "does not exist"),
         ("plate.jpg", "backgrounds[0].image", cut("plate.jpg", 4), "cut short"),
         ("toy.glb", "toy.file", None, "does not exist"),

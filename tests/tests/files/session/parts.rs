@@ -48,6 +48,10 @@ impl Parts {
                 encode(&DynamicImage::new_luma16(4, 4), ImageFormat::Png),
             ),
             (
+                "people.png",
+                encode(&DynamicImage::new_luma8(4, 4), ImageFormat::Png),
+            ),
+            (
                 "mask.png",
                 encode(&DynamicImage::new_rgba8(2, 2), ImageFormat::Png),
             ),
@@ -119,7 +123,8 @@ pub(crate) fn good_index() -> Value {
             "intrinsics": {"fx": 2.5, "fy": 2.5, "cx": 1.0, "cy": 1.0}}],
         "frames": [
             {"time": 0.0, "image": "frame.png", "world_from_camera": IDENTITY,
-                "animation": {"clip": "Wave", "time": 0.25}, "truth": "frame.png", "mask": "mask.png", "depth": "depth.png"},
+                "animation": {"clip": "Wave", "time": 0.25}, "truth": "frame.png", "mask": "mask.png", "depth": "depth.png",
+                "people": "people.png"},
             {"time": 0.1, "image": "frame.png", "world_from_camera": IDENTITY,
                 "intrinsics": {"fx": 2.5, "fy": 2.5, "cx": 1.0, "cy": 1.0}, "exposure": 0.5,
                 "light_estimate": {"direction_to_light": [0, 2, 0], "intensity": [1, 2, 3],

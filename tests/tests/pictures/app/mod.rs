@@ -1,5 +1,6 @@
 //! The app's logic: its table of steps, every order of events, and a person's way to a moving toy.
 
+mod conditions;
 mod happenings;
 mod lens;
 mod orders;

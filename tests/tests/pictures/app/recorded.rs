@@ -104,6 +104,7 @@ fn fed_and_recorded(codec: PictureCodec) -> (Fed, Vec<u8>) {
             exposure: 1.0,
             light_estimate: fed.light_estimate,
             depth: None,
+            people: None,
             shown_pose,
             world_from_shown: None,
             warnings: Vec::new(),

@@ -31,7 +31,12 @@ pub(crate) struct Person {
     pub(crate) announced: String,
     /// A grey card over the camera's picture: its left, top, right and bottom, in pixels.
     pub(crate) card_px: Option<[u32; 4]>,
+    /// Change of the camera's picture.
+    pub(crate) retouch: Option<Retouch>,
 }
+
+/// A change of a picture.
+type Retouch = Box<dyn Fn(&Image) -> Image>;
 
 impl Person {
     pub(crate) fn tell(&mut self, event: ShellEvent) {
@@ -45,6 +50,9 @@ impl Person {
                 }
                 ShellCommand::Work(WorkCommand::Align(job)) => {
                     self.tell(ShellEvent::Aligned(Some(Box::new(job.run()))))
+                }
+                ShellCommand::Work(WorkCommand::Watch(job)) => {
+                    self.tell(ShellEvent::Watched(Some(Box::new(job.run()))));
                 }
                 ShellCommand::Work(WorkCommand::Record(job)) => self.recordings.extend(job.map(|job| *job)),
                 ShellCommand::Platform(PlatformCommand::Knock) => self.n_knocks += 1,
@@ -63,6 +71,9 @@ impl Person {
             let mut frame = self.feed.next(0.033);
             if let Some(card_px) = self.card_px {
                 frame.image = covered(frame.image.rgba(), card_px).into();
+            }
+            if let Some(retouch) = &self.retouch {
+                frame.image = retouch(frame.image.rgba()).into();
             }
             self.tell(ShellEvent::Frame(Box::new(frame)));
         }
@@ -118,6 +129,7 @@ pub(crate) fn photographed() -> Person {
         n_knocks: 0,
         announced: String::new(),
         card_px: None,
+        retouch: None,
     };
     world::opening().into_iter().for_each(|event| person.tell(event));
     person.frames(2);

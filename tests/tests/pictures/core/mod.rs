@@ -7,6 +7,7 @@ mod file;
 mod layers;
 mod lent;
 mod normals;
+mod people;
 mod quirks;
 mod refused;
 mod reuse;

@@ -210,7 +210,7 @@ impl CapturePath<'_> {
     }
 
     fn mark_things(&self, recorder: &mut Recorder<'_>) {
-        if let Some(things) = self.pictures.things {
+        for things in self.pictures.things.into_iter().chain(self.pictures.people) {
             let of = &self.captured.by_pass;
             let (things_of, marks) = (&of.things, &of.validity.marks);
             self.passes.things.mark(recorder, things, things_of, marks);

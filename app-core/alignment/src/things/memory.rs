@@ -1,0 +1,195 @@
+//! The memory of a search for things, for the search in the next picture: marks then neither come
+//! for a single picture, nor flicker where nothing changes.
+
+use glam::{DMat4, DVec3, IVec2};
+
+use super::codes::{Codes, apart};
+use super::grown::Grown;
+use crate::median::median;
+use crate::picture::{Mask, index_in, places};
+use crate::receivers::{SeenReceiver, receiver_at};
+use app_scene::scene::{Intrinsics, Light};
+use app_scene::things::Mark;
+
+/// Evidence that a thing needs, over that of a single picture: one that was marked in the previous
+/// picture, one that had at least that evidence there, and one that comes.
+const HELD: f32 = 0.5;
+const SEEN: f32 = 1.0;
+const NEW: f32 = 2.0;
+/// Share of a thing's pixels that the previous picture must have shown as a thing.
+const SAME_PLACE: f32 = 0.3;
+/// Movement in pixels of a level within which two pictures show the same view.
+const SAME_VIEW_PX: f64 = 0.5;
+/// Smallest difference in codes that counts as a change, and its multiple of the median difference,
+/// which is the noise.
+const CHANGED_CODES: f32 = 2.0;
+const OF_NOISE: f32 = 3.0;
+/// Distance in pixels of a level within which the outline of a thing in an unchanged part of the
+/// picture stays.
+const SAME_OUTLINE_PX: f64 = 3.0;
+
+/// State of a thing in a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Known {
+    /// There is hardly any evidence for it.
+    #[default]
+    Nothing,
+    /// It has less evidence than it needs, but enough to stay if it had been marked before.
+    Candidate,
+    /// It is marked.
+    Marked,
+}
+
+impl Known {
+    /// The state of a thing that needs `needed` times the evidence of a single picture.
+    pub(super) fn of(needed: f32, has: impl Fn(f32) -> bool) -> Self {
+        if has(needed) {
+            Self::Marked
+        } else if has(HELD) {
+            Self::Candidate
+        } else {
+            Self::Nothing
+        }
+    }
+}
+
+/// Place from which a picture was taken, with the toy and the lights in it.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    pub(crate) intrinsics: Intrinsics,
+    pub(crate) world_from_camera: DMat4,
+    /// Toy in camera space.
+    pub(crate) middle: DVec3,
+    pub(crate) lights: Vec<Light>,
+}
+
+/// The memory of a search.
+#[derive(Clone, Debug)]
+pub(crate) struct Memory {
+    place: Place,
+    frame: Codes,
+    /// The state of each pixel of the level.
+    known: Vec<Known>,
+    /// Marks of the largest level, rows from the top, and its size; empty if there are none.
+    marks: (IVec2, Vec<Mark>),
+}
+
+impl Memory {
+    /// The memory of a level's frame.
+    pub(super) fn new(place: Place, frame: Codes, known: Vec<Known>) -> Self {
+        Self {
+            place,
+            frame,
+            known,
+            marks: (IVec2::ZERO, Vec::new()),
+        }
+    }
+
+    /// The evidence that each thing of a level needs, from a camera whose projection is given in
+    /// the level's pixels.
+    pub(super) fn needed(
+        &self,
+        grown: &Grown,
+        receivers: &[SeenReceiver],
+        (intrinsics, world_from_camera): (&Intrinsics, &DMat4),
+    ) -> Vec<f32> {
+        let mut counts = vec![[0_u32; 3]; grown.n_things()];
+        let before_from_camera = self.place.world_from_camera.inverse() * *world_from_camera;
+        for at in places(grown.size_px()) {
+            let Some(thing) = grown.of_pixel(at) else { continue };
+            let there = receiver_at(receivers, intrinsics, at).and_then(|(_, point)| {
+                let point = before_from_camera.transform_point3(point);
+                self.place.intrinsics.pixel_of(point)
+            });
+            let index = there.and_then(|px| index_in(self.frame.size_px, px.floor().as_ivec2()));
+            let known = index.and_then(|index| self.known.get(index).copied());
+            counts[thing][known.unwrap_or_default() as usize] += 1;
+        }
+        let needed = |[nothing, candidate, marked]: [u32; 3]| {
+            let least = SAME_PLACE * (nothing + candidate + marked) as f32;
+            if marked as f32 > least {
+                HELD
+            } else if (candidate + marked) as f32 > least {
+                SEEN
+            } else {
+                NEW
+            }
+        };
+        counts.into_iter().map(needed).collect()
+    }
+
+    /// Marks of the largest level of the next picture: as before where neither the picture nor
+    /// light, toy and camera changed, up to the next change of a thing's outline.
+    pub(crate) fn steadied(&self, now: &Self, size_px: IVec2, marks: Vec<Mark>) -> Vec<Mark> {
+        let (known_px, known) = &self.marks;
+        let is_comparable = *known_px == size_px && self.frame.size_px == now.frame.size_px;
+        if !is_comparable || !self.place.is_like(&now.place, self.frame.size_px) {
+            return marks;
+        }
+        let has_changed = self.frame.changed(&now.frame);
+        let per_px = f64::from(self.frame.size_px.x) / f64::from(size_px.x);
+        #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
+        let reach_px = (SAME_OUTLINE_PX / per_px).round() as i32;
+        let near = [known, &marks].map(|marks| {
+            let mut mask = Mask::new(size_px);
+            let marked = places(size_px)
+                .zip(marks)
+                .filter(|(_, mark)| **mark != Mark::None);
+            marked.for_each(|(at, _)| mask.mark(at));
+            mask.grown(reach_px)
+        });
+        let steadied = places(size_px)
+            .zip(known.iter().zip(&marks))
+            .map(|(at, (known, mark))| {
+                let is_near = near.iter().all(|near| near.has(at));
+                let in_level = ((at.as_dvec2() + 0.5) * per_px).floor().as_ivec2();
+                let stays = known != mark && is_near && !has_changed.has(in_level);
+                if stays { *known } else { *mark }
+            });
+        steadied.collect()
+    }
+
+    /// With the marks of its picture's largest level.
+    pub(crate) fn with_marks(self, size_px: IVec2, marks: &[Mark]) -> Self {
+        Self {
+            marks: (size_px, marks.to_vec()),
+            ..self
+        }
+    }
+}
+
+impl Codes {
+    /// Pixels that differ from those of another picture of the same size by more than noise.
+    fn changed(&self, other: &Self) -> Mask {
+        let both = self.pixels.iter().zip(&other.pixels);
+        let apart: Vec<f32> = both.map(|(a, b)| apart(*a, *b)).collect();
+        let noise = median(apart.iter().copied(), f32::total_cmp).unwrap_or(0.0);
+        let least = CHANGED_CODES.max(OF_NOISE * noise);
+        let mut changed = Mask::new(self.size_px);
+        let unlike = places(self.size_px)
+            .zip(apart)
+            .filter(|(_, apart)| *apart > least);
+        unlike.for_each(|(at, _)| changed.mark(at));
+        changed.grown(1)
+    }
+}
+
+impl Place {
+    /// Whether both pictures show the same view of the toy in the same light, within a part of a
+    /// pixel.
+    fn is_like(&self, other: &Self, size_px: IVec2) -> bool {
+        let before_from_camera = self.world_from_camera.inverse() * other.world_from_camera;
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.5]];
+        let is_still = |corner: [f64; 2]| {
+            let at = glam::DVec2::from_array(corner) * size_px.as_dvec2();
+            let point = other.middle.z.abs() * other.intrinsics.ray(at);
+            let there = self
+                .intrinsics
+                .pixel_of(before_from_camera.transform_point3(point));
+            there.is_some_and(|there| there.distance(at) < SAME_VIEW_PX)
+        };
+        let toy = [self, other].map(|place| place.intrinsics.pixel_of(place.middle));
+        let is_toy_still = matches!(toy, [Some(a), Some(b)] if a.distance(b) < SAME_VIEW_PX);
+        self.lights == other.lights && is_toy_still && corners.into_iter().all(is_still)
+    }
+}

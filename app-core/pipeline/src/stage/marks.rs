@@ -1,0 +1,54 @@
+//! The things in a picture, and the warnings about them.
+
+use super::Stage;
+use crate::frame::warning::{Thing, Warning};
+use crate::gpu::Gpu;
+use crate::passes::thing_marks::Things;
+use crate::preset::Settings;
+use app_scene::frame::FrameInput;
+use app_scene::things::{Mark, Things as GivenThings};
+
+impl Stage {
+    /// Sets the things of a picture, unless they are the same; the baseline ignores things.
+    pub(super) fn take_things(&mut self, gpu: &Gpu, input: &FrameInput) {
+        let given = input.things.as_ref();
+        let given = given.filter(|things| matches!(self.settings, Settings::Model(_)) && things.has_any());
+        let is_known = are_same(self.things.as_ref().map(Things::given), given);
+        if !is_known {
+            self.things = given.map(|given| Things::new(gpu, given));
+        }
+    }
+
+    /// Warnings about things beside the toy in the pictures.
+    pub(super) fn thing_warnings(&self) -> impl Iterator<Item = Warning> {
+        let things = self.things.as_ref();
+        let reported = [
+            (Mark::Thing, Thing::OnReceiver),
+            (Mark::BeforeToy, Thing::BeforeToy),
+            (Mark::WrongPlate, Thing::InPlateAlone),
+        ];
+        let all = things.into_iter().chain(self.people.marks());
+        let count = move |mark| {
+            let counts = all.clone().map(|things| things.given().count(mark));
+            counts.sum::<usize>()
+        };
+        let n_in_plate = things.map_or(0, |things| things.given().n_in_plate_alone());
+        // A thing before the toy mostly comes with a shadow.
+        let is_reported = move |mark: Mark| match mark {
+            Mark::Thing => count(mark) > count(Mark::BeforeToy),
+            Mark::WrongPlate => n_in_plate > 0,
+            _ => count(mark) > 0,
+        };
+        let reported = reported.into_iter().filter(move |(mark, _)| is_reported(*mark));
+        reported.map(|(_, thing)| Warning::Thing(thing))
+    }
+}
+
+/// Whether both mark the same pictures, or neither any.
+pub(super) fn are_same(known: Option<&GivenThings>, given: Option<&GivenThings>) -> bool {
+    match (known, given) {
+        (None, None) => true,
+        (Some(known), Some(given)) => known.is(given),
+        _ => false,
+    }
+}

@@ -1,0 +1,140 @@
+//! The search for things picture after picture: marks follow a hand, none stays when it has left,
+//! and none flickers.
+
+use std::sync::Arc;
+
+use app_core::alignment::{Aligner, Conditions, Observer, ThingWatcher, Watched};
+use app_core::frame::FrameInput;
+use app_core::scene::{Image, Scene};
+use app_core::things::{Mark, Things};
+use glam::UVec2;
+use measure::random::Random;
+
+use super::bundled::SESSION;
+
+/// A rectangle of the bundled picture: its first pixel, and the one after its last.
+type Rect = [UVec2; 2];
+
+/// In the shadow, away from the toy.
+const IN_SHADOW: Rect = [UVec2::new(365, 220), UVec2::new(415, 262)];
+const SKIN: [u8; 3] = [20, 120, 130];
+
+/// A hand on the table, whose left end is at a column.
+fn hand(left_px: u32) -> Rect {
+    [UVec2::new(left_px, 190), UVec2::new(left_px + 110, 290)]
+}
+
+fn pixels([first, end]: Rect) -> impl Iterator<Item = UVec2> {
+    (first.y..end.y).flat_map(move |y| (first.x..end.x).map(move |x| UVec2::new(x, y)))
+}
+
+fn painted(image: &Image, rect: Rect) -> Image {
+    let mut image = image.clone();
+    for at in pixels(rect) {
+        let first = 4 * (at.y * image.width_px + at.x) as usize;
+        // Not of one code, as no object is.
+        let grain = ((7 * at.x + 13 * at.y) % 5) as u8;
+        for (code, skin) in image.rgba8[first..first + 3].iter_mut().zip(SKIN) {
+            *code = skin + grain;
+        }
+    }
+    image
+}
+
+/// Share of a rectangle that is marked as a thing, and the number of marked pixels beyond it over
+/// its size.
+fn marked(things: Option<&Things>, rect: Rect) -> [f64; 2] {
+    let Some(things) = things else { return [0.0; 2] };
+    let of_it = pixels(rect).filter(|at| {
+        let index = (at.y * things.size_px().x + at.x) as usize;
+        things.marks()[index] != Mark::None
+    });
+    let (n_in, n_marks) = (of_it.count(), things.marks().len() - things.count(Mark::None));
+    let [first, end] = rect;
+    let size = f64::from((end - first).element_product());
+    [n_in as f64 / size, (n_marks - n_in) as f64 / size]
+}
+
+/// The conditions of the bundled session and its aligned frame.
+fn aligned() -> (Conditions, FrameInput) {
+    let (scene, input) = &*SESSION;
+    let mut aligner = Aligner::new(Scene::clone(scene));
+    let alignment = aligner.align(input).unwrap();
+    (aligner.conditions().unwrap(), alignment.applied_to(input))
+}
+
+fn things(watched: Watched) -> Option<Things> {
+    match watched {
+        Watched::Things(things) => things,
+        Watched::Unchanged => panic!("the picture has changed"),
+    }
+}
+
+#[test]
+fn marks_follow_a_hand_and_none_stays() {
+    let (conditions, input) = aligned();
+    let plain = Arc::clone(input.image.rgba());
+    let mut watcher = ThingWatcher::default();
+    let mut look = |image: Image| {
+        let seen = input.clone().with_image(Arc::new(image));
+        watcher.look(&conditions, &seen).unwrap()
+    };
+    assert!(things(look(Image::clone(&plain))).is_none_or(|things| !things.has_any()));
+    assert!(matches!(look(Image::clone(&plain)), Watched::Unchanged));
+    for left_px in [500, 440, 380, 380, 420, 470] {
+        let rect = hand(left_px);
+        let watched = look(painted(&plain, rect));
+        if let Watched::Things(things) = watched {
+            let [of_it, beyond] = marked(things.as_ref(), rect);
+            assert!(
+                of_it > 0.9 && beyond < 0.1,
+                "at {left_px}: {of_it:.2} of it, {beyond:.2} beyond"
+            );
+        } else {
+            assert_eq!(left_px, 380, "it rests there alone");
+        }
+    }
+    assert!(things(look(Image::clone(&plain))).is_none_or(|things| !things.has_any()));
+}
+
+/// The picture with noise of three codes.
+fn noisy(image: &Image, random: &mut Random) -> Image {
+    let mut image = image.clone();
+    for pixel in image.rgba8.chunks_exact_mut(4) {
+        for code in &mut pixel[..3] {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
+            let noisy = (f64::from(*code) + 3.0 * random.normal())
+                .round()
+                .clamp(0.0, 255.0) as u8;
+            *code = noisy;
+        }
+    }
+    image
+}
+
+#[test]
+fn no_mark_flickers_where_nothing_changes() {
+    let (scene, input) = &*SESSION;
+    let mut scene = Scene::clone(scene);
+    let mut random = Random::new(5);
+    scene.plates[0].image = Arc::new(painted(&scene.plates[0].image, IN_SHADOW));
+    let frame = painted(input.image.rgba(), IN_SHADOW);
+    let mut observer = Observer::default();
+    let mut look = || {
+        let input = input.clone().with_image(Arc::new(noisy(&frame, &mut random)));
+        observer.observed(&scene, &input).unwrap().things.unwrap()
+    };
+    let mut before = look();
+    for _ in 0..4 {
+        let now = look();
+        let pairs = before.marks().iter().zip(now.marks());
+        let n_other = pairs.filter(|(a, b)| a != b).count();
+        let n_marks = now.marks().len() - now.count(Mark::None);
+        assert!(n_marks > 1500, "{n_marks}");
+        assert!(
+            (n_other as f64) < 0.005 * n_marks as f64,
+            "{n_other} of {n_marks}"
+        );
+        before = now;
+    }
+}
