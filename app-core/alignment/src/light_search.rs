@@ -196,8 +196,9 @@ impl Aligner {
                 lights = self.find_lights(Arc::clone(&given), clear.as_ref().unwrap_or(as_it_is))?;
             }
         }
-        // In the first view planes are still to be found, on things.
-        let are_settled = lights.in_use() == &*known && (are_kept || things.is_none());
+        // In the first view planes are still to be found: on things, and sides below listed tops.
+        let has_no_planes = things.is_none() && self.scene.receivers.len() < 2;
+        let are_settled = lights.in_use() == &*known && (are_kept || has_no_planes);
         let things = if !are_trusted || are_settled {
             things
         } else {

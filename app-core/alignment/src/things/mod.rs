@@ -112,23 +112,23 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
     let grown = Grown::from(&seeds, Seed::Thing, &plate);
     let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
     let in_frame = toy.in_frame(&seeds, &frame);
-    if grown.is_none() && wrong.is_none() && in_frame.is_none() && in_plate.is_none() {
-        return None;
-    }
     let before = grown
         .as_ref()
         .map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
-    let planes = match &grown {
-        Some(grown) if sight.wants_planes => {
-            let place = planes::Place {
-                shape: sight.shape,
-                receivers: sight.receivers,
-                points: &toy.beside(sight.points, level),
-            };
-            planes::find(&place, level, &compared, grown)
-        }
-        _ => Vec::new(),
+    let planes = if sight.wants_planes {
+        let place = planes::Place {
+            shape: sight.shape,
+            receivers: sight.receivers,
+            points: &toy.beside(sight.points, level),
+        };
+        planes::find(&place, level, &compared, grown.as_ref())
+    } else {
+        Vec::new()
     };
+    let is_nothing = grown.is_none() && wrong.is_none() && in_frame.is_none() && in_plate.is_none();
+    if is_nothing && planes.is_empty() {
+        return None;
+    }
     let grown = grown.map(|mut grown| {
         let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, &plate);
         grown.absorb(&shadows);

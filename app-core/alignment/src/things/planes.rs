@@ -5,15 +5,13 @@
 //! has a plane at all: a cup, a cloth or a hand has none. If a depth sensor measured the thing, the
 //! search begins with the plane of its points and stays close to it, and the loss only has to agree.
 
-use std::collections::HashSet;
-
 use glam::{DMat4, DQuat, DVec2, DVec3, IVec2, Vec3Swizzles};
 
 use super::extent::{Extent, Outline};
 use super::groups::cross;
 use super::grown::Grown;
 use super::measured::Measured;
-use super::sides::{Side, sides};
+use super::sides::upright;
 use super::simplex::descend;
 use crate::lights::{Compared, Comparison, OnPlane};
 use crate::picture::{Color, Level};
@@ -26,20 +24,20 @@ use app_scene::scene::{Intrinsics, MAX_RECEIVERS};
 /// Least pixels of a thing, in the level, for a search, and most pixels that a search samples.
 const LEAST_PIXELS: usize = 300;
 const MOST_PIXELS: usize = 2500;
-/// Least pixels of an upright side beside the toy for a comparison of losses.
-const LEAST_OF_SIDE: usize = 60;
 /// Least shadowed pixels that a level and a tilted plane need.
 const LEAST_SHADOWED: [usize; 2] = [90, 250];
 /// Least part of the light that a shadowed pixel loses.
 const SHADOWED: f32 = 0.25;
 /// Largest noise of a pixel that counts, in plates.
-const NOISIEST: f32 = 0.2;
+pub(super) const NOISIEST: f32 = 0.2;
 /// Largest loss of a pixel: a squared difference in plates.
 const MOST_LOSS: f64 = 0.03;
 /// Largest loss of an accepted plane: absolute, and over the smaller loss of the known receivers and
 /// of no shadow at all.
 const OF_PLANE: f64 = 0.0012;
 const OF_OTHERS: f64 = 0.35;
+/// The same for a side that has to be proved: its place is known, so that nothing is searched.
+const OF_OTHERS_SIDE: f64 = 0.6;
 /// Largest loss of a plane that a depth sensor measured, and the addition to the losses of the
 /// others for noise.
 const OF_MEASURED: f64 = 0.003;
@@ -51,7 +49,7 @@ const LEAST_LEFT: f64 = 3e-4;
 /// Largest distance in metres between a found plane and the receiver that it replaces.
 const SAME_M: f64 = 0.012;
 /// The receiver nearest to the toy, which stands on it.
-const GROUND: usize = 0;
+pub(super) const GROUND: usize = 0;
 /// A level plane wins if its loss is at most this factor times a tilted plane's, plus a constant.
 const LEVEL_TIMES: f64 = 1.3;
 const LEVEL_MORE: f64 = 1e-4;
@@ -100,14 +98,24 @@ pub(super) struct Place<'a> {
     pub(super) points: &'a [DVec3],
 }
 
-/// Finds the planes of a level's things.
+/// Finds the planes of a level's things, and the sides of known level planes.
 pub(super) fn find(
     place: &Place<'_>,
     level: &Level,
     comparison: &Comparison,
-    grown: &Grown,
+    grown: Option<&Grown>,
 ) -> Vec<FoundPlane> {
-    let (shape, receivers) = (place.shape.merged_in_px(CELL_PX, level), place.receivers);
+    let shape = &place.shape.merged_in_px(CELL_PX, level);
+    let place = &Place { shape, ..*place };
+    let mut planes = grown.map_or(Vec::new(), |grown| tops(place, level, comparison, grown));
+    let upright = upright(place, (level, grown), comparison, &planes);
+    planes.extend(upright);
+    planes
+}
+
+/// The upper sides of a level's things.
+fn tops(place: &Place<'_>, level: &Level, comparison: &Comparison, grown: &Grown) -> Vec<FoundPlane> {
+    let (shape, receivers) = (place.shape, place.receivers);
     // Each search takes a second: only the largest things are searched.
     let mut things: Vec<usize> = (0..grown.n_things()).collect();
     things.sort_by_key(|thing| std::cmp::Reverse(grown.n_seeds(*thing)));
@@ -115,7 +123,7 @@ pub(super) fn find(
     let planes = things.into_iter().filter_map(|thing| {
         let pixels = pixels(comparison, grown, thing);
         let on = most_on(&pixels)?;
-        let search = || Search::new((&shape, receivers), level, comparison, &pixels);
+        let search = || Search::new((shape, receivers), level, comparison, &pixels);
         let outline = Outline {
             level,
             table: receivers.get(GROUND)?,
@@ -129,64 +137,7 @@ pub(super) fn find(
             ..found
         })
     });
-    let mut planes: Vec<FoundPlane> = planes.collect();
-    let upright = upright((&shape, receivers), (level, grown), comparison, &planes);
-    planes.extend(upright);
-    planes
-}
-
-/// The upright sides of level planes, as many as there may be receivers, the largest in the picture
-/// first.
-fn upright(
-    (shape, receivers): (&Shape, &[SeenReceiver]),
-    (level, grown): (&Level, &Grown),
-    comparison: &Comparison,
-    planes: &[FoundPlane],
-) -> Vec<FoundPlane> {
-    let mut known = receivers.to_vec();
-    for found in planes {
-        match found.instead_of {
-            Some(index) => known[index] = found.plane.clone(),
-            None => known.push(found.plane.clone()),
-        }
-    }
-    let mut all: Vec<Side> = (GROUND + 1..known.len())
-        .flat_map(|top| {
-            let others: Vec<SeenReceiver> = known
-                .iter()
-                .enumerate()
-                .filter(|(index, _)| *index != top)
-                .map(|(_, other)| other.clone())
-                .collect();
-            sides(level, grown, &known[top], &others)
-        })
-        .collect();
-    all.sort_by_key(|side| std::cmp::Reverse(side.pixels.len()));
-    let raster = &mut Rasterizer::default();
-    let taken = all.into_iter().filter_map(|side| {
-        let shown: HashSet<IVec2> = side.pixels.iter().copied().collect();
-        let pixels: Vec<&Compared> = comparison
-            .pixels
-            .iter()
-            .filter(|pixel| pixel.noise < NOISIEST && shown.contains(&pixel.at))
-            .collect();
-        // The toy may hide it: then only the place of the top counts.
-        let losses = match Search::new((shape, receivers), level, comparison, &pixels) {
-            Some(search) if pixels.len() >= LEAST_OF_SIDE => search.agreed_losses(raster, &side.plane)?,
-            _ => [0.0; 2],
-        };
-        Some(FoundPlane {
-            report: PlaneAlignment {
-                height_m: side.half_m.y,
-                tilt_rad: std::f64::consts::FRAC_PI_2,
-                half_extent_m: side.half_m.to_array(),
-                losses,
-            },
-            plane: side.plane,
-            instead_of: None,
-        })
-    });
-    taken.take(MAX_RECEIVERS.saturating_sub(known.len())).collect()
+    planes.collect()
 }
 
 /// The inner pixels of a thing, row by row.
@@ -248,7 +199,7 @@ struct Candidate {
 type Heights = [f64; 3];
 
 /// A search for one thing's plane.
-struct Search<'a> {
+pub(super) struct Search<'a> {
     on_plane: OnPlane<'a>,
     table: &'a SeenReceiver,
     intrinsics: Intrinsics,
@@ -267,7 +218,7 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(
+    pub(super) fn new(
         (shape, receivers): (&'a Shape, &'a [SeenReceiver]),
         level: &Level,
         comparison: &'a Comparison,
@@ -386,11 +337,21 @@ impl<'a> Search<'a> {
     }
 
     /// Losses of the known receivers and of an upright side; `None` if those, or no shadow at all,
-    /// explain the pixels better.
-    fn agreed_losses(&self, raster: &mut Rasterizer, plane: &SeenReceiver) -> Option<[f64; 2]> {
+    /// explain the pixels better, or not far worse although the side has to be proved.
+    pub(super) fn agreed_losses(
+        &self,
+        raster: &mut Rasterizer,
+        plane: &SeenReceiver,
+        is_to_prove: bool,
+    ) -> Option<[f64; 2]> {
         let loss = self.loss_of(&self.on_plane.ratios(raster, plane, &self.pixels));
         let (of_receiver, of_others) = self.known_losses();
-        (loss < of_others + NOISE).then_some([of_receiver, loss])
+        let is_agreed = if is_to_prove {
+            of_others > LEAST_LEFT && loss < OF_OTHERS_SIDE * of_others
+        } else {
+            loss < of_others + NOISE
+        };
+        is_agreed.then_some([of_receiver, loss])
     }
 
     /// Loss of the known receivers, and the smaller one of theirs and of no shadow at all.
