@@ -3,6 +3,8 @@ import mitsuba as mi
 import numpy as np
 from PIL import Image
 
+import thing
+
 GRID = 4  # coverage is tested at GRID x GRID places in each pixel
 BULB_POINTS = 64
 OUT_OF_SIGHT = 20.0  # how far a ray that misses all receivers is followed, metres
@@ -19,8 +21,8 @@ def camera_rays(setup, view, offset):
 
 
 def receiver_hits(setup, origin, direction):
-    """Where the rays meet the nearest receiver from its front, and whether they do; else a point out of sight."""
-    nearest = np.full(len(origin), OUT_OF_SIGHT)
+    """Where the rays meet the nearest thing, or the nearest receiver from its front, and whether they do; else a point out of sight."""
+    nearest = np.minimum(thing.hits([one for one in setup.things if one.in_frames], origin, direction), OUT_OF_SIGHT)
     for receiver in setup.receivers:
         plane_from_world = np.linalg.inv(receiver.world_from_plane())
         start = origin @ plane_from_world[:3, :3].T + plane_from_world[:3, 3]
@@ -69,7 +71,7 @@ def bulb_points(light, receivers):
 def hidden_light(setup, view, scene, covered):
     """Share that the toy hides from the receivers of the light it hides most, listed or not; zero where the toy covers them.
 
-    The toy alone hides: neither a wall nor a hand does, for neither moves.
+    The toy alone hides: neither a wall, a thing nor a hand does, for none of them moves.
     """
     points, seen = receiver_hits(setup, *camera_rays(setup, view, (0.5, 0.5)))
     points = points[seen & ~covered]

@@ -60,6 +60,7 @@ class Shot:
     power: float = 1.0  # of the first light
     gain: tuple = EVEN  # linear, per channel
     with_hand: bool = False
+    is_plate: bool = False
 
 
 class Photographer:
@@ -133,9 +134,15 @@ class Photographer:
             parts[f"toy_{k}"] = {"type": "ply", "filename": str(path), "face_normals": True, "bsdf": matt}
         return parts
 
+    def things(self, shot):
+        """The things that a photograph shows."""
+        shown = [thing for thing in self.setup.things if (thing.in_plates if shot.is_plate else thing.in_frames)]
+        return {f"thing_{k}": thing.shape_of_mitsuba(self.folder.name) for k, thing in enumerate(shown)}
+
     def shoot(self, shot, path):
         """Renders and develops a photograph."""
         parts = self.parts | self.bulbs(shot.power) | {"camera": self.camera(shot.view)} | self.meshes(shot.baked)
+        parts |= self.things(shot)
         scene = mi.load_dict(parts | (hand.shapes(*self.setup.hand) if shot.with_hand else {}))
         renders = (mi.render(scene, spp=SAMPLES_A_PASS, seed=shot.seed * 1000 + k) for k in range(self.passes))
         image = sum(np.array(render, np.float64) for render in renders) / self.passes

@@ -52,7 +52,7 @@ def capture_json(setup):
         "width": width, "height": height, "encoding": "srgb",
         "intrinsics": {"fx": setup.focal_px(), "fy": setup.focal_px(), "cx": width / 2, "cy": height / 2},
         "toy": {"file": "toy.glb", "world_from_object": columns(setup.world_from_object()), "physical_pose": {"clip": clip, "time": time}},
-        "receivers": [receiver.listing() for receiver in setup.receivers],
+        "receivers": [surface.listing() for surface in (*setup.receivers, *(thing for thing in setup.things if thing.listed))],
         "lights": [light.listing() for light in setup.lights if light.listed],
         "backgrounds": [{"image": name, "world_from_camera": cameras[view]} for name, view in zip(plate_names(setup), setup.plates)],
         "frames": frames,
@@ -63,7 +63,7 @@ def plates(setup):
     """File and shot of each plate."""
     for k, (name, view) in enumerate(zip(plate_names(setup), setup.plates)):
         gain = setup.plate_gains[k] if setup.plate_gains else EVEN
-        yield name, Shot([], PLATE_SEED + LATER_SEEDS * k, view, gain=gain)
+        yield name, Shot([], PLATE_SEED + LATER_SEEDS * k, view, gain=gain, is_plate=True)
 
 
 def photographs(setup, toy):

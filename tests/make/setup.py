@@ -132,6 +132,7 @@ class Setup:
     lights: tuple = (Bulb(),)
     powers: tuple = ()  # factor on the first light, per frame
     sky: str = "even"  # fills what the lights leave of the plate's irradiance: see `sky`; or path of a light map that gives all
+    things: tuple = ()  # of `thing`, on the table
     hand: tuple | None = None  # x, z, turn of a hand on the table that the plates have not seen
     physical: tuple = (None, 0.0)
     poses: tuple = LOOKS

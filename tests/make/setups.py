@@ -1,5 +1,8 @@
 """The sessions to tune on: the bundled one with its variants, and one scene for each thing that the method must cope with."""
+from dataclasses import replace
+
 from setup import LOOKS, Bulb, Glow, Receiver, Setup, Sun, gains, orbit
+from thing import Thing
 
 WOOD, TILES = Receiver(), Receiver(surface="tiles", tile=0.4)
 UNIFORM, PATCHES = Receiver(surface="uniform"), Receiver(surface="patchwork", tile=0.4)
@@ -79,4 +82,17 @@ OPEN_AIR = (  # for light maps: a light map is sampled less well than a lamp
           eye=(-0.1, 0.33, 0.4), target=(0.04, 0.03, -0.04)),
 )
 
-SCENES = (*NEEDED_FIRST, *RADII, *REST)
+BESIDE = {"eye": (0.07, 0.26, 0.36), "target": (0.06, 0.04, 0.0)}  # shows what stands in the shadow
+BOOK = Thing(size=(0.12, 0.018, 0.16), place=(0.125, 0.01), turn=12.0, tint=(1.1, 0.75, 0.55))
+RAMP = Thing("ramp", size=(0.14, 0.035, 0.14), place=(0.125, 0.0), turn=8.0, surface="wood", tile=0.4)
+THINGS = (
+    scene("book", "The shadow falls on a book.", things=(BOOK,), **BESIDE),
+    scene("book-listed", "The same; the book's top is listed.", things=(replace(BOOK, listed=True),), **BESIDE),
+    scene("ramp", "The shadow falls on a ramp.", things=(RAMP,), **BESIDE),
+    scene("ramp-listed", "The same; the ramp's top is listed.", things=(replace(RAMP, listed=True),), **BESIDE),
+    scene("white-cup", "The shadow falls on a white cup.", things=(Thing("cup", (0.07, 0.08, 0.07), (0.11, 0.0), tint=(1.5, 1.5, 1.5)),), **BESIDE),
+    scene("post", "A post before the toy.", things=(Thing(size=(0.015, 0.1, 0.015), place=(0.045, 0.05), turn=20.0, tint=(0.5, 0.7, 1.2)),), **BESIDE),
+    scene("moved-box", "A box that the plate shows and the frames do not.", things=(Thing(size=(0.05, 0.04, 0.05), place=(0.12, 0.02), in_frames=False),), **BESIDE),
+)
+
+SCENES = (*NEEDED_FIRST, *RADII, *REST, *THINGS)
