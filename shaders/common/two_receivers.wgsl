@@ -3,8 +3,7 @@
 // Such a pixel shows both, so its model is the mean of theirs, weighted by their light in the plate.
 // If they differ in the plate, that tells how much of the pixel each has, which corrects an edge
 // that is listed or found a part of a pixel off.
-// The importing shader declares `plate`, `physical_visibility`, `visibility`, `physical_ambient`,
-// `ambient` and `linear_sampler`.
+// The importing shader declares `plate`, `physical_visibility` and `visibility`.
 
 //#import common/globals
 //#import common/model
@@ -18,7 +17,7 @@ const BESIDE_PX: f32 = 0.75;
 const ALONE_PX: f32 = 2.0;
 // Squared difference of two colours of the plate, over the square of one, from which it tells both
 // apart.
-const TELLS: f32 = 0.01;
+const TELLS: f32 = 0.06;
 
 // One of four places around a pixel's centre.
 fn beside(k: u32) -> vec2f {
@@ -69,8 +68,8 @@ fn part_of_other(at: vec2f, there: vec2f, own: u32) -> vec3f {
 }
 
 // The models of the receiver at a pixel's centre, mixed with those of the other one beside it.
-// Where that is none, nothing changes.
-fn mixed_models(at: vec2f, own: u32, toward: vec2f, models: mat2x3f) -> mat2x3f {
+// Where that is none, nothing changes. The coarse ambient visibilities are of both already.
+fn mixed_models(at: vec2f, own: u32, toward: vec2f, ambients: vec2f, models: mat2x3f) -> mat2x3f {
   if all(toward == vec2f(0.0)) { return models; }
   let there = at + ALONE_PX * sign(toward);
   let part = part_of_other(at, there, own);
@@ -78,12 +77,9 @@ fn mixed_models(at: vec2f, own: u32, toward: vec2f, models: mat2x3f) -> mat2x3f 
   let point = receiver_point(there);
   var other = mat2x3f(vec3f(1.0), vec3f(1.0));
   if is_hit(point) {
-    let uv = there / globals.region_size_px;
-    let before = textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r;
-    let after = textureSampleLevel(ambient, linear_sampler, uv, 0.0).r;
-    let v_before = soft_texel(physical_visibility, vec2i(there));
-    let v_after = soft_texel(visibility, vec2i(there));
-    other = receiver_models(point, vec2f(before, after), v_before, v_after);
+    let before = soft_texel(physical_visibility, vec2i(there));
+    let after = soft_texel(visibility, vec2i(there));
+    other = receiver_models(point, ambients, before, after);
   }
   return mat2x3f(mix(models[0], other[0], part), mix(models[1], other[1], part));
 }

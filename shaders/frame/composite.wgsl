@@ -151,7 +151,7 @@ fn receiver(
   let shown = fit.gain.rgb * reflected_to(globals.camera_in_anchor, point, v_after, min(strength, 1.0));
   let own_color = f - reflection;
   var models = receiver_models(point, vec2f(a_before, a_after), v_before, v_after);
-  if HAS_EDGES { models = mixed_models(at, receiver_of(point), toward, models); }
+  if HAS_EDGES { models = mixed_models(at, receiver_of(point), toward, vec2f(a_before, a_after), models); }
   var a_shown = a_after;
   if HAS_STRENGTH {
     models[1] = strengthened(receiver_model(point, 1.0, vec4f(1.0)), models[1], strength);

@@ -35,7 +35,7 @@ const BESIDE_PX: f64 = 0.75;
 const ALONE_PX: f64 = 2.0;
 /// Squared difference of two colours of the plate, over the square of one, from which it tells both
 /// apart.
-const TELLS: f64 = 0.01;
+const TELLS: f64 = 0.06;
 
 /// The toy's shown pose, and learned parameters.
 #[derive(Clone, Debug)]
@@ -126,14 +126,19 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
     [laid, laid.lerp(kept, (1.0 - seen) * near).max(DVec3::ZERO)]
 }
 
-/// The models of a pixel with the real and the shown toy; 1 beyond all receivers.
-fn models(region: &Region, pictures: &Pictures, shown: &Shown, texel: UVec2) -> [DVec3; 2] {
-    let at = centre_px(texel);
-    let Some(point) = region.receiver_point(at) else {
+/// The models of a texel with the real and the shown toy, with the ambient visibilities of a place;
+/// 1 beyond all receivers.
+fn models(
+    region: &Region,
+    pictures: &Pictures,
+    shown: &Shown,
+    (texel, of_ambient): (UVec2, DVec2),
+) -> [DVec3; 2] {
+    let Some(point) = region.receiver_point(centre_px(texel)) else {
         return [DVec3::ONE; 2];
     };
     let of = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
-        let ambient = coarse_at(ambient, region, at);
+        let ambient = coarse_at(ambient, region, of_ambient);
         let visibility = visibility.at(texel);
         shown.solution.receiver_model(region, point, ambient, visibility)
     };
@@ -146,10 +151,11 @@ fn models(region: &Region, pictures: &Pictures, shown: &Shown, texel: UVec2) -> 
 /// The same for a pixel that may show two receivers: the mean of both, weighted by their light in
 /// the plate.
 fn mixed_models(region: &Region, pictures: &Pictures, shown: &Shown, texel: UVec2) -> [DVec3; 2] {
-    let own = models(region, pictures, shown, texel);
+    let at = centre_px(texel);
+    let own = models(region, pictures, shown, (texel, at));
     match other_receiver(region, pictures, texel) {
         Some((there, part)) => {
-            let other = models(region, pictures, shown, there);
+            let other = models(region, pictures, shown, (there, at));
             [0, 1].map(|k| own[k] + part * (other[k] - own[k]))
         }
         None => own,

@@ -1,5 +1,5 @@
-//! The upright sides of a box whose lit side the shadow crosses are found below its top, and no side
-//! is found where the camera sees none.
+//! The lit side of a box, which the shadow crosses, is found below its top, whether that is found or
+//! listed.
 
 use app_core::alignment::Observer;
 use app_core::scene::Receiver;
@@ -50,42 +50,26 @@ fn is_side(found: &Receiver, (world_from_side, half_m): &(DMat4, DVec2)) -> bool
 }
 
 #[test]
-fn the_visible_sides_of_a_box_are_found() {
+fn the_side_that_the_shadow_crosses_is_found() {
     let sides = sides();
     let all: Vec<_> = [(top(), HALF_M)].into_iter().chain(sides).collect();
     let (scene, shot) = session(&all);
-    let eye = shot.input.camera.world_from_camera.w_axis.truncate();
-    let is_seen =
-        |(world_from_side, _): &&(DMat4, DVec2)| world_from_side.inverse().transform_point3(eye).y > 0.0;
-    let seen: Vec<_> = sides.iter().filter(is_seen).collect();
-    assert_eq!(seen.len(), 2, "the camera sees two of four sides");
     let mut observer = Observer::default();
     observer.observed(&scene, &shot.input).unwrap();
-    let n_upright = observer
-        .planes()
-        .iter()
-        .filter(|plane| plane.is_upright())
-        .count();
-    assert_eq!(
-        [observer.planes().len(), n_upright],
-        [3, 2],
-        "{:?}",
-        observer.planes()
-    );
+    let planes = observer.planes();
+    // No light falls on the other side that the camera sees, so the shadow does not tell of it.
+    assert_eq!(planes.len(), 2, "{planes:?}");
     let known = observer.scene(&scene);
-    for side in seen {
-        let found = &known.receivers[1..];
-        assert!(
-            found.iter().any(|found| is_side(found, side)),
-            "no side at {} among {found:?}",
-            side.0.w_axis
-        );
-    }
+    assert!(
+        known.receivers[1..].iter().any(|found| is_side(found, &sides[0])),
+        "{:?}",
+        known.receivers
+    );
 }
 
-/// The sides of a top that is listed already.
+/// Below a top that is listed already.
 #[test]
-fn the_sides_of_a_listed_top_are_found() {
+fn a_side_of_a_listed_top_is_found() {
     let sides = sides();
     let all: Vec<_> = [(top(), HALF_M)].into_iter().chain(sides).collect();
     let (mut scene, shot) = session(&all);
