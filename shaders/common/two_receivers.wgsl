@@ -1,8 +1,8 @@
 // Pixels at the edge between two receivers, such as the edge of a book.
 //
-// Such a pixel shows both, so its model is the mean of theirs, weighted by their light in the plate.
-// If they differ in the plate, that tells how much of the pixel each has, which corrects an edge
-// that is listed or found a part of a pixel off.
+// Such a pixel shows both, so its model is the mean of theirs, weighted by their light in the plate,
+// if they differ there: that tells how much of the pixel each has, also for an edge that is listed
+// or found a part of a pixel off.
 // The importing shader declares `plate`, `physical_visibility` and `visibility`.
 
 //#import common/globals
@@ -17,7 +17,7 @@ const BESIDE_PX: f32 = 0.75;
 const ALONE_PX: f32 = 2.0;
 // Squared difference of two colours of the plate, over the square of one, from which it tells both
 // apart.
-const TELLS: f32 = 0.06;
+const TELLS: f32 = 0.01;
 
 // One of four places around a pixel's centre.
 fn beside(k: u32) -> vec2f {
@@ -32,15 +32,6 @@ fn toward_other(at: vec2f) -> vec2f {
     if receiver_of(receiver_point(at + BESIDE_PX * beside(k))) != own { sum += beside(k); }
   }
   return sum;
-}
-
-// Part of a pixel's quarters that do not show a receiver.
-fn quarters_beyond(at: vec2f, own: u32) -> f32 {
-  var part = 0.0;
-  for (var k = 0u; k < 4u; k++) {
-    part += select(0.0, 0.25, receiver_of(receiver_point(at + 0.25 * beside(k))) != own);
-  }
-  return part;
 }
 
 fn is_in_region(at: vec2f) -> bool {
@@ -58,10 +49,8 @@ fn part_of_other(at: vec2f, there: vec2f, own: u32) -> vec3f {
   if b_there.a == 0.0 || b_here.a == 0.0 { return vec3f(0.0); }
   let differs = b_there.rgb - b_here.rgb;
   let square = dot(differs, differs);
-  var part = quarters_beyond(at, own);
-  if square > TELLS * dot(b_there.rgb, b_there.rgb) {
-    part = saturate(dot(textureLoad(plate, vec2u(at), 0).rgb - b_here.rgb, differs) / square);
-  }
+  if square <= TELLS * dot(b_there.rgb, b_there.rgb) { return vec3f(0.0); }
+  let part = saturate(dot(textureLoad(plate, vec2u(at), 0).rgb - b_here.rgb, differs) / square);
   let other = part * b_there.rgb;
   let both = other + (1.0 - part) * b_here.rgb;
   return select(vec3f(0.0), other / both, both > vec3f(0.0));

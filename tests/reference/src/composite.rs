@@ -35,7 +35,7 @@ const BESIDE_PX: f64 = 0.75;
 const ALONE_PX: f64 = 2.0;
 /// Squared difference of two colours of the plate, over the square of one, from which it tells both
 /// apart.
-const TELLS: f64 = 0.06;
+const TELLS: f64 = 0.01;
 
 /// The toy's shown pose, and learned parameters.
 #[derive(Clone, Debug)]
@@ -173,12 +173,10 @@ pub fn other_receiver(region: &Region, pictures: &Pictures, texel: UVec2) -> Opt
     let at = centre_px(texel);
     let own = receiver_at(at);
     let around = [-1.0, 1.0].map(|y| [-1.0, 1.0].map(|x| DVec2::new(x, y)));
-    let beyond = |distance_px: f64| {
-        let around = around.as_flattened().iter().copied();
-        let beyond = around.filter(|side| receiver_at(at + distance_px * *side) != own);
-        beyond.collect::<Vec<DVec2>>()
-    };
-    let toward = beyond(BESIDE_PX).iter().sum::<DVec2>();
+    let around = around.as_flattened().iter().copied();
+    let toward: DVec2 = around
+        .filter(|side| receiver_at(at + BESIDE_PX * *side) != own)
+        .sum();
     if toward == DVec2::ZERO {
         return None;
     }
@@ -194,11 +192,10 @@ pub fn other_receiver(region: &Region, pictures: &Pictures, texel: UVec2) -> Opt
     }
     let [b_there, b_here, b] = [there, here, texel].map(|texel| pictures.plate.at(texel));
     let differs = b_there - b_here;
-    let part = if differs.length_squared() > TELLS * b_there.length_squared() {
-        ((b - b_here).dot(differs) / differs.length_squared()).clamp(0.0, 1.0)
-    } else {
-        beyond(0.25).len() as f64 / 4.0
-    };
+    if differs.length_squared() <= TELLS * b_there.length_squared() {
+        return None;
+    }
+    let part = ((b - b_here).dot(differs) / differs.length_squared()).clamp(0.0, 1.0);
     let other = part * b_there;
     let both = other + (1.0 - part) * b_here;
     let is_lit = both.cmpgt(DVec3::ZERO);
