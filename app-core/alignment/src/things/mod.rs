@@ -117,11 +117,11 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
         .map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
     let planes = if sight.wants_planes {
         let place = planes::Place {
-            shape: sight.shape,
+            shape: &sight.shape.merged_in_px(planes::CELL_PX, level),
             receivers: sight.receivers,
             points: &toy.beside(sight.points, level),
         };
-        planes::find(&place, level, &compared, grown.as_ref())
+        sides::with_sides(&place, (level, grown.as_ref()), &compared)
     } else {
         Vec::new()
     };

@@ -11,7 +11,6 @@ use super::extent::{Extent, Outline};
 use super::groups::cross;
 use super::grown::Grown;
 use super::measured::Measured;
-use super::sides::upright;
 use super::simplex::descend;
 use crate::lights::{Compared, Comparison, OnPlane};
 use crate::picture::{Color, Level};
@@ -69,7 +68,7 @@ const N_STARTS: usize = 2;
 const FIRST_STEP: f64 = 0.05;
 const N_TRIES: usize = 60;
 /// Side of the cells that merge the toy's vertices, in pixels of the level.
-const CELL_PX: f64 = 0.7;
+pub(super) const CELL_PX: f64 = 0.7;
 
 /// Maximum number of things whose planes are searched: more receivers are not moved.
 const MOST_SEARCHED: usize = MAX_RECEIVERS - 1;
@@ -91,30 +90,20 @@ impl FoundPlane {
     }
 }
 
-/// The toy, the known receivers and the points of a depth sensor, in camera space.
+/// The toy with its vertices merged, the known receivers and the points of a depth sensor, in camera space.
 pub(super) struct Place<'a> {
     pub(super) shape: &'a Shape,
     pub(super) receivers: &'a [SeenReceiver],
     pub(super) points: &'a [DVec3],
 }
 
-/// Finds the planes of a level's things, and the sides of known level planes.
+/// Finds the planes of a level's things: their upper sides.
 pub(super) fn find(
     place: &Place<'_>,
     level: &Level,
     comparison: &Comparison,
-    grown: Option<&Grown>,
+    grown: &Grown,
 ) -> Vec<FoundPlane> {
-    let shape = &place.shape.merged_in_px(CELL_PX, level);
-    let place = &Place { shape, ..*place };
-    let mut planes = grown.map_or(Vec::new(), |grown| tops(place, level, comparison, grown));
-    let upright = upright(place, (level, grown), comparison, &planes);
-    planes.extend(upright);
-    planes
-}
-
-/// The upper sides of a level's things.
-fn tops(place: &Place<'_>, level: &Level, comparison: &Comparison, grown: &Grown) -> Vec<FoundPlane> {
     let (shape, receivers) = (place.shape, place.receivers);
     // Each search takes a second: only the largest things are searched.
     let mut things: Vec<usize> = (0..grown.n_things()).collect();

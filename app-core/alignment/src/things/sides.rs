@@ -6,7 +6,7 @@ use std::collections::HashSet;
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::grown::Grown;
-use super::planes::{FoundPlane, GROUND, NOISIEST, Place, Search};
+use super::planes::{self, FoundPlane, GROUND, NOISIEST, Place, Search};
 use crate::lights::{Compared, Comparison};
 use crate::picture::{Level, places};
 use crate::raster::Rasterizer;
@@ -37,9 +37,21 @@ struct Side {
     is_filled: bool,
 }
 
+/// Finds the planes of a level's things, and the sides of known level planes.
+pub(super) fn with_sides(
+    place: &Place<'_>,
+    (level, grown): (&Level, Option<&Grown>),
+    comparison: &Comparison,
+) -> Vec<FoundPlane> {
+    let mut planes = grown.map_or(Vec::new(), |grown| planes::find(place, level, comparison, grown));
+    let upright = upright(place, (level, grown), comparison, &planes);
+    planes.extend(upright);
+    planes
+}
+
 /// The upright sides of level planes, as many as there may be receivers, the largest in the picture
 /// first. The planes are the place's receivers above the ground, and those that were found.
-pub(super) fn upright(
+fn upright(
     place: &Place<'_>,
     (level, grown): (&Level, Option<&Grown>),
     comparison: &Comparison,
