@@ -23,6 +23,7 @@
 //#import common/made_grain
 //#import common/marks
 //#import common/reflection
+//#import common/two_receivers
 //#import common/unknown
 
 struct Drawing {
@@ -42,6 +43,8 @@ struct Drawing {
 
 // Whether the shown shadow is stronger or weaker than the true one.
 override HAS_STRENGTH: bool = false;
+// Whether there are several receivers, so that a pixel may show two.
+override HAS_EDGES: bool = false;
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
 @group(1) @binding(2) var physical_ambient: texture_2d<f32>;
@@ -118,7 +121,9 @@ fn receiver(
   let a_after = textureSampleLevel(ambient, linear_sampler, uv, 0.0).r;
   // If no light changes, the other changes are added to the frame: this handles most pixels.
   let is_same = !HAS_STRENGTH && all(v_before == v_after) && a_before == a_after;
-  if is_same && evident.r == 1.0 && evident.b > 0.0 && drawing.has_detail == 0u {
+  var toward = vec2f(0.0);
+  if HAS_EDGES { toward = toward_other(at); }
+  if is_same && all(toward == vec2f(0.0)) && evident.r == 1.0 && evident.b > 0.0 && drawing.has_detail == 0u {
     *change = vec4f(0.0);
     return f;
   }
@@ -146,6 +151,7 @@ fn receiver(
   let shown = fit.gain.rgb * reflected_to(globals.camera_in_anchor, point, v_after, min(strength, 1.0));
   let own_color = f - reflection;
   var models = receiver_models(point, vec2f(a_before, a_after), v_before, v_after);
+  if HAS_EDGES { models = mixed_models(at, receiver_of(point), toward, vec2f(a_before, a_after), models); }
   var a_shown = a_after;
   if HAS_STRENGTH {
     models[1] = strengthened(receiver_model(point, 1.0, vec4f(1.0)), models[1], strength);

@@ -24,7 +24,9 @@ impl Aligner {
         if self.are_shadows_withheld || seen.view.report.is_none() || (is_trusted && is_sharp) {
             return Ok(seen);
         }
-        let sighted = seen.photograph.things(&self.scene, &seen.input, lights, (None, None))?;
+        let sighted = seen
+            .photograph
+            .things(&self.scene, &seen.input, lights, (None, None))?;
         let misleading = sighted.things.map(|things| things.only(is_misleading));
         let Some(misleading) = misleading.filter(Things::has_any) else {
             return Ok(seen);

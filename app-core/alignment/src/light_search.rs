@@ -198,8 +198,9 @@ impl Aligner {
                 lights = self.find_lights(Arc::clone(&given), clear.as_ref().unwrap_or(as_it_is))?;
             }
         }
-        // In the first view planes are still to be found: on things, or on what the lights do not explain.
-        let is_plain = things.is_none() && lights.misfit().is_none();
+        // In the first view planes are still to be found: on things, on what the lights do not explain, and sides below
+        // listed tops.
+        let is_plain = things.is_none() && self.scene.receivers.len() < 2 && lights.misfit().is_none();
         let are_settled = lights.in_use() == &*known && (are_kept || is_plain);
         let things = if !are_trusted || are_settled {
             things

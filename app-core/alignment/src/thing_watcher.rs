@@ -123,8 +123,7 @@ impl ThingWatcher {
             None => photograph,
         };
         let before = self.memory.take();
-        let sighted =
-            photograph.things(&small.scene, &input, &conditions.lights, (None, before.as_ref()))?;
+        let sighted = photograph.things(&small.scene, &input, &conditions.lights, (None, before.as_ref()))?;
         self.memory = sighted.memory;
         let is_same = |known: &Things| {
             sighted

@@ -1,6 +1,6 @@
 //! CPU reference of `composite.wgsl`: the picture on the receiver.
 
-use glam::{DVec3, DVec4, UVec2};
+use glam::{DVec2, DVec3, DVec4, UVec2};
 
 use super::grid::PlaneGrid;
 use super::model::{
@@ -27,6 +27,15 @@ const OBJECT_EVENNESS: f64 = 0.2;
 /// Remaining part of the receiver in the new shadow up to which a pixel is too dark, and from which
 /// it is not.
 const DARK: [f64; 2] = [0.1, 0.4];
+
+/// Distance, along either axis and in pixels, of the places beside a pixel's centre at which another
+/// receiver is looked for.
+const BESIDE_PX: f64 = 0.75;
+/// Distance of the pixels on either side of an edge that show one receiver alone.
+const ALONE_PX: f64 = 2.0;
+/// Squared difference of two colours of the plate, over the square of one, from which it tells both
+/// apart.
+const TELLS: f64 = 0.01;
 
 /// The toy's shown pose, and learned parameters.
 #[derive(Clone, Debug)]
@@ -74,9 +83,6 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
     };
     let model_in =
         |ambient: f64, visibility: DVec4| shown.solution.receiver_model(region, point, ambient, visibility);
-    let model = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
-        model_in(coarse_at(ambient, region, at), visibility.at(texel))
-    };
     let reflected = |visibility: DVec4, part: f64| {
         let reflection = region.reflection.as_ref();
         let light = reflection.map_or(DVec3::ZERO, |reflection| {
@@ -86,9 +92,9 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
     };
     let old_image = reflected(pictures.visibility.at(texel), 1.0);
     let new_image = reflected(shown.visibility.at(texel), shown.strength.min(1.0));
-    let before = model(&pictures.ambient, &pictures.visibility);
+    let [before, left] = mixed_models(region, pictures, shown, texel);
     let open = model_in(1.0, DVec4::ONE);
-    let after = strengthened(open, model(&shown.ambient, &shown.visibility), shown.strength);
+    let after = strengthened(open, left, shown.strength);
     let [before, after] = [before, after].map(|model| shown_model(&shown.solution, point, model, plate));
     let darker = if shown.solution.intensities.is_empty() {
         // The strength of the shadow is unconstrained.
@@ -118,6 +124,82 @@ pub fn receiver_color(region: &Region, pictures: &Pictures, shown: &Shown, texel
     let inside = inside_border(region, texel).max(1.0 - seen);
     let laid = frame.lerp(made.lerp(alone, keep), inside).max(DVec3::ZERO);
     [laid, laid.lerp(kept, (1.0 - seen) * near).max(DVec3::ZERO)]
+}
+
+/// The models of a texel with the real and the shown toy, with the ambient visibilities of a place;
+/// 1 beyond all receivers.
+fn models(
+    region: &Region,
+    pictures: &Pictures,
+    shown: &Shown,
+    (texel, of_ambient): (UVec2, DVec2),
+) -> [DVec3; 2] {
+    let Some(point) = region.receiver_point(centre_px(texel)) else {
+        return [DVec3::ONE; 2];
+    };
+    let of = |ambient: &Raster<f64>, visibility: &Raster<DVec4>| {
+        let ambient = coarse_at(ambient, region, of_ambient);
+        let visibility = visibility.at(texel);
+        shown.solution.receiver_model(region, point, ambient, visibility)
+    };
+    [
+        of(&pictures.ambient, &pictures.visibility),
+        of(&shown.ambient, &shown.visibility),
+    ]
+}
+
+/// The same for a pixel that may show two receivers: the mean of both, weighted by their light in
+/// the plate.
+fn mixed_models(region: &Region, pictures: &Pictures, shown: &Shown, texel: UVec2) -> [DVec3; 2] {
+    let at = centre_px(texel);
+    let own = models(region, pictures, shown, (texel, at));
+    match other_receiver(region, pictures, texel) {
+        Some((there, part)) => {
+            let other = models(region, pictures, shown, (there, at));
+            [0, 1].map(|k| own[k] + part * (other[k] - own[k]))
+        }
+        None => own,
+    }
+}
+
+/// If another receiver is beside a pixel's centre, a texel that shows that one alone, and its part of
+/// the pixel's light in the plate.
+#[must_use]
+pub fn other_receiver(region: &Region, pictures: &Pictures, texel: UVec2) -> Option<(UVec2, DVec3)> {
+    if region.receivers.len() < 2 {
+        return None;
+    }
+    let receiver_at = |at: DVec2| region.receiver_point(at).map(|point| point.receiver);
+    let at = centre_px(texel);
+    let own = receiver_at(at);
+    let around = [-1.0, 1.0].map(|y| [-1.0, 1.0].map(|x| DVec2::new(x, y)));
+    let around = around.as_flattened().iter().copied();
+    let toward: DVec2 = around
+        .filter(|side| receiver_at(at + BESIDE_PX * *side) != own)
+        .sum();
+    if toward == DVec2::ZERO {
+        return None;
+    }
+    let sign = |value: f64| if value == 0.0 { 0.0 } else { value.signum() };
+    let step_px = ALONE_PX * DVec2::new(sign(toward.x), sign(toward.y));
+    let texel_at = |at: DVec2| {
+        let is_within = at.cmpge(DVec2::ZERO).all() && at.cmplt(region.size_px.as_dvec2()).all();
+        is_within.then(|| at.floor().as_uvec2())
+    };
+    let (there, here) = (texel_at(at + step_px)?, texel_at(at - step_px)?);
+    if receiver_at(centre_px(there)) == own || receiver_at(centre_px(here)) != own {
+        return None;
+    }
+    let [b_there, b_here, b] = [there, here, texel].map(|texel| pictures.plate.at(texel));
+    let differs = b_there - b_here;
+    if differs.length_squared() <= TELLS * b_there.length_squared() {
+        return None;
+    }
+    let part = ((b - b_here).dot(differs) / differs.length_squared()).clamp(0.0, 1.0);
+    let other = part * b_there;
+    let both = other + (1.0 - part) * b_here;
+    let is_lit = both.cmpgt(DVec3::ZERO);
+    Some((there, DVec3::select(is_lit, other / both, DVec3::ZERO)))
 }
 
 /// The model, and 1 if the plate is clipped and no other pixel of its receiver is visible.

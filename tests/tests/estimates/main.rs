@@ -18,6 +18,7 @@ mod probe;
 mod probe_session;
 mod real_pictures;
 mod reflection;
+mod sides;
 mod softness;
 mod texture;
 mod thing_watcher;

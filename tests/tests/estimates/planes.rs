@@ -15,7 +15,7 @@ const TILT_RAD: f64 = 0.03;
 /// Tolerance of its middle and half sides in metres: one pixel and a half.
 const EXTENT_M: f64 = 0.0025;
 /// Half the sides of the board.
-const HALF_M: DVec2 = DVec2::new(0.05, 0.06);
+pub(super) const HALF_M: DVec2 = DVec2::new(0.05, 0.06);
 /// Noise of a depth sensor, in millimetres, and the size of its picture.
 const NOISE_MM: f64 = 5.0;
 const DEPTH_PX: UVec2 = UVec2::new(256, 144);
@@ -40,7 +40,7 @@ fn board_at(x_m: f64, height_m: f64, tilt_rad: f64) -> DMat4 {
 }
 
 /// The boxes beside such planes, which the scene does not contain.
-fn session(planes: &[(DMat4, DVec2)]) -> (Scene, Shot) {
+pub(super) fn session(planes: &[(DMat4, DVec2)]) -> (Scene, Shot) {
     painted(planes, &Paint::Even(DVec3::new(0.2, 0.35, 0.6)))
 }
 

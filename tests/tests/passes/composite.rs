@@ -4,7 +4,7 @@ use app_core::shadow_style::ShadowStyle;
 use app_core::toy::PosedMesh;
 use app_pipeline::geometry::rect::PixelRect;
 use glam::{DVec2, DVec4, UVec2};
-use reference::composite::{Shown, inside_border, receiver_color};
+use reference::composite::{Shown, inside_border, other_receiver, receiver_color};
 use reference::model::centre_px;
 use reference::raster::{Raster, texels_of};
 
@@ -83,10 +83,13 @@ pub(crate) fn check_receiver(run: &Run) {
 #[test]
 fn setups_meet_every_branch() {
     type Condition = fn(&Run, UVec2) -> bool;
-    let conditions: [(&str, Condition); 4] = [
+    let conditions: [(&str, Condition); 5] = [
         ("on a second receiver", |run, texel| {
             let point = run.region.receiver_point(centre_px(texel));
             point.is_some_and(|point| point.receiver == 1)
+        }),
+        ("at an edge between receivers", |run, texel| {
+            other_receiver(&run.region, &run.pictures, texel).is_some()
         }),
         ("beside the receiver", |run, texel| {
             run.region.receiver_point(centre_px(texel)).is_none()

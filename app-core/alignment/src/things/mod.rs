@@ -23,7 +23,6 @@ mod seeds;
 mod shade;
 mod sides;
 mod simplex;
-mod upright;
 mod wrong;
 
 use std::borrow::Cow;
@@ -179,21 +178,21 @@ impl Sight<'_> {
             toy.before(grown, (frame, &plate), needed)
         });
         let alone = evidence.map_or(Vec::new(), |(grown, needed)| grown.alone(&needed));
-        let planes_on = |grown: &Grown, colored| {
+        let planes_on = |grown: Option<&Grown>, colored| {
             let place = planes::Place {
-                shape: self.shape,
+                shape: &self.shape.merged_in_px(planes::CELL_PX, level),
                 receivers: self.receivers,
                 points: &toy.beside(self.points, level),
             };
-            planes::find(&place, level, &compared, (grown, colored))
+            sides::with_sides(&place, (level, grown, colored), &compared)
         };
         let planes = match (&grown, self.planes_of) {
-            (Some(grown), Some(_)) => planes_on(grown, Colored::Otherwise),
+            (_, None) => Vec::new(),
             (None, Some(Colored::Alike)) => {
                 let alike = Grown::from(&seeds_of(Colored::Alike), Seed::Thing, &plate);
-                alike.map_or(Vec::new(), |alike| planes_on(&alike, Colored::Alike))
+                planes_on(alike.as_ref(), Colored::Alike)
             }
-            _ => Vec::new(),
+            (grown, Some(_)) => planes_on(grown.as_ref(), Colored::Otherwise),
         };
         let grown = grown.map(|mut grown| {
             let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, &plate);

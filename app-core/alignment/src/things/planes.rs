@@ -13,7 +13,6 @@ use super::grown::Grown;
 use super::measured::Measured;
 use super::seeds::Colored;
 use super::simplex::descend;
-use super::upright;
 use crate::lights::{Compared, Comparison, OnPlane};
 use crate::picture::{Color, Level};
 use crate::raster::Rasterizer;
@@ -37,10 +36,12 @@ const MOST_LOSS: f64 = 0.03;
 /// of no shadow at all.
 const OF_PLANE: f64 = 0.0012;
 const OF_OTHERS: f64 = 0.35;
+/// The same for a side that has to be proved: its place is known, so that nothing is searched.
+const OF_OTHERS_SIDE: f64 = 0.6;
 /// Largest loss of a plane that a depth sensor measured, and the addition to the losses of the
 /// others for noise.
 const OF_MEASURED: f64 = 0.003;
-pub(super) const NOISE: f64 = 1e-4;
+const NOISE: f64 = 1e-4;
 /// Loss of a squared deviation from the plane of a depth sensor.
 const OFF_MEASURED: f64 = 1e-4;
 /// If these leave a smaller loss, there is nothing to explain.
@@ -71,7 +72,7 @@ const N_STARTS: usize = 2;
 const FIRST_STEP: f64 = 0.05;
 const N_TRIES: usize = 60;
 /// Side of the cells that merge the toy's vertices, in pixels of the level.
-const CELL_PX: f64 = 0.7;
+pub(super) const CELL_PX: f64 = 0.7;
 
 /// Maximum number of things whose planes are searched: more receivers are not moved.
 const MOST_SEARCHED: usize = MAX_RECEIVERS - 1;
@@ -93,21 +94,21 @@ impl FoundPlane {
     }
 }
 
-/// The toy, the known receivers and the points of a depth sensor, in camera space.
+/// The toy with its vertices merged, the known receivers and the points of a depth sensor, in camera space.
 pub(super) struct Place<'a> {
     pub(super) shape: &'a Shape,
     pub(super) receivers: &'a [SeenReceiver],
     pub(super) points: &'a [DVec3],
 }
 
-/// Finds the planes of a level's things.
+/// Finds the planes of a level's things: their upper sides.
 pub(super) fn find(
     place: &Place<'_>,
     level: &Level,
     comparison: &Comparison,
     (grown, colored): (&Grown, Colored),
 ) -> Vec<FoundPlane> {
-    let (shape, receivers) = (place.shape.merged_in_px(CELL_PX, level), place.receivers);
+    let (shape, receivers) = (place.shape, place.receivers);
     // Each search takes a second: only the largest things are searched.
     let mut things: Vec<usize> = (0..grown.n_things()).collect();
     things.sort_by_key(|thing| std::cmp::Reverse(grown.n_seeds(*thing)));
@@ -115,7 +116,7 @@ pub(super) fn find(
     let planes = things.into_iter().filter_map(|thing| {
         let pixels = pixels(comparison, grown, thing);
         let on = most_on(&pixels)?;
-        let search = || Search::new((&shape, receivers), level, comparison, &pixels);
+        let search = || Search::new((shape, receivers), level, comparison, &pixels);
         let outline = Outline {
             level,
             table: receivers.get(GROUND)?,
@@ -130,10 +131,7 @@ pub(super) fn find(
             ..found
         })
     });
-    let mut planes: Vec<FoundPlane> = planes.collect();
-    let sides = upright::sides_of((&shape, receivers), (level, grown), comparison, &planes);
-    planes.extend(sides);
-    planes
+    planes.collect()
 }
 
 /// The inner pixels of a thing, row by row.
@@ -341,8 +339,26 @@ impl<'a> Search<'a> {
         (is_significant && n_shadowed >= least).then_some([of_receiver, loss])
     }
 
+    /// Losses of the known receivers and of an upright side; `None` if those, or no shadow at all,
+    /// explain the pixels better, or not far worse although the side has to be proved.
+    pub(super) fn agreed_losses(
+        &self,
+        raster: &mut Rasterizer,
+        plane: &SeenReceiver,
+        is_to_prove: bool,
+    ) -> Option<[f64; 2]> {
+        let loss = self.loss_of(&self.ratios(raster, plane));
+        let (of_receiver, of_others) = self.known_losses();
+        let is_agreed = if is_to_prove {
+            of_others > LEAST_LEFT && loss < OF_OTHERS_SIDE * of_others
+        } else {
+            loss < of_others + NOISE
+        };
+        is_agreed.then_some([of_receiver, loss])
+    }
+
     /// Loss of the known receivers, and the smaller one of theirs and of no shadow at all.
-    pub(super) fn known_losses(&self) -> (f64, f64) {
+    fn known_losses(&self) -> (f64, f64) {
         let of_receiver = self.loss_of(&self.expected);
         let of_light = self.loss_of(&vec![Some([1.0; 3]); self.seen.len()]);
         (of_receiver, of_receiver.min(of_light))
@@ -386,7 +402,7 @@ impl<'a> Search<'a> {
     }
 
     /// The same for a prediction of each pixel, if there is one.
-    pub(super) fn loss_of(&self, expected: &[Option<Color>]) -> f64 {
+    fn loss_of(&self, expected: &[Option<Color>]) -> f64 {
         let depth = self.depth(expected);
         let pixels = expected.iter().zip(&self.seen);
         let losses = pixels
@@ -429,7 +445,7 @@ impl<'a> Search<'a> {
     }
 
     /// Prediction of a plane for each pixel that shows it.
-    pub(super) fn ratios(&self, raster: &mut Rasterizer, plane: &SeenReceiver) -> Vec<Option<Color>> {
+    fn ratios(&self, raster: &mut Rasterizer, plane: &SeenReceiver) -> Vec<Option<Color>> {
         self.on_plane.ratios(raster, plane, &self.pixels)
     }
 }

@@ -1,33 +1,123 @@
 //! The upright sides of a thing with a level top, such as a box: rectangles between the edges of the
 //! top and the receiver below.
 
+use std::collections::HashSet;
+
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::grown::Grown;
+use super::planes::{self, FoundPlane, GROUND, NOISIEST, Place, Search};
+use super::seeds::Colored;
+use crate::lights::{Compared, Comparison};
 use crate::picture::{Level, places};
+use crate::raster::Rasterizer;
 use crate::receivers::{SeenReceiver, receiver_at};
+use crate::report::PlaneAlignment;
+use app_scene::scene::MAX_RECEIVERS;
 
 /// Smallest cosine between a level top and the receiver, and least height of it in metres.
 const LEVEL: f64 = 0.9998;
 const LEAST_M: f64 = 0.004;
 /// Largest distance in metres between a side and a receiver that it lies along.
 const ALONG_M: f64 = 0.012;
-/// Least pixels of a side in the level, and the least part of them that shows a thing.
+/// Least pixels of a side in the level, and the least part of them that shows a thing: if fewer do,
+/// the shadow has to prove the side.
 const LEAST_PIXELS: usize = 80;
 const FILLED: f64 = 0.6;
+/// Least pixels of a side beside the toy for a comparison of losses.
+const LEAST_COMPARED: usize = 60;
 /// Outward directions in the space of the top.
 const OUTWARD: [DVec3; 4] = [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z];
 
 /// A side with the pixels of a level that show it.
-pub(super) struct Side {
-    pub(super) plane: SeenReceiver,
-    pub(super) half_m: DVec2,
-    pub(super) pixels: Vec<IVec2>,
+struct Side {
+    plane: SeenReceiver,
+    half_m: DVec2,
+    pixels: Vec<IVec2>,
+    /// Whether it shows a thing.
+    is_filled: bool,
 }
 
-/// The sides of a level top that are visible and show a thing; `others` are the other receivers, of
-/// which the first one is below it.
-pub(super) fn sides(level: &Level, grown: &Grown, top: &SeenReceiver, others: &[SeenReceiver]) -> Vec<Side> {
+/// Finds the planes of a level's things, and the sides of known level planes. Where a thing in the
+/// place's own colours ends is not seen, so the shadow has to prove its sides.
+pub(super) fn with_sides(
+    place: &Place<'_>,
+    (level, grown, colored): (&Level, Option<&Grown>, Colored),
+    comparison: &Comparison,
+) -> Vec<FoundPlane> {
+    let mut planes = grown.map_or(Vec::new(), |grown| {
+        planes::find(place, level, comparison, (grown, colored))
+    });
+    let seen = grown.filter(|_| colored == Colored::Otherwise);
+    let upright = upright(place, (level, seen), comparison, &planes);
+    planes.extend(upright);
+    planes
+}
+
+/// The upright sides of level planes, as many as there may be receivers, the largest in the picture
+/// first. The planes are the place's receivers above the ground, and those that were found.
+fn upright(
+    place: &Place<'_>,
+    (level, grown): (&Level, Option<&Grown>),
+    comparison: &Comparison,
+    planes: &[FoundPlane],
+) -> Vec<FoundPlane> {
+    let mut known = place.receivers.to_vec();
+    for found in planes {
+        match found.instead_of {
+            Some(index) => known[index] = found.plane.clone(),
+            None => known.push(found.plane.clone()),
+        }
+    }
+    let mut all: Vec<Side> = (GROUND + 1..known.len())
+        .flat_map(|top| {
+            let others = known.iter().enumerate().filter(|(index, _)| *index != top);
+            let others: Vec<SeenReceiver> = others.map(|(_, other)| other.clone()).collect();
+            sides(level, grown, &known[top], &others)
+        })
+        .collect();
+    all.sort_by_key(|side| std::cmp::Reverse(side.pixels.len()));
+    let raster = &mut Rasterizer::default();
+    let taken = all.into_iter().filter_map(|side| {
+        let losses = losses(place, level, comparison, &side, raster)?;
+        Some(FoundPlane {
+            report: PlaneAlignment {
+                height_m: side.half_m.y,
+                tilt_rad: std::f64::consts::FRAC_PI_2,
+                half_extent_m: side.half_m.to_array(),
+                losses,
+            },
+            plane: side.plane,
+            instead_of: None,
+        })
+    });
+    taken.take(MAX_RECEIVERS.saturating_sub(known.len())).collect()
+}
+
+/// Losses of the known receivers and of a side; 0 if the toy hides one that shows a thing, for which
+/// the place of the top counts alone. `None` if the picture contradicts the side.
+fn losses(
+    place: &Place<'_>,
+    level: &Level,
+    comparison: &Comparison,
+    side: &Side,
+    raster: &mut Rasterizer,
+) -> Option<[f64; 2]> {
+    let shown: HashSet<IVec2> = side.pixels.iter().copied().collect();
+    let pixels = comparison.pixels.iter();
+    let pixels = pixels.filter(|pixel| pixel.noise < NOISIEST && shown.contains(&pixel.at));
+    let pixels: Vec<&Compared> = pixels.collect();
+    match Search::new((place.shape, place.receivers), level, comparison, &pixels) {
+        Some(search) if pixels.len() >= LEAST_COMPARED => {
+            search.agreed_losses(raster, &side.plane, !side.is_filled)
+        }
+        _ => side.is_filled.then_some([0.0; 2]),
+    }
+}
+
+/// The sides of a level top that are visible; `others` are the other receivers, of which the first
+/// one is below it.
+fn sides(level: &Level, grown: Option<&Grown>, top: &SeenReceiver, others: &[SeenReceiver]) -> Vec<Side> {
     let Some(height_m) = others.first().and_then(|table| height_m(top, table)) else {
         return Vec::new();
     };
@@ -38,9 +128,10 @@ pub(super) fn sides(level: &Level, grown: &Grown, top: &SeenReceiver, others: &[
         let is_seen =
             |at: &IVec2| receiver_at(&all, &level.intrinsics, *at).is_some_and(|(index, _)| index == 0);
         let pixels: Vec<IVec2> = places(level.frame.size_px).filter(is_seen).collect();
-        let n_thing = pixels.iter().filter(|at| grown.of_pixel(**at).is_some()).count();
-        let is_filled = n_thing as f64 >= FILLED * pixels.len() as f64;
-        (pixels.len() >= LEAST_PIXELS && is_filled).then_some(Side {
+        let is_thing = |at: &&IVec2| grown.is_some_and(|grown| grown.of_pixel(**at).is_some());
+        let n_thing = pixels.iter().filter(is_thing).count();
+        (pixels.len() >= LEAST_PIXELS).then_some(Side {
+            is_filled: n_thing as f64 >= FILLED * pixels.len() as f64,
             plane,
             half_m,
             pixels,

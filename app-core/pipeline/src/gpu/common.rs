@@ -57,6 +57,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "toy_light",
     "toy_point",
     "toy_radiance",
+    "two_receivers",
     "unknown",
 ];
 

@@ -71,8 +71,8 @@ pub(crate) struct Pass {
     of_codes: Draws,
     /// Compiled when the first picture in light is requested.
     of_light: OnceLock<Draws>,
-    /// Compiled when the first layers are requested.
-    layers: OnceLock<Layered>,
+    /// For one receiver and for several; compiled when the first layers are requested.
+    layers: [OnceLock<Layered>; 2],
 }
 
 /// Pipelines that draw the picture in one format.
@@ -81,23 +81,34 @@ struct Draws {
     /// Outside the toy in either pose and its shadows: only the plate is drawn there.
     open: ByForm<Draw>,
     plain: Shadowed,
-    /// With grain, with a shadow whose strength is not the true one, with both; compiled when the
-    /// first such frame comes.
-    others: [OnceLock<Shadowed>; 3],
+    /// The other variants by their number; compiled when the first such frame comes.
+    others: [OnceLock<Shadowed>; N_VARIANTS],
 }
 
 /// Properties in which a frame differs from most.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 struct Variant {
     has_grain: bool,
+    /// Whether the shadow's strength is not the true one.
     has_strength: bool,
+    /// Whether there are several receivers.
+    has_edges: bool,
 }
+
+/// Number of variants.
+const N_VARIANTS: usize = 8;
 
 impl Variant {
     const PLAIN: Self = Self {
         has_grain: false,
         has_strength: false,
+        has_edges: false,
     };
+
+    fn number(self) -> usize {
+        let of = [self.has_grain, self.has_strength, self.has_edges].map(usize::from);
+        of[0] + 2 * of[1] + 4 * of[2]
+    }
 }
 
 /// The layers of the picture, over the whole region.
@@ -132,6 +143,8 @@ pub(crate) struct Inputs<'a> {
     pub(crate) grain: Option<PictureGrain>,
     /// Strength of the shown shadow; 1 is the true one.
     pub(crate) shadow_strength: f32,
+    /// Whether a pixel may show two receivers.
+    pub(crate) has_edges: bool,
 }
 
 /// Targets of the region's size.
@@ -184,7 +197,7 @@ impl Pass {
         Self {
             of_codes: Draws::new(gpu, REGION_FORMAT),
             of_light: OnceLock::new(),
-            layers: OnceLock::new(),
+            layers: Default::default(),
         }
     }
 
@@ -208,7 +221,8 @@ impl Pass {
         targets: &[Texture; N_LAYERS],
     ) {
         let gpu = recorder.gpu;
-        let layered = self.layers.get_or_init(|| Layered::new(gpu));
+        let has_edges = inputs.has_edges;
+        let layered = self.layers[usize::from(has_edges)].get_or_init(|| Layered::new(gpu, has_edges));
         let draw = match inputs.toy.n_draws() {
             1 => &layered.drawn_once,
             _ => &layered.drawn_four_times,
@@ -235,13 +249,10 @@ impl Draws {
     }
 
     fn shadowed(&self, gpu: &Gpu, variant: Variant) -> &Shadowed {
-        let other = match (variant.has_grain, variant.has_strength) {
-            (false, false) => return &self.plain,
-            (true, false) => &self.others[0],
-            (false, true) => &self.others[1],
-            (true, true) => &self.others[2],
-        };
-        other.get_or_init(|| Shadowed::new(gpu, variant, self.format))
+        if variant == Variant::PLAIN {
+            return &self.plain;
+        }
+        self.others[variant.number()].get_or_init(|| Shadowed::new(gpu, variant, self.format))
     }
 
     fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &TextureView) {
@@ -249,6 +260,7 @@ impl Draws {
         let variant = Variant {
             has_grain: inputs.grain.is_some(),
             has_strength: inputs.shadow_strength != 1.0,
+            has_edges: inputs.has_edges,
         };
         let shadowed = self.shadowed(gpu, variant);
         let near_toy = match inputs.toy.n_draws() {
@@ -289,11 +301,12 @@ impl Shadowed {
 }
 
 impl Layered {
-    fn new(gpu: &Gpu) -> Self {
+    fn new(gpu: &Gpu, has_edges: bool) -> Self {
         // A shadow without strength leaves the clean plate.
         let variant = Variant {
             has_grain: false,
             has_strength: true,
+            has_edges,
         };
         let formats = (variant, &[LAYER_FORMAT; N_LAYERS][..]);
         Self {
@@ -317,6 +330,7 @@ fn draw(
                 form,
                 ("HAS_GRAIN", u32::from(variant.has_grain)),
                 ("HAS_STRENGTH", u32::from(variant.has_strength)),
+                ("HAS_EDGES", u32::from(variant.has_edges)),
             ],
             ..DrawSpec::fullscreen(&SHADER, fragment, groups, &formats)
         })

@@ -160,6 +160,7 @@ impl FramePath<'_> {
                 .map(|residual| &residual.view),
             grain: self.grain,
             shadow_strength: self.shadow_strength,
+            has_edges: self.region.plan.n_receivers > 1,
         }
     }
 
