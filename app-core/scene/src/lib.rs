@@ -12,6 +12,7 @@ pub mod gloss;
 pub mod grain;
 pub mod lens;
 pub mod picture;
+pub mod place_mesh;
 pub mod reflection;
 pub mod scene;
 pub mod shadow_style;

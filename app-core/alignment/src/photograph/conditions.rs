@@ -1,10 +1,11 @@
 //! The conditions of a photograph: its softness, and the other things in it.
 
-use glam::{DMat4, DVec3, UVec2};
+use glam::DMat4;
 
 use super::Photograph;
 use crate::found_planes::FoundReceiver;
 use crate::lights::FoundReflection;
+use crate::measured_points::MeasuredPoints;
 use crate::{gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
 use app_scene::geometry::nearest_receivers::nearest_to_toy;
@@ -13,9 +14,6 @@ use app_scene::scene::{Camera, Light, Scene};
 use app_scene::sharpness::{Sharpness, Spread};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
-
-/// Most points of a depth picture that are used: more add nothing to a plane.
-const MOST_DEPTHS: usize = 50_000;
 
 /// Things beside the toy.
 #[derive(Default)]
@@ -103,14 +101,10 @@ impl Photograph {
     ) -> Result<Sighted, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let paint = pose::Paint::new(scene, &self.camera_from_object(&input.world_from_object))?;
-        let points: Vec<DVec3> = match &input.depth {
-            Some(depth) if wants_planes => {
-                let size_px = UVec2::from_array(input.image.size_px());
-                let every = depth.depths_mm().len().div_ceil(MOST_DEPTHS).max(1);
-                let points = depth.points(input.camera.intrinsics, size_px);
-                points.step_by(every).collect()
-            }
-            _ => Vec::new(),
+        let points = if wants_planes {
+            MeasuredPoints::of(scene, input)
+        } else {
+            Vec::new()
         };
         let found = things::find(&things::Sight {
             shape: &shape,

@@ -27,6 +27,7 @@ use std::borrow::Cow;
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use crate::lights::{Compared, Comparison};
+use crate::measured_points::MeasuredPoints;
 use crate::picture::{Color, Level, Mask, Pyramid, index_in, places};
 use crate::pose::Paint;
 use crate::raster::{Coverage, Rasterizer, project};
@@ -81,8 +82,8 @@ pub(crate) struct Sight<'a> {
     pub(crate) pyramid: &'a Pyramid,
     pub(crate) lights: &'a [Light],
     pub(crate) world_from_camera: &'a DMat4,
-    /// Points that a depth sensor measured, in camera space.
-    pub(crate) points: &'a [DVec3],
+    /// Points by each source that measured some.
+    pub(crate) points: &'a [MeasuredPoints],
     /// Whether planes of things are searched for.
     pub(crate) wants_planes: bool,
 }
@@ -120,10 +121,11 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
         .map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
     let planes = match &grown {
         Some(grown) if sight.wants_planes => {
+            let measured = sight.points.iter().map(|measured| toy.beside(measured, level));
             let place = planes::Place {
                 shape: sight.shape,
                 receivers: sight.receivers,
-                points: &toy.beside(sight.points, level),
+                points: &measured.collect::<Vec<_>>(),
             };
             planes::find(&place, level, &compared, grown)
         }
@@ -384,13 +386,14 @@ impl Toy {
         Self { coverage, shown }
     }
 
-    /// The points in camera space that are seen beside the toy.
-    fn beside(&self, points: &[DVec3], level: &Level) -> Vec<DVec3> {
-        let is_beside = |point: &DVec3| {
-            let at = level.intrinsics.pixel_of(*point);
+    /// The points that are seen beside the toy.
+    fn beside(&self, measured: &MeasuredPoints, level: &Level) -> MeasuredPoints {
+        let is_beside = |point: &&DVec3| {
+            let at = level.intrinsics.pixel_of(**point);
             at.is_some_and(|at| !self.coverage.is_near(at.floor().as_ivec2(), BESIDE_PX))
         };
-        points.iter().copied().filter(is_beside).collect()
+        let points = measured.points.iter().filter(is_beside).copied().collect();
+        MeasuredPoints { points, ..*measured }
     }
 
     fn expected(&self, at: IVec2) -> Option<Color> {

@@ -16,6 +16,7 @@ use super::measured::Measured;
 use super::sides::{Side, sides};
 use super::simplex::descend;
 use crate::lights::{Compared, Comparison, OnPlane};
+use crate::measured_points::MeasuredPoints;
 use crate::picture::{Color, Level};
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
@@ -93,11 +94,11 @@ impl FoundPlane {
     }
 }
 
-/// The toy, the known receivers and the points of a depth sensor, in camera space.
+/// The toy, the known receivers and measured points, in camera space.
 pub(super) struct Place<'a> {
     pub(super) shape: &'a Shape,
     pub(super) receivers: &'a [SeenReceiver],
-    pub(super) points: &'a [DVec3],
+    pub(super) points: &'a [MeasuredPoints],
 }
 
 /// Finds the planes of a level's things.
@@ -122,8 +123,9 @@ pub(super) fn find(
             grown,
             thing,
         };
-        let by_points = || found(search()?.measured(&outline, place.points)?, &outline);
-        let found = by_points().or_else(|| found(search()?, &outline))?;
+        let by_points = |points| found(search()?.measured(&outline, points)?, &outline);
+        let measured = place.points.iter().find_map(by_points);
+        let found = measured.or_else(|| found(search()?, &outline))?;
         Some(FoundPlane {
             instead_of: (on != GROUND && found.is_near(&receivers[on])).then_some(on),
             ..found
@@ -302,7 +304,7 @@ impl<'a> Search<'a> {
     }
 
     /// The same search, about the plane of a depth sensor's points; `None` if they are on none.
-    fn measured(mut self, outline: &Outline<'_>, points: &[DVec3]) -> Option<Self> {
+    fn measured(mut self, outline: &Outline<'_>, points: &MeasuredPoints) -> Option<Self> {
         self.measured = Some(Measured::of(outline, self.middle, points)?);
         Some(self)
     }
