@@ -122,6 +122,7 @@ impl Session {
             // ARCore's estimate would cost time with each picture, and improved none of the
             // measured sessions.
             light_estimate: None,
+            depth: None,
             display: Display {
                 quarter_turns: self.quarter_turns(),
                 ..Display::default()

@@ -57,3 +57,17 @@ impl Depth {
         })
     }
 }
+
+/// Millimetres of a depth in metres; 0, as if unknown, for a number that is no depth, or beyond 65 m.
+#[must_use]
+pub fn millimetres(metres: f32) -> u16 {
+    let millimetres = (1e3 * metres).round();
+    let is_known = millimetres > 0.0 && millimetres <= f32::from(u16::MAX);
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "within the range, as was just seen"
+    )]
+    let known = millimetres as u16;
+    if is_known { known } else { 0 }
+}

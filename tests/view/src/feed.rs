@@ -155,6 +155,8 @@ impl Feed {
             anchors: Arc::from(Vec::<Anchor>::new()),
             world_from_card: self.world_from_card().filter(|_| is_known && !self.is_dark),
             light_estimate: of.light_estimate,
+            // It belongs to the frame's own picture.
+            depth: of.depth.clone().filter(|_| self.is_toy_there && !self.is_dark),
             display: self.display,
         }
     }

@@ -190,6 +190,7 @@ impl App {
         let input = FrameInput::new(latest.image.clone(), camera, place.scene.world_from_object)
             .with_exposure(self.exposure_of(latest))
             .with_light_estimate(latest.light_estimate)
+            .with_depth(latest.depth.clone())
             .with_shown_pose(self.playback.pose())
             .with_effect(effect);
         Some(input)

@@ -7,6 +7,7 @@ use glam::{DMat4, DVec2};
 use super::arrival::Stamp;
 use super::display::Display;
 use super::image::CameraImage;
+use crate::depth::Depth;
 use crate::scene::{Camera, Intrinsics, LightEstimate};
 
 /// Quality of the platform's camera tracking, with the reason if a person can help.
@@ -101,6 +102,8 @@ pub struct CameraFrame {
     pub world_from_card: Option<DMat4>,
     /// The platform's estimate of the light.
     pub light_estimate: Option<LightEstimate>,
+    /// Depths of the picture, if the platform measures them and was asked to.
+    pub depth: Option<Depth>,
     /// Presentation of the picture.
     pub display: Display,
 }

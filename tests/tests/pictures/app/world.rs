@@ -118,6 +118,7 @@ pub(crate) fn frame(id: u64, time_ns: i64, world_epoch: u32, tracking: Tracking)
         anchors: Arc::new([]),
         world_from_card: (tracking == Tracking::Normal).then_some(DMat4::IDENTITY),
         light_estimate: None,
+        depth: None,
         display: Display::default(),
     }
 }
