@@ -1,6 +1,6 @@
 //! Points of the surfaces in a view, as a depth sensor or a mesh of the place has them.
 
-use glam::{DMat4, DVec3, UVec2};
+use glam::{DMat4, DVec3, IVec2, UVec2};
 
 use super::raster::nearest_depths;
 use app_scene::depth::Depth;
@@ -11,9 +11,14 @@ use app_scene::scene::{Intrinsics, Scene};
 /// Most points that are used: more add nothing to a plane.
 const MOST_POINTS: u32 = 50_000;
 
-/// Points in camera space.
+/// Points that a small picture shows.
 #[derive(Clone, Debug)]
 pub(super) struct MeasuredPoints {
+    /// Size of the picture.
+    pub(super) size_px: IVec2,
+    /// The pixel of each point.
+    pub(super) places: Vec<IVec2>,
+    /// In camera space.
     pub(super) points: Vec<DVec3>,
     /// Standard deviation of a point in metres, if it is stated.
     pub(super) deviation_m: Option<f64>,
@@ -34,8 +39,12 @@ impl MeasuredPoints {
 
     fn of_depth(depth: &Depth, (k, picture_px): (Intrinsics, UVec2)) -> Self {
         let every = depth.depths_mm().len().div_ceil(MOST_POINTS as usize).max(1);
+        let points = depth.points(k, picture_px).step_by(every);
+        let (places, points) = points.unzip();
         Self {
-            points: depth.points(k, picture_px).step_by(every).collect(),
+            size_px: depth.size_px().as_ivec2(),
+            places,
+            points,
             deviation_m: None,
         }
     }
@@ -55,11 +64,26 @@ impl MeasuredPoints {
         let triangles = mesh.triangles().iter();
         let triangles = triangles.map(|corners| corners.map(|corner| points[corner as usize]));
         let seen = nearest_depths(triangles, &k, size_px);
+        let (places, points) = seen
+            .map(|(at, depth_m)| (at, f64::from(depth_m) * k.ray(at.as_dvec2() + 0.5)))
+            .unzip();
         Self {
-            points: seen
-                .map(|(at, depth_m)| f64::from(depth_m) * k.ray(at.as_dvec2() + 0.5))
-                .collect(),
+            size_px,
+            places,
+            points,
             deviation_m: mesh.deviation_m(),
+        }
+    }
+
+    /// The points with a property.
+    pub(super) fn filtered(&self, is_kept: impl Fn(&DVec3) -> bool) -> Self {
+        let all = self.places.iter().zip(&self.points);
+        let kept = all.filter(|(_, point)| is_kept(point));
+        let (places, points) = kept.unzip();
+        Self {
+            places,
+            points,
+            ..*self
         }
     }
 }

@@ -101,11 +101,7 @@ impl Photograph {
     ) -> Result<Sighted, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let paint = pose::Paint::new(scene, &self.camera_from_object(&input.world_from_object))?;
-        let points = if wants_planes {
-            MeasuredPoints::of(scene, input)
-        } else {
-            Vec::new()
-        };
+        let points = MeasuredPoints::of(scene, input);
         let found = things::find(&things::Sight {
             shape: &shape,
             paint: &paint,

@@ -9,7 +9,6 @@ use glam::{DMat3, DVec2, DVec3, IVec2, Vec3Swizzles};
 
 use super::extent::Outline;
 use super::groups::cross;
-use crate::measured_points::MeasuredPoints;
 use crate::median::{DEVIATION_OF_MEDIAN, median};
 
 /// Least points on a thing, and on the receiver around it.
@@ -59,7 +58,8 @@ pub(super) struct Measured {
 impl Measured {
     /// The plane about the thing's middle on the receiver; `None` if the points are too few, or on
     /// no plane. Points are in camera space.
-    pub(super) fn of(outline: &Outline<'_>, middle: DVec2, measured: &MeasuredPoints) -> Option<Self> {
+    pub(super) fn of(outline: &Outline<'_>, middle: DVec2) -> Option<Self> {
+        let measured = outline.points?;
         let mut on_thing = Vec::new();
         let mut on_table = Vec::new();
         for point in &measured.points {
@@ -135,7 +135,7 @@ fn is_within(outline: &Outline<'_>, at: IVec2, thing: Option<usize>) -> bool {
 }
 
 /// The plane of the points on the receiver, which is level and at 0 for a sensor without error.
-fn of_table(points: impl Iterator<Item = DVec3> + Clone) -> Option<DVec3> {
+pub(super) fn of_table(points: impl Iterator<Item = DVec3> + Clone) -> Option<DVec3> {
     let offset_m = median(points.clone().map(|point| point.y), f64::total_cmp)?;
     let away_m = points.clone().map(|point| (point.y - offset_m).abs());
     let spread_m = DEVIATION_OF_MEDIAN * median(away_m, f64::total_cmp)?;
@@ -192,7 +192,7 @@ fn fitted(points: &[DVec3], noise_m: f64) -> Option<(DVec3, f64, f64)> {
 }
 
 /// Height of a point above a plane, which is its height at the origin and its slopes.
-fn above_m(point: &DVec3, plane: DVec3) -> f64 {
+pub(super) fn above_m(point: &DVec3, plane: DVec3) -> f64 {
     point.y - plane.dot(DVec3::new(1.0, point.x, point.z))
 }
 

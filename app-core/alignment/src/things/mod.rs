@@ -15,18 +15,21 @@ mod edges;
 mod extent;
 pub(crate) mod groups;
 mod grown;
+mod inner;
 mod measured;
 pub(crate) mod planes;
 mod seeds;
 mod shade;
 mod sides;
 mod simplex;
+mod standing;
+mod wrong_plate;
 
 use std::borrow::Cow;
 
-use glam::{DMat4, DVec2, DVec3, IVec2};
+use glam::{DMat4, DVec2, IVec2};
 
-use crate::lights::{Compared, Comparison};
+use crate::lights::Comparison;
 use crate::measured_points::MeasuredPoints;
 use crate::picture::{Color, Level, Mask, Pyramid, index_in, places};
 use crate::pose::Paint;
@@ -37,11 +40,13 @@ use app_scene::geometry::color::srgb_from_linear;
 use app_scene::scene::{Light, MAX_RECEIVERS};
 use app_scene::things::Mark;
 use codes::{Codes, UNLIKE_CODES, apart, from_shaded};
-use groups::{cross, groups, most_around, place_of};
+use groups::{cross, most_around};
 use grown::Grown;
 use planes::FoundPlane;
 use seeds::{Seed, Seeds};
 use shade::Brightness;
+use standing::standing;
+use wrong_plate::wrong_plate;
 
 /// Maximum number of pixels of the level for the search: more take longer and find no more.
 const MOST_PIXELS: i32 = 150_000;
@@ -69,11 +74,6 @@ const PART_BEFORE: f32 = 0.04;
 /// Share of seeds among a thing's pixels that show a receiver, below which these belong to the
 /// receiver itself.
 const OF_PLANE: f32 = 0.1;
-/// Difference between plate and model around a wrong part of the plate, in plates, and the margin
-/// in pixels that is wrong, too.
-const DIFFERS: f32 = 0.05;
-const WRONG_PX: i32 = 2;
-
 /// Inputs of the search for things.
 pub(crate) struct Sight<'a> {
     pub(crate) shape: &'a Shape,
@@ -110,27 +110,39 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
     } = sight.restored((level, &frame), &toy)?;
     let level = &*level;
     let seeds = Seeds::found(&compared.pixels, toy.hidden(&frame, &plate), (&frame, &plate));
+    let measured: Vec<_> = sight
+        .points
+        .iter()
+        .map(|measured| toy.beside(measured, level))
+        .collect();
     let grown = Grown::from(&seeds, Seed::Thing, &plate);
+    let standing = standing(
+        grown.as_ref(),
+        (&measured, sight.receivers),
+        level,
+        &compared.pixels,
+    );
     let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
     let in_frame = toy.in_frame(&seeds, &frame);
-    if grown.is_none() && wrong.is_none() && in_frame.is_none() && in_plate.is_none() {
+    let is_any = [&grown, &wrong, &standing].into_iter().any(Option::is_some);
+    if !is_any && in_frame.is_none() && in_plate.is_none() {
         return None;
     }
     let before = grown
         .as_ref()
         .map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
-    let planes = match &grown {
-        Some(grown) if sight.wants_planes => {
-            let measured = sight.points.iter().map(|measured| toy.beside(measured, level));
-            let place = planes::Place {
-                shape: sight.shape,
-                receivers: sight.receivers,
-                points: &measured.collect::<Vec<_>>(),
-            };
-            planes::find(&place, level, &compared, grown)
-        }
-        _ => Vec::new(),
+    let place = planes::Place {
+        shape: sight.shape,
+        receivers: sight.receivers,
+        points: &measured,
     };
+    // Exact points show things in their whole extent.
+    let all = [&standing, &grown].into_iter().flatten();
+    let planes = all
+        .filter(|_| sight.wants_planes)
+        .map(|grown| planes::find(&place, level, &compared, grown))
+        .find(|planes| !planes.is_empty());
+    let planes = planes.unwrap_or_default();
     let grown = grown.map(|mut grown| {
         let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, &plate);
         grown.absorb(&shadows);
@@ -240,42 +252,6 @@ struct InFrame {
     grown: Grown,
     /// The mark of each thing: before the toy, beside it, or no mark.
     marks: Vec<Mark>,
-}
-
-/// Wrong part of a level's plate: everything that is connected with seeds and differs from the
-/// model; behind the toy, the area that it grew to.
-fn wrong_plate(grown: &Grown, toy: &Toy, size_px: IVec2, compared: &[Compared]) -> Mask {
-    let mut differs = vec![false; (size_px.x * size_px.y) as usize];
-    for pixel in compared {
-        if let Some(index) = index_in(size_px, pixel.at) {
-            differs[index] = pixel.away() > DIFFERS.max(2.0 * pixel.noise);
-        }
-    }
-    let mut wrong = Mask::new(size_px);
-    for at in places(size_px) {
-        let near_toy = toy.coverage.is_near(at, WRONG_PX);
-        let differs = index_in(size_px, at).is_some_and(|index| differs[index]);
-        if grown.of_pixel(at).is_some() && (near_toy || differs) {
-            wrong.mark(at);
-        }
-    }
-    filled(&wrong.grown(WRONG_PX), size_px)
-}
-
-/// The mask, with its holes filled.
-fn filled(mask: &Mask, size_px: IVec2) -> Mask {
-    let has = |index: usize| mask.has(place_of(index, size_px));
-    let last = size_px - 1;
-    let is_at_border = |at: IVec2| at.cmpeq(IVec2::ZERO).any() || at.cmpeq(last).any();
-    let mut filled = mask.clone();
-    for group in groups(size_px, |index| !has(index)) {
-        if !group.iter().any(|index| is_at_border(place_of(*index, size_px))) {
-            group
-                .iter()
-                .for_each(|index| filled.mark(place_of(*index, size_px)));
-        }
-    }
-    filled
 }
 
 impl Sight<'_> {
@@ -388,12 +364,10 @@ impl Toy {
 
     /// The points that are seen beside the toy.
     fn beside(&self, measured: &MeasuredPoints, level: &Level) -> MeasuredPoints {
-        let is_beside = |point: &&DVec3| {
-            let at = level.intrinsics.pixel_of(**point);
+        measured.filtered(|point| {
+            let at = level.intrinsics.pixel_of(*point);
             at.is_some_and(|at| !self.coverage.is_near(at.floor().as_ivec2(), BESIDE_PX))
-        };
-        let points = measured.points.iter().filter(is_beside).copied().collect();
-        MeasuredPoints { points, ..*measured }
+        })
     }
 
     fn expected(&self, at: IVec2) -> Option<Color> {

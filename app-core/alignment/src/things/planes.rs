@@ -10,8 +10,8 @@ use std::collections::HashSet;
 use glam::{DMat4, DQuat, DVec2, DVec3, IVec2, Vec3Swizzles};
 
 use super::extent::{Extent, Outline};
-use super::groups::cross;
 use super::grown::Grown;
+use super::inner::{NOISIEST, most_on, pixels};
 use super::measured::Measured;
 use super::sides::{Side, sides};
 use super::simplex::descend;
@@ -24,8 +24,7 @@ use crate::report::PlaneAlignment;
 use crate::shape::Shape;
 use app_scene::scene::{Intrinsics, MAX_RECEIVERS};
 
-/// Least pixels of a thing, in the level, for a search, and most pixels that a search samples.
-const LEAST_PIXELS: usize = 300;
+/// Most pixels of the level that a search samples.
 const MOST_PIXELS: usize = 2500;
 /// Least pixels of an upright side beside the toy for a comparison of losses.
 const LEAST_OF_SIDE: usize = 60;
@@ -33,8 +32,6 @@ const LEAST_OF_SIDE: usize = 60;
 const LEAST_SHADOWED: [usize; 2] = [90, 250];
 /// Least part of the light that a shadowed pixel loses.
 const SHADOWED: f32 = 0.25;
-/// Largest noise of a pixel that counts, in plates.
-const NOISIEST: f32 = 0.2;
 /// Largest loss of a pixel: a squared difference in plates.
 const MOST_LOSS: f64 = 0.03;
 /// Largest loss of an accepted plane: absolute, and over the smaller loss of the known receivers and
@@ -122,8 +119,15 @@ pub(super) fn find(
             table: receivers.get(GROUND)?,
             grown,
             thing,
+            points: None,
         };
-        let by_points = |points| found(search()?.measured(&outline, points)?, &outline);
+        let by_points = |points| {
+            let outline = Outline {
+                points: Some(points),
+                ..outline
+            };
+            found(search()?.measured(&outline)?, &outline)
+        };
         let measured = place.points.iter().find_map(by_points);
         let found = measured.or_else(|| found(search()?, &outline))?;
         Some(FoundPlane {
@@ -189,28 +193,6 @@ fn upright(
         })
     });
     taken.take(MAX_RECEIVERS.saturating_sub(known.len())).collect()
-}
-
-/// The inner pixels of a thing, row by row.
-fn pixels<'a>(comparison: &'a Comparison, grown: &Grown, thing: usize) -> Vec<&'a Compared> {
-    let is_within = |at: IVec2| cross(at, 1).all(|at| grown.of_pixel(at) == Some(thing));
-    let all = comparison.pixels.iter();
-    all.filter(|pixel| pixel.noise < NOISIEST && is_within(pixel.at))
-        .collect()
-}
-
-/// The receiver behind most of the pixels; `None` for too few pixels.
-fn most_on(pixels: &[&Compared]) -> Option<usize> {
-    if pixels.len() < LEAST_PIXELS {
-        return None;
-    }
-    let mut counts = [0; MAX_RECEIVERS];
-    for pixel in pixels {
-        if let Some(count) = counts.get_mut(pixel.on) {
-            *count += 1;
-        }
-    }
-    (0..counts.len()).max_by_key(|on| counts[*on])
 }
 
 /// Searches for a thing's plane, first with all of its pixels, then with those of its upper side.
@@ -303,9 +285,9 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The same search, about the plane of a depth sensor's points; `None` if they are on none.
-    fn measured(mut self, outline: &Outline<'_>, points: &MeasuredPoints) -> Option<Self> {
-        self.measured = Some(Measured::of(outline, self.middle, points)?);
+    /// The same search, about the plane of the outline's measured points; `None` if they are on none.
+    fn measured(mut self, outline: &Outline<'_>) -> Option<Self> {
+        self.measured = Some(Measured::of(outline, self.middle)?);
         Some(self)
     }
 
