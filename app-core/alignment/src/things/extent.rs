@@ -3,14 +3,15 @@
 
 use glam::{DMat4, DVec2, DVec3, Vec3Swizzles};
 
-use super::edges::{Side, moved_m};
+use super::edges::{Side, contrast, moved_m};
 use super::groups::groups;
 use super::grown::Grown;
 use crate::measured_points::MeasuredPoints;
 use crate::picture::{Level, index_in, places};
 use crate::receivers::SeenReceiver;
 
-/// Number of trial angles of the rectangle over a quarter turn, and of finer ones in each of these.
+/// Number of trial angles of the rectangle over a quarter turn, and of finer ones on either side of
+/// the best. On steps of 2 degrees alone, the ends of a book's sides were 1.5 mm off.
 const N_TURNS: i32 = 45;
 const N_FINER: i32 = 20;
 /// Share of the points that may lie beyond each side.
@@ -27,10 +28,12 @@ const MOST_INWARD: f64 = 0.8;
 
 /// Largest deviation in metres of points that bound the rectangle themselves; the largest distance
 /// of one from the plane in deviations, of which the least is in metres, too.
+/// Points of 1 mm bound a ramp of 35 mm as exact ones do; a LiDAR's, of 5 mm, reach down to the
+/// table below a book.
 const EXACT_M: f64 = 2e-3;
 const MOST_OFF: f64 = 2.5;
 const LEAST_OFF_M: f64 = 5e-4;
-/// Least part of connected points that shows the thing.
+/// Least part of connected points that shows the thing; another surface of its height shows none.
 const OF_THING: f64 = 0.3;
 
 /// A thing in a level, on a receiver.
@@ -40,8 +43,10 @@ pub(super) struct Outline<'a> {
     pub(super) table: &'a SeenReceiver,
     pub(super) grown: &'a Grown,
     pub(super) thing: usize,
-    /// Measured points of the view, if a search is about their plane.
+    /// Measured points of the view, if a search is about their plane, and whether exact ones also
+    /// bound the rectangle.
     pub(super) points: Option<&'a MeasuredPoints>,
+    pub(super) is_bounded_by_points: bool,
 }
 
 /// A rectangle on a plane.
@@ -76,7 +81,8 @@ impl Outline<'_> {
     /// Places on a plane that exact points show, around those that show the thing; `None` without
     /// such points.
     fn measured_places(&self, plane_from_camera: &DMat4) -> Option<Vec<DVec2>> {
-        let points = self.points.filter(|points| is_exact(points))?;
+        let is_used = |points: &&MeasuredPoints| self.is_bounded_by_points && is_exact(points);
+        let points = self.points.filter(is_used)?;
         let deviation_m = points.deviation_m?;
         let most_m = MOST_OFF * deviation_m.max(LEAST_OFF_M);
         let mut is_on = vec![false; (points.size_px.x * points.size_px.y) as usize];
@@ -182,6 +188,24 @@ impl Extent {
             half_m: self.half_m + 0.5 * grown,
             ..self
         }
+    }
+
+    /// Mean contrast of its visible sides in the plate, in logarithms of light.
+    pub(super) fn contrast(&self, level: &Level, plane_from_camera: &DMat4) -> f64 {
+        let axis = DVec2::from_angle(self.turn_rad);
+        let ends = [(axis, self.half_m), (axis.perp(), self.half_m.perp().abs())];
+        let sides = ends.into_iter().flat_map(|(axis, half_m)| {
+            [axis, -axis].map(|outward| Side {
+                middle: self.middle + half_m.x * outward,
+                outward,
+                half_m: half_m.y,
+                face_m: None,
+            })
+        });
+        let contrasts: Vec<f64> = sides
+            .filter_map(|side| contrast(&side, plane_from_camera, level))
+            .collect();
+        contrasts.iter().sum::<f64>() / contrasts.len().max(1) as f64
     }
 
     fn turned(places: &[DVec2], turn_rad: f64) -> Self {

@@ -39,7 +39,7 @@ const N_ROUNDS: usize = 8;
 /// Least deviation of a height in metres, and of a slope.
 const HEIGHT_M: f64 = 1e-3;
 const SLOPE: f64 = 0.02;
-/// Least part of these deviations that is left for exact points.
+/// Least part of these deviations that is left for exact points: a tenth of a millimetre.
 const EXACT: f64 = 0.1;
 /// Deviation of the shared errors if they are unknown, in metres.
 const SHARED_M: f64 = 5e-3;

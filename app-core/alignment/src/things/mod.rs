@@ -42,7 +42,7 @@ use app_scene::things::Mark;
 use codes::{Codes, UNLIKE_CODES, apart, from_shaded};
 use groups::{cross, most_around};
 use grown::Grown;
-use planes::FoundPlane;
+use planes::{FoundPlane, clearer};
 use seeds::{Seed, Seeds};
 use shade::Brightness;
 use standing::standing;
@@ -131,18 +131,18 @@ pub(crate) fn find(sight: &Sight<'_>) -> Option<Sighting> {
     let before = grown
         .as_ref()
         .map_or(Vec::new(), |grown| toy.before(grown, (&frame, &plate)));
-    let place = planes::Place {
-        shape: sight.shape,
-        receivers: sight.receivers,
-        points: &measured,
+    let of = |grown: &Option<Grown>, are_things_of_points: bool| {
+        let place = planes::Place {
+            shape: sight.shape,
+            receivers: sight.receivers,
+            points: &measured,
+            are_things_of_points,
+        };
+        let grown = grown.as_ref().filter(|_| sight.wants_planes);
+        grown.map_or(Vec::new(), |grown| planes::find(&place, level, &compared, grown))
     };
-    // Exact points show things in their whole extent.
-    let all = [&standing, &grown].into_iter().flatten();
-    let planes = all
-        .filter(|_| sight.wants_planes)
-        .map(|grown| planes::find(&place, level, &compared, grown))
-        .find(|planes| !planes.is_empty());
-    let planes = planes.unwrap_or_default();
+    // Points may be of a world that is a little off.
+    let planes = clearer([of(&standing, true), of(&grown, false)]);
     let grown = grown.map(|mut grown| {
         let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, &plate);
         grown.absorb(&shadows);

@@ -81,6 +81,18 @@ pub(crate) struct FoundPlane {
     /// off.
     pub(crate) instead_of: Option<usize>,
     pub(crate) report: PlaneAlignment,
+    /// Contrast of its sides in the plate, in logarithms of light; 0 for an upright one.
+    pub(super) contrast: f64,
+}
+
+/// The planes of the first search, unless those of the second end at clearer edges.
+pub(super) fn clearer([first, second]: [Vec<FoundPlane>; 2]) -> Vec<FoundPlane> {
+    let contrast = |planes: &[FoundPlane]| planes.iter().map(|found| found.contrast).fold(0.0, f64::max);
+    if contrast(&second) > contrast(&first) || first.is_empty() {
+        second
+    } else {
+        first
+    }
 }
 
 impl FoundPlane {
@@ -96,6 +108,8 @@ pub(super) struct Place<'a> {
     pub(super) shape: &'a Shape,
     pub(super) receivers: &'a [SeenReceiver],
     pub(super) points: &'a [MeasuredPoints],
+    /// Whether the things are those of exact points, which then bound their planes.
+    pub(super) are_things_of_points: bool,
 }
 
 /// Finds the planes of a level's things.
@@ -120,6 +134,7 @@ pub(super) fn find(
             grown,
             thing,
             points: None,
+            is_bounded_by_points: place.are_things_of_points,
         };
         let by_points = |points| {
             let outline = Outline {
@@ -190,6 +205,7 @@ fn upright(
             },
             plane: side.plane,
             instead_of: None,
+            contrast: 0.0,
         })
     });
     taken.take(MAX_RECEIVERS.saturating_sub(known.len())).collect()
@@ -211,6 +227,7 @@ fn found(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     Some(FoundPlane {
         plane: extent.plane(&endless),
         instead_of: None,
+        contrast: extent.contrast(outline.level, &endless),
         report: PlaneAlignment {
             height_m: extent.height_m(&endless, search.table),
             tilt_rad: (plane.heights[1].hypot(plane.heights[2]) / search.size_m).atan(),
