@@ -97,7 +97,7 @@ def cup():
         for first, second in zip(angles[:-1], angles[1:]):
             ring = [(r * np.cos(angle), y, r * np.sin(angle)) for r, y, angle in
                     ((outer, high, first), (inner, low, first), (inner, low, second), (outer, high, second))]
-            yield ring[:3] if inner == 0 else ring
+            yield [ring[0], ring[1], ring[3]] if inner == 0 else ring
 
 
 def write_ply(path, corners, places):
