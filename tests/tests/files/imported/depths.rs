@@ -160,7 +160,7 @@ fn depths_that_are_not_of_the_stated_size_are_refused() {
     let four = packed(&metres()[..16]);
     let endless = packed(&vec![0; 1 << 20]);
     let cut = packed(&metres());
-    let wrong = [&four, &endless, &cut[..cut.len() / 2], b"bvx-"];
+    let wrong: [&[u8]; 4] = [&four, &endless, &cut[..cut.len() / 2], b"bvx-"];
     for (case, bytes) in wrong.into_iter().enumerate() {
         for file in ["rgbd/0.depth", "rgbd/0.conf"] {
             let small = Small::new(&format!("record3d-wrong-{case}"));

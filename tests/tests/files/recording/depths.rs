@@ -31,7 +31,7 @@ fn mesh() -> PlaceMesh {
     PlaceMesh::new(points, [[0, 2, 1], [1, 2, 3]], Some(0.002)).unwrap()
 }
 
-/// Three frames: the second repeats the first one's picture, and the third has no depths.
+/// Four frames: the second repeats the first one's picture, and the third has no depths.
 fn recorded() -> Vec<u8> {
     let session = bundled_session();
     let scene = session.scene().clone().with_place_mesh(Some(mesh()));
