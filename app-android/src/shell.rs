@@ -257,6 +257,7 @@ impl<P: Phone> Shell<P> {
                 finds_planes,
                 finds_card,
                 is_new_world,
+                ..
             } => {
                 let run = Run {
                     finds_planes,

@@ -73,7 +73,8 @@
 pub use app_pipeline::{Core, CoreError, governor, ledger, preset, profile, wgpu};
 pub use app_scene::glam;
 pub use app_scene::{
-    camera_frame, card, gloss, grain, lens, people, reflection, scene, shadow_style, sharpness, things, toy,
+    camera_frame, card, depth, gloss, grain, lens, people, place_mesh, reflection, scene, shadow_style,
+    sharpness, things, toy,
 };
 
 /// The main object of an app.

@@ -274,11 +274,13 @@ impl Shell {
             PlatformCommand::RunTracking {
                 finds_planes,
                 finds_card,
+                measures_depth,
                 is_new_world,
             } => {
                 let finds = Finds {
                     planes: finds_planes,
                     card: finds_card,
+                    depth: measures_depth,
                 };
                 self.session.run(finds, is_new_world);
             }

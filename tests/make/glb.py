@@ -162,14 +162,17 @@ def write_glb(path, solids, joints, materials, clips):
         "images": [{"mimeType": "image/png", "bufferView": buffer.view(m.png), "name": m.name} for m in textured],
         "samplers": [{"magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33071}],
         "animations": [animation(buffer, clip, order) for clip in clips],
-        "accessors": buffer.accessors,
-        "bufferViews": buffer.views,
-        "buffers": [{"byteLength": len(buffer.data)}],
     }
+    path.write_bytes(binary(document, buffer))
+
+
+def binary(document, buffer):
+    """Binary glTF of a document without its accessors and buffers, which are the buffer's."""
+    document = document | {"accessors": buffer.accessors, "bufferViews": buffer.views, "buffers": [{"byteLength": len(buffer.data)}]}
     text = json.dumps(document, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
     body = bytes(buffer.data) + bytes(-len(buffer.data) % 4)
     document_chunk = struct.pack("<II", len(text), 0x4E4F534A) + text
     binary_chunk = struct.pack("<II", len(body), 0x004E4942) + body
     header = struct.pack("<4sII", b"glTF", 2, 12 + len(document_chunk) + len(binary_chunk))
-    path.write_bytes(header + document_chunk + binary_chunk)
+    return header + document_chunk + binary_chunk

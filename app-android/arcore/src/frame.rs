@@ -124,6 +124,7 @@ impl Session {
             light_estimate: None,
             // ARCore masks no people: its scene semantics are made for streets.
             people: None,
+            depth: None,
             display: Display {
                 quarter_turns: self.quarter_turns(),
                 ..Display::default()

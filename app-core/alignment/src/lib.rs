@@ -49,6 +49,7 @@ mod kept_lights;
 mod kept_reflection;
 mod light_search;
 mod lights;
+mod measured_points;
 mod median;
 mod no_light;
 mod observer;

@@ -14,6 +14,9 @@ const N_SUB_COLUMNS: i32 = 16;
 /// Offsets of the samples of each sub-row within a column; together they are evenly spread.
 const SHIFTS: [f64; N_SUB_ROWS as usize] = [0.0625, 0.5625, 0.3125, 0.8125, 0.1875, 0.6875, 0.4375, 0.9375];
 
+/// Least depth of a triangle's part that is drawn: no camera focuses there.
+const NEAREST_M: f64 = 1e-3;
+
 /// Coverage of pixels by a mesh, over a rectangle of the picture.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Coverage {
@@ -242,6 +245,46 @@ impl Rasterizer {
             }));
         }
     }
+}
+
+/// The depth in metres of the nearest of some triangles in camera space at the centre of each pixel
+/// that shows one, whichever side of it.
+pub(super) fn nearest_depths(
+    triangles: impl IntoIterator<Item = [DVec3; 3]>,
+    k: &Intrinsics,
+    size_px: IVec2,
+) -> impl Iterator<Item = (IVec2, f32)> {
+    let mut out = Coverage {
+        size_px,
+        depths_m: vec![f32::INFINITY; places(size_px).count()],
+        ..Coverage::default()
+    };
+    for triangle in triangles {
+        let corners = project(before_camera(triangle), k);
+        // A polygon as a fan.
+        for far in 2..corners.len() {
+            add_depths([corners[0], corners[far - 1], corners[far]], &mut out);
+        }
+    }
+    let depths = places(size_px).zip(out.depths_m);
+    depths.filter(|(_, depth_m)| depth_m.is_finite())
+}
+
+/// The part of a triangle in camera space that lies before the camera: a polygon of 0, 3 or 4 corners.
+///
+/// Source: Sutherland and Hodgman 1974.
+fn before_camera(triangle: [DVec3; 3]) -> Vec<DVec3> {
+    let mut kept = Vec::with_capacity(4);
+    for (from, to) in [(0, 1), (1, 2), (2, 0)].map(|(from, to)| (triangle[from], triangle[to])) {
+        let [of_from, of_to] = [from, to].map(|corner| -corner.z - NEAREST_M);
+        if of_from >= 0.0 {
+            kept.push(from);
+        }
+        if (of_from >= 0.0) != (of_to >= 0.0) {
+            kept.push(from.lerp(to, of_from / (of_from - of_to)));
+        }
+    }
+    kept
 }
 
 /// Whether a projected triangle faces the eye and lies in front of it.

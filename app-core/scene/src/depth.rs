@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3, UVec2};
+use glam::{DVec2, DVec3, IVec2, UVec2};
 
 use crate::scene::Intrinsics;
 
@@ -43,9 +43,9 @@ impl Depth {
         n_known as f64 / self.depths_mm.len().max(1) as f64
     }
 
-    /// Points at the centres of its known pixels, in the space of a camera whose picture has a size
-    /// in pixels.
-    pub fn points(&self, camera: Intrinsics, picture_px: UVec2) -> impl Iterator<Item = DVec3> {
+    /// The known pixels with the points at their centres, in the space of a camera whose picture has
+    /// a size in pixels.
+    pub fn points(&self, camera: Intrinsics, picture_px: UVec2) -> impl Iterator<Item = (IVec2, DVec3)> {
         let per_px = picture_px.as_dvec2() / self.size_px.as_dvec2();
         let pixels = (0..self.size_px.y).flat_map(|y| (0..self.size_px.x).map(move |x| UVec2::new(x, y)));
         let known = pixels
@@ -53,7 +53,21 @@ impl Depth {
             .filter(|(_, depth_mm)| **depth_mm > 0);
         known.map(move |(at, depth_mm)| {
             let at_px: DVec2 = (at.as_dvec2() + 0.5) * per_px;
-            1e-3 * f64::from(*depth_mm) * camera.ray(at_px)
+            (at.as_ivec2(), 1e-3 * f64::from(*depth_mm) * camera.ray(at_px))
         })
     }
+}
+
+/// Millimetres of a depth in metres; 0, as if unknown, for a number that is no depth, or beyond 65 m.
+#[must_use]
+pub fn millimetres(metres: f32) -> u16 {
+    let millimetres = (1e3 * metres).round();
+    let is_known = millimetres > 0.0 && millimetres <= f32::from(u16::MAX);
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "within the range, as was just seen"
+    )]
+    let known = millimetres as u16;
+    if is_known { known } else { 0 }
 }

@@ -13,6 +13,7 @@ pub mod grain;
 pub mod lens;
 pub mod people;
 pub mod picture;
+pub mod place_mesh;
 pub mod reflection;
 pub mod scene;
 pub mod shadow_style;

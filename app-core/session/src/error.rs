@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::files::FileError;
+use app_scene::place_mesh::PlaceMeshError;
 use app_scene::scene::FieldError;
 use app_scene::toy::ToyError;
 use app_scene::words::Text;
@@ -64,6 +65,9 @@ pub enum SessionErrorKind {
     /// A toy that cannot be used, or a clip that does not exist.
     #[error(transparent)]
     Toy(#[from] ToyError),
+    /// A mesh of the place that cannot be used.
+    #[error(transparent)]
+    PlaceMesh(#[from] PlaceMeshError),
     /// An index beyond the last frame.
     #[error("the session has {n_frames} frames, counted from 0")]
     NoSuchFrame {

@@ -152,6 +152,7 @@ mod tests {
             world_from_object,
             exposure: 1.0,
             light_estimate: None,
+            depth: None,
             shown_pose: Pose::Authored,
             world_from_shown: None,
         };

@@ -8,6 +8,7 @@ use app_core::scene::{Intrinsics, LightEstimate};
 use glam::{DMat4, DVec3, Vec3Swizzles};
 
 use crate::convert;
+use crate::depth::{RawDepth, depth};
 
 /// The constant `kCVPixelFormatType_420YpCbCr8BiPlanarFullRange`.
 const FULL_RANGE: u32 = u32::from_be_bytes(*b"420f");
@@ -64,6 +65,8 @@ pub struct RawFrame<'a> {
     pub tracking: [isize; 2],
     /// Seconds and ISO speed, if both are reported.
     pub exposure: Option<[f64; 2]>,
+    /// Depths, if they are measured.
+    pub depth: Option<RawDepth<'a>>,
     /// Lumen and kelvin, if light is estimated.
     pub light: Option<[f64; 2]>,
     /// Planes found so far.
@@ -152,6 +155,7 @@ pub fn camera_frame(
             ..LightEstimate::default()
         }),
         people: None,
+        depth: raw.depth.as_ref().and_then(depth),
         display: Display {
             quarter_turns: convert::quarter_turns(raw.orientation),
             ..Display::default()
@@ -289,6 +293,7 @@ mod tests {
             tracking: [2, 0],
             exposure: Some([0.01, 50.0]),
             light: Some([1000.0, 6500.0]),
+            depth: None,
             surfaces: vec![RawSurface {
                 id: [1; 16],
                 alignment: 0,

@@ -2,6 +2,7 @@
 //! a desktop.
 
 pub mod convert;
+pub mod depth;
 pub mod frame;
 pub mod people;
 

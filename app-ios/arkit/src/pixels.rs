@@ -2,12 +2,14 @@
 
 use app_core::camera_frame::PlanarImage;
 use objc2_core_video::{
-    CVPixelBuffer, CVPixelBufferGetBaseAddressOfPlane, CVPixelBufferGetBytesPerRowOfPlane,
-    CVPixelBufferGetHeight, CVPixelBufferGetHeightOfPlane, CVPixelBufferGetPixelFormatType,
-    CVPixelBufferGetPlaneCount, CVPixelBufferGetWidth, CVPixelBufferLockBaseAddress, CVPixelBufferLockFlags,
+    CVPixelBuffer, CVPixelBufferGetBaseAddress, CVPixelBufferGetBaseAddressOfPlane,
+    CVPixelBufferGetBytesPerRow, CVPixelBufferGetBytesPerRowOfPlane, CVPixelBufferGetHeight,
+    CVPixelBufferGetHeightOfPlane, CVPixelBufferGetPixelFormatType, CVPixelBufferGetPlaneCount,
+    CVPixelBufferGetWidth, CVPixelBufferLockBaseAddress, CVPixelBufferLockFlags,
     CVPixelBufferUnlockBaseAddress,
 };
 
+use super::depth::RawMap;
 use super::frame::{RawPlane, image};
 
 /// A pixel buffer whose bytes may be read, until it is dropped.
@@ -26,16 +28,33 @@ impl<'a> Locked<'a> {
         (0..n_planes).map(|index| self.plane(index)).collect()
     }
 
+    /// The pixels of a buffer that is not planar.
+    pub(super) fn map(&self) -> RawMap<'_> {
+        let size_px = [CVPixelBufferGetWidth(self.0), CVPixelBufferGetHeight(self.0)];
+        let row_stride = CVPixelBufferGetBytesPerRow(self.0);
+        let first = CVPixelBufferGetBaseAddress(self.0).cast::<u8>();
+        RawMap {
+            pixel_format: CVPixelBufferGetPixelFormatType(self.0),
+            size_px,
+            plane: self.rows(first, row_stride, size_px[1]),
+        }
+    }
+
     fn plane(&self, index: usize) -> RawPlane<'_> {
         let row_stride = CVPixelBufferGetBytesPerRowOfPlane(self.0, index);
-        let n_bytes = row_stride * CVPixelBufferGetHeightOfPlane(self.0, index);
+        let n_rows = CVPixelBufferGetHeightOfPlane(self.0, index);
         let first = CVPixelBufferGetBaseAddressOfPlane(self.0, index).cast::<u8>();
+        self.rows(first, row_stride, n_rows)
+    }
+
+    /// Rows of this length that begin at an address of the buffer, or none at a null pointer.
+    fn rows(&self, first: *const u8, row_stride: usize, n_rows: usize) -> RawPlane<'_> {
         let bytes = if first.is_null() {
             &[]
         } else {
             // SAFETY: the buffer is locked for as long as `self` lives, and has this number of rows
             // of this length.
-            unsafe { std::slice::from_raw_parts(first, n_bytes) }
+            unsafe { std::slice::from_raw_parts(first, row_stride * n_rows) }
         };
         RawPlane { bytes, row_stride }
     }

@@ -10,9 +10,12 @@ use objc2::{Message, msg_send, sel};
 use objc2_ar_kit::{
     ARAnchor, ARFrame, ARImageAnchor, ARObjectAnchor, ARPlaneAnchor, ARPlaneGeometry, ARTrackable,
 };
-use objc2_core_video::{CVPixelBufferGetHeight, CVPixelBufferGetPixelFormatType, CVPixelBufferGetWidth};
+use objc2_core_video::{
+    CVPixelBuffer, CVPixelBufferGetHeight, CVPixelBufferGetPixelFormatType, CVPixelBufferGetWidth,
+};
 use objc2_foundation::{NSArray, NSNumber, NSProcessInfo, ns_string};
 
+use super::depth::RawDepth;
 use super::frame::{RawFrame, RawSurface};
 use super::pixels::Locked;
 use super::shim;
@@ -43,6 +46,8 @@ pub(super) fn with_raw<T>(
             frame.anchors(),
         )
     };
+    let maps = depth_maps(frame);
+    let locked_maps = maps.as_ref().and_then(LockedMaps::new);
     let lent = textures.and_then(|textures| textures.lend(&buffer));
     let locked = if lent.is_none() {
         Some(Locked::new(&buffer)?)
@@ -73,6 +78,7 @@ pub(super) fn with_raw<T>(
         transform,
         tracking,
         exposure,
+        depth: locked_maps.as_ref().map(LockedMaps::raw),
         // SAFETY: properties of an estimate that never changes.
         light: light.map(|light| unsafe { [light.ambientIntensity(), light.ambientColorTemperature()] }),
         surfaces: surfaces.map(|anchor| surface(&anchor)).collect(),
@@ -82,6 +88,43 @@ pub(super) fn with_raw<T>(
         orientation,
     };
     Some(take(&raw, lent))
+}
+
+/// The pixel buffers of a frame's depths and of their confidence; `None` if they are not measured.
+fn depth_maps(frame: &ARFrame) -> Option<(Retained<CVPixelBuffer>, Option<Retained<CVPixelBuffer>>)> {
+    // SAFETY: properties of a frame that was delivered and of its depths, which never change.
+    unsafe {
+        let data = frame.sceneDepth()?;
+        Some((data.depthMap(), data.confidenceMap()))
+    }
+}
+
+/// Depths and their confidence, while they may be read.
+struct LockedMaps<'a> {
+    metres: Locked<'a>,
+    confidence: Option<Locked<'a>>,
+}
+
+impl<'a> LockedMaps<'a> {
+    /// Returns `None` if a buffer cannot be locked.
+    fn new(
+        (metres, confidence): &'a (Retained<CVPixelBuffer>, Option<Retained<CVPixelBuffer>>),
+    ) -> Option<Self> {
+        Some(Self {
+            metres: Locked::new(metres)?,
+            confidence: match confidence {
+                Some(confidence) => Some(Locked::new(confidence)?),
+                None => None,
+            },
+        })
+    }
+
+    fn raw(&self) -> RawDepth<'_> {
+        RawDepth {
+            metres: self.metres.map(),
+            confidence: self.confidence.as_ref().map(Locked::map),
+        }
+    }
 }
 
 /// The ISO speed of the picture; `None` if its Exif data do not contain it.

@@ -14,8 +14,9 @@ use objc2::{
     AnyThread, ClassType, DefinedClass, MainThreadMarker, MainThreadOnly, define_class, msg_send, sel,
 };
 use objc2_ar_kit::{
-    ARAnchor, ARFrame, ARObjectAnchor, ARPlaneDetection, ARReferenceImage, ARReferenceObject, ARSession,
-    ARSessionDelegate, ARSessionObserver, ARSessionRunOptions, ARWorldTrackingConfiguration,
+    ARAnchor, ARFrame, ARFrameSemantics, ARObjectAnchor, ARPlaneDetection, ARReferenceImage,
+    ARReferenceObject, ARSession, ARSessionDelegate, ARSessionObserver, ARSessionRunOptions,
+    ARWorldTrackingConfiguration,
 };
 use objc2_foundation::{NSError, NSObjectProtocol, NSProcessInfo, NSSet};
 use objc2_ui_kit::UIView;
@@ -60,13 +61,15 @@ struct Shared {
     is_refusing: Cell<bool>,
 }
 
-/// Objects to detect in the camera's picture.
+/// Things to detect in the camera's picture, or to measure.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Finds {
     /// Level planes.
     pub planes: bool,
     /// The printed card.
     pub card: bool,
+    /// Depths, on phones that measure them.
+    pub depth: bool,
 }
 
 /// The card's picture, made on first use.
@@ -102,6 +105,9 @@ impl Shared {
             configuration.setPlaneDetection(planes);
             // Pictures with local tone mapping cannot be compared with one another.
             configuration.setVideoHDRAllowed(false);
+            if finds.depth && measures_depth() {
+                configuration.setFrameSemantics(ARFrameSemantics::SceneDepth);
+            }
             if let Some(card) = card {
                 configuration.setDetectionImages(Some(&NSSet::from_slice(&[&*card])));
                 configuration.setMaximumNumberOfTrackedImages(1);
@@ -397,6 +403,15 @@ impl Session {
             }
         }
     }
+}
+
+/// Whether this phone measures depths, by a LiDAR scanner.
+fn measures_depth() -> bool {
+    let class = ARWorldTrackingConfiguration::class();
+    let semantics = ARFrameSemantics::SceneDepth;
+    // The class that is asked matters, and the binding has the method on its parent alone.
+    // SAFETY: a method of every configuration's class that takes semantics and returns a truth value.
+    unsafe { msg_send![class, supportsFrameSemantics: semantics] }
 }
 
 /// A new anchor.

@@ -1,6 +1,6 @@
 //! Sessions written anew: into a folder, or into a recording.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs::{self, File};
 use std::path::Path;
 
@@ -41,8 +41,16 @@ struct Index<'a> {
 #[derive(Deserialize)]
 struct Entry {
     image: String,
+    depth: Option<String>,
     #[serde(default)]
     time: f64,
+}
+
+impl Entry {
+    /// Paths of its files that have a channel of a recording.
+    fn files(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(self.image.as_str()).chain(self.depth.as_deref())
+    }
 }
 
 /// Writes a session to `out`, as a recording if the path ends so, else as a folder. `index`
@@ -132,15 +140,15 @@ fn write_recording(session: &Stored, index: &[u8], paths: &[String], out: &Path)
     let context = || partial.display().to_string();
     let written = File::create(&partial).with_context(context).and_then(|file| {
         let mut writer = Writer::new(file, index, device, Limits::default())?;
-        let of_frames: Vec<&str> = entries.iter().map(|(entry, _)| entry.image.as_str()).collect();
+        let of_frames: HashSet<&str> = entries.iter().flat_map(|(entry, _)| entry.files()).collect();
         let first_ns = entries.first().map_or(0, |(entry, _)| time_ns(entry.time));
         let others = paths
             .iter()
-            .filter(|path| !of_frames.contains(&path.as_str()) && !is_of_recording(path));
+            .filter(|path| !of_frames.contains(path.as_str()) && !is_of_recording(path));
         for path in others {
             writer.file(first_ns, path, &read(session, path)?)?;
         }
-        write_frames(session, &mut writer, &entries, &notes)?;
+        write_frames((session, paths), &mut writer, &entries, &notes)?;
         let (file, _) = writer.finish()?;
         Ok(file.sync_all()?)
     });
@@ -156,27 +164,54 @@ fn is_of_recording(path: &str) -> bool {
     [SESSION_FILE, NOTES_FILE, DEVICE_FILE].contains(&path)
 }
 
+/// Pictures of one kind that were written, with their numbers.
+#[derive(Default)]
+struct Numbered<'a> {
+    numbers: HashMap<&'a str, u32>,
+    /// The file that is written next.
+    bytes: Vec<u8>,
+}
+
+impl<'a> Numbered<'a> {
+    /// A picture by its path: a new one, or one that was written before.
+    fn picture(&mut self, session: &Stored, path: &str) -> anyhow::Result<Picture<'_>> {
+        Ok(match self.numbers.get(path) {
+            Some(number) => Picture::Again(*number),
+            None => {
+                self.bytes = read(session, path)?;
+                Picture::New(&self.bytes)
+            }
+        })
+    }
+
+    fn is_written(&mut self, path: &'a str, number: u32) {
+        self.numbers.insert(path, number);
+    }
+}
+
 fn write_frames(
-    session: &Stored,
+    (session, paths): (&Stored, &[String]),
     writer: &mut Writer<File>,
     entries: &[(Entry, &str)],
     notes: &[Note],
 ) -> anyhow::Result<()> {
-    let mut numbers = HashMap::new();
+    let known: HashSet<&str> = paths.iter().map(String::as_str).collect();
+    let (mut pictures, mut depths) = (Numbered::default(), Numbered::default());
     let mut notes = notes.iter().peekable();
     for (entry, text) in entries {
         let time_ns = time_ns(entry.time);
         while let Some(note) = notes.next_if(|note| note.time_ns <= time_ns) {
             writer.note(note.time_ns, note.topic, &note.message)?;
         }
-        let number = match numbers.get(&entry.image) {
-            Some(number) => writer.frame(time_ns, Picture::Again(*number), text)?,
-            None => {
-                let picture = read(session, &entry.image)?;
-                writer.frame(time_ns, Picture::New(&picture), text)?
-            }
-        };
-        numbers.insert(&entry.image, number);
+        let picture = pictures.picture(session, &entry.image)?;
+        // A folder may lack it, and is converted all the same.
+        let named = entry.depth.as_deref().filter(|path| known.contains(path));
+        let depth = named.map(|path| depths.picture(session, path)).transpose()?;
+        let (number, depth_number) = writer.frame_with_depth(time_ns, picture, depth, text)?;
+        pictures.is_written(&entry.image, number);
+        if let Some((path, number)) = named.zip(depth_number) {
+            depths.is_written(path, number);
+        }
     }
     for note in notes {
         writer.note(note.time_ns, note.topic, &note.message)?;

@@ -1,9 +1,11 @@
 //! A plane above the table is found by the toy's shadow on it, without sides if it is a board, and no
-//! plane is found if there is none. Depths help where little of the shadow falls.
+//! plane is found if there is none. Depths or a mesh of the place help where little of the shadow
+//! falls.
 
 use app_core::alignment::Observer;
 use app_core::scene::{Receiver, Scene};
 use app_scene::depth::Depth;
+use app_scene::place_mesh::PlaceMesh;
 use glam::{DMat4, DQuat, DVec2, DVec3, UVec2};
 use measure::photographer::world::toward;
 use measure::photographer::{Ground, Lamp, Paint, Quality, Shot, World};
@@ -12,6 +14,8 @@ use measure::random::Random;
 /// Tolerance of its height in metres: a shadow moves by a pixel for each millimetre.
 const HEIGHT_M: f64 = 0.001;
 const TILT_RAD: f64 = 0.03;
+/// The same by an exact mesh.
+const EXACT_M: f64 = 0.0003;
 /// Tolerance of its middle and half sides in metres: one pixel and a half.
 const EXTENT_M: f64 = 0.0025;
 /// Half the sides of the board.
@@ -190,6 +194,65 @@ fn noisy_depths_do_no_harm() {
     let session = session(&[(world_from_board, HALF_M)]);
     let depth = depths(&session.1, 20.0);
     let (heights_m, tilts) = found_in(&session, Some(depth), (world_from_board, -0.16)).expect("a plane");
+    assert_height(heights_m);
+    assert!((tilts[0] - tilts[1].abs()).abs() < TILT_RAD, "{tilts:?}");
+}
+
+/// A mesh of the receivers, in a world that is moved and turned against theirs.
+fn mesh(receivers: &[Receiver], there_from_world: DMat4, deviation_m: Option<f64>) -> PlaceMesh {
+    let corners = receivers.iter().flat_map(|receiver| {
+        let half_m = receiver.half_extent_m.min(DVec2::splat(0.6));
+        let there_from_plane = there_from_world * receiver.world_from_plane;
+        [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(x, z)| {
+            let at = DVec3::new(x * half_m.x, 0.0, z * half_m.y);
+            there_from_plane.transform_point3(at).as_vec3()
+        })
+    });
+    let corners: Vec<_> = corners.collect();
+    let quads = (0..).step_by(4).take(receivers.len());
+    // One of the triangles is seen from its back.
+    let triangles: Vec<[u32; 3]> = quads
+        .flat_map(|first| [[first, first + 1, first + 2], [first, first + 3, first + 2]])
+        .collect();
+    PlaceMesh::new(corners, triangles, deviation_m).unwrap()
+}
+
+/// A mesh that is a centimetre off along each axis, and turned and tilted by degrees.
+fn misplaced() -> DMat4 {
+    DMat4::from_rotation_translation(
+        DQuat::from_rotation_y(0.05) * DQuat::from_rotation_x(0.035),
+        DVec3::splat(0.01),
+    )
+}
+
+/// The found plane of a board with little of the toy's shadow, by a mesh of the place.
+fn found_by_mesh(there_from_world: DMat4, deviation_m: Option<f64>) -> Option<[f64; 2]> {
+    let world_from_board = board_at(-0.17, 0.018, 0.0);
+    let (scene, shot) = session(&[(world_from_board, HALF_M)]);
+    let mesh = mesh(&shot.scene.receivers, there_from_world, deviation_m);
+    let scene = scene.with_place_mesh(Some(mesh));
+    let (heights_m, _) = found_in(&(scene, shot), None, (world_from_board, 0.0))?;
+    Some(heights_m)
+}
+
+#[test]
+fn a_mesh_finds_a_plane_with_little_shadow() {
+    assert_height(found_by_mesh(DMat4::IDENTITY, None).expect("a plane"));
+    let [found_m, true_m] = found_by_mesh(DMat4::IDENTITY, Some(1e-4)).expect("a plane");
+    assert!((found_m - true_m).abs() < EXACT_M, "{found_m} m");
+    // The table around it shows how far the mesh is off.
+    assert_height(found_by_mesh(misplaced(), Some(1e-4)).expect("a plane"));
+}
+
+#[test]
+fn a_mesh_of_another_place_does_no_harm() {
+    let world_from_board = board(0.022, -0.16);
+    let (scene, shot) = session(&[(world_from_board, HALF_M)]);
+    // In it, the board is level and 10 mm lower.
+    let mut other = shot.scene.receivers.clone();
+    other[1].world_from_plane = board(0.012, 0.0);
+    let scene = scene.with_place_mesh(Some(mesh(&other, DMat4::IDENTITY, Some(1e-4))));
+    let (heights_m, tilts) = found_in(&(scene, shot), None, (world_from_board, -0.16)).expect("a plane");
     assert_height(heights_m);
     assert!((tilts[0] - tilts[1].abs()).abs() < TILT_RAD, "{tilts:?}");
 }

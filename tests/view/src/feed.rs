@@ -157,6 +157,8 @@ impl Feed {
             light_estimate: of.light_estimate,
             // They belong to the frame's own picture.
             people: of.people.clone().filter(|_| self.is_toy_there && !self.is_dark),
+            // It belongs to the frame's own picture.
+            depth: of.depth.clone().filter(|_| self.is_toy_there && !self.is_dark),
             display: self.display,
         }
     }

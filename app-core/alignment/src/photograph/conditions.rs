@@ -1,10 +1,11 @@
 //! The conditions of a photograph: its softness, and the other things in it.
 
-use glam::{DMat4, DVec3, UVec2};
+use glam::DMat4;
 
 use super::Photograph;
 use crate::found_planes::FoundReceiver;
 use crate::lights::FoundReflection;
+use crate::measured_points::MeasuredPoints;
 use crate::things::Colored;
 use crate::{gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
@@ -15,9 +16,6 @@ use app_scene::scene::{Camera, Light, Scene};
 use app_scene::sharpness::{Sharpness, Spread};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
-
-/// Most points of a depth picture that are used: more add nothing to a plane.
-const MOST_DEPTHS: usize = 50_000;
 
 /// Things beside the toy.
 #[derive(Default)]
@@ -107,14 +105,10 @@ impl Photograph {
     ) -> Result<Sighted, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let paint = pose::Paint::new(scene, &self.camera_from_object(&input.world_from_object))?;
-        let points: Vec<DVec3> = match &input.depth {
-            Some(depth) if planes_of.is_some() => {
-                let size_px = UVec2::from_array(input.image.size_px());
-                let every = depth.depths_mm().len().div_ceil(MOST_DEPTHS).max(1);
-                let points = depth.points(input.camera.intrinsics, size_px);
-                points.step_by(every).collect()
-            }
-            _ => Vec::new(),
+        // They are of use to planes alone.
+        let points = match planes_of {
+            Some(_) => MeasuredPoints::of(scene, input),
+            None => Vec::new(),
         };
         let (found, memory) = things::find(&things::Sight {
             shape: &shape,

@@ -58,6 +58,16 @@ pub(super) fn moved_m(side: &Side, plane_from_camera: &DMat4, level: &Level) -> 
     step.map_or(0.0, |step| px_m * step_px(step))
 }
 
+/// Contrast of a side where it is, in logarithms of light; `None` if too little of it is visible.
+pub(super) fn contrast(side: &Side, plane_from_camera: &DMat4, level: &Level) -> Option<f64> {
+    let seen = SeenSide {
+        side,
+        camera_from_plane: plane_from_camera.inverse(),
+        level,
+    };
+    seen.contrast((0.0, 0.0), BESIDE_PX * seen.px_m()?)
+}
+
 /// The step of most contrast.
 fn clearest(steps: RangeInclusive<i32>, contrast: impl Fn(i32) -> f64) -> Option<i32> {
     let all = steps.map(|step| (contrast(step), step));

@@ -82,6 +82,25 @@ impl Grown {
         })
     }
 
+    /// Things of known pixels, each with the number of its seeds, in a place of unknown colours.
+    pub(super) fn of_groups(size_px: IVec2, groups: &[(usize, Vec<usize>)]) -> Self {
+        let n_pixels = (size_px.x * size_px.y) as usize;
+        let (mut thing, mut nearer) = (vec![None; n_pixels], vec![-FARTHEST; n_pixels]);
+        for (number, (_, group)) in (0..).zip(groups) {
+            for index in group {
+                thing[*index] = Some(number);
+                nearer[*index] = FARTHEST;
+            }
+        }
+        Self {
+            size_px,
+            nearer,
+            thing,
+            n_seeds: groups.iter().map(|(n_seeds, _)| *n_seeds).collect(),
+            is_like_place: vec![false; n_pixels],
+        }
+    }
+
     /// Adds groups of pixels, each to the thing that most of it touches or is part of.
     pub(super) fn absorb(&mut self, groups: &[Vec<usize>]) {
         for group in groups {

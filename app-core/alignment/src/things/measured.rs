@@ -1,7 +1,7 @@
 //! Fits a plane to a depth sensor's points on a thing.
 //!
-//! The points on the receiver around the thing calibrate the sensor: its offset, its noise, and the
-//! errors that neighbouring points share.
+//! The points on the receiver around the thing calibrate the sensor: its offset and tilt, its noise,
+//! and the errors that neighbouring points share.
 
 use std::collections::HashMap;
 
@@ -39,6 +39,8 @@ const N_ROUNDS: usize = 8;
 /// Least deviation of a height in metres, and of a slope.
 const HEIGHT_M: f64 = 1e-3;
 const SLOPE: f64 = 0.02;
+/// Least part of these deviations that is left for exact points: a tenth of a millimetre.
+const EXACT: f64 = 0.1;
 /// Deviation of the shared errors if they are unknown, in metres.
 const SHARED_M: f64 = 5e-3;
 
@@ -56,10 +58,11 @@ pub(super) struct Measured {
 impl Measured {
     /// The plane about the thing's middle on the receiver; `None` if the points are too few, or on
     /// no plane. Points are in camera space.
-    pub(super) fn of(outline: &Outline<'_>, middle: DVec2, points: &[DVec3]) -> Option<Self> {
+    pub(super) fn of(outline: &Outline<'_>, middle: DVec2) -> Option<Self> {
+        let measured = outline.points?;
         let mut on_thing = Vec::new();
         let mut on_table = Vec::new();
-        for point in points {
+        for point in &measured.points {
             let Some(at) = outline.level.intrinsics.pixel_of(*point) else {
                 continue;
             };
@@ -71,18 +74,28 @@ impl Measured {
                 && place.y.abs() < ON_TABLE_M
                 && place.xz().distance(middle) < AROUND_M
             {
-                on_table.push((at.div_euclid(IVec2::splat(CELL_PX)), place.y));
+                let cell = at.div_euclid(IVec2::splat(CELL_PX));
+                on_table.push((cell, place - DVec3::new(middle.x, 0.0, middle.y)));
             }
         }
         if on_thing.len() < LEAST_POINTS || on_table.len() < LEAST_POINTS {
             return None;
         }
-        let heights_m: Vec<f64> = on_table.iter().map(|(_, height_m)| *height_m).collect();
-        let offset_m = median(heights_m.iter().copied(), f64::total_cmp)?;
-        let away_m = heights_m.iter().map(|height_m| (height_m - offset_m).abs());
-        let noise_m = (DEVIATION_OF_MEDIAN * median(away_m, f64::total_cmp)?).max(LEAST_NOISE_M);
-        on_thing.iter_mut().for_each(|point| point.y -= offset_m);
-        fitted(&on_thing, (noise_m, shared_m(&on_table, offset_m)))
+        let [least_noise_m, least_m, least_slope] = least(measured.deviation_m);
+        let table = of_table(on_table.iter().map(|(_, point)| *point))?;
+        for point in on_table.iter_mut().map(|(_, point)| point).chain(&mut on_thing) {
+            point.y = above_m(point, table);
+        }
+        let away_m = on_table.iter().map(|(_, point)| point.y.abs());
+        let noise_m = (DEVIATION_OF_MEDIAN * median(away_m, f64::total_cmp)?).max(least_noise_m);
+        let (plane, n, size_m) = fitted(&on_thing, noise_m)?;
+        let deviation_m = (noise_m / n.sqrt()).hypot(shared_m(&on_table));
+        Some(Self {
+            height_m: plane.x,
+            slope: plane.yz(),
+            deviation_m: deviation_m.hypot(least_m),
+            slope_deviation: (deviation_m / size_m.max(HEIGHT_M)).hypot(least_slope),
+        })
     }
 
     /// Its height, and its rise over a size of the thing along either axis.
@@ -99,13 +112,10 @@ impl Measured {
 }
 
 /// Deviation of the mean error of neighbouring points on the receiver, each with its cell.
-fn shared_m(on_table: &[(IVec2, f64)], offset_m: f64) -> f64 {
+fn shared_m(on_table: &[(IVec2, DVec3)]) -> f64 {
     let mut cells: HashMap<[i32; 2], Vec<f64>> = HashMap::new();
-    for (cell, height_m) in on_table {
-        cells
-            .entry(cell.to_array())
-            .or_default()
-            .push(height_m - offset_m);
+    for (cell, point) in on_table {
+        cells.entry(cell.to_array()).or_default().push(point.y);
     }
     let full = cells
         .values()
@@ -124,8 +134,29 @@ fn is_within(outline: &Outline<'_>, at: IVec2, thing: Option<usize>) -> bool {
     cross(at, WITHIN_PX).all(|at| outline.grown.of_pixel(at) == thing)
 }
 
-/// The plane on which most points are, from many starts.
-fn fitted(points: &[DVec3], (noise_m, shared_m): (f64, f64)) -> Option<Measured> {
+/// The plane of the points on the receiver, which is level and at 0 for a sensor without error.
+pub(super) fn of_table(points: impl Iterator<Item = DVec3> + Clone) -> Option<DVec3> {
+    let offset_m = median(points.clone().map(|point| point.y), f64::total_cmp)?;
+    let away_m = points.clone().map(|point| (point.y - offset_m).abs());
+    let spread_m = DEVIATION_OF_MEDIAN * median(away_m, f64::total_cmp)?;
+    let all: Vec<DVec3> = points.collect();
+    let mut plane = DVec3::new(offset_m, 0.0, 0.0);
+    for _ in 0..N_ROUNDS {
+        plane = nearer(&all, plane, MOST_OFF * spread_m.max(LEAST_NOISE_M))?;
+    }
+    Some(plane)
+}
+
+/// Least noise in metres, and least deviations of a height in metres and of a slope, for points of a
+/// stated deviation.
+fn least(deviation_m: Option<f64>) -> [f64; 3] {
+    let part = deviation_m.map_or(1.0, |deviation_m| (deviation_m / HEIGHT_M).clamp(EXACT, 1.0));
+    [LEAST_NOISE_M, HEIGHT_M, SLOPE].map(|least| part * least)
+}
+
+/// The plane on which most points are, from many starts, with their number and their deviation along
+/// it in metres.
+fn fitted(points: &[DVec3], noise_m: f64) -> Option<(DVec3, f64, f64)> {
     let mut heights_m: Vec<f64> = points.iter().map(|point| point.y).collect();
     heights_m.sort_unstable_by(f64::total_cmp);
     #[allow(
@@ -157,17 +188,11 @@ fn fitted(points: &[DVec3], (noise_m, shared_m): (f64, f64)) -> Option<Measured>
     let n = on.len() as f64;
     let middle = on.iter().sum::<DVec2>() / n;
     let size_m = (on.iter().map(|at| at.distance_squared(middle)).sum::<f64>() / (2.0 * n)).sqrt();
-    let deviation_m = (noise_m / n.sqrt()).hypot(shared_m);
-    Some(Measured {
-        height_m: plane.x,
-        slope: plane.yz(),
-        deviation_m: deviation_m.hypot(HEIGHT_M),
-        slope_deviation: (deviation_m / size_m.max(HEIGHT_M)).hypot(SLOPE),
-    })
+    Some((plane, n, size_m))
 }
 
 /// Height of a point above a plane, which is its height at the origin and its slopes.
-fn above_m(point: &DVec3, plane: DVec3) -> f64 {
+pub(super) fn above_m(point: &DVec3, plane: DVec3) -> f64 {
     point.y - plane.dot(DVec3::new(1.0, point.x, point.z))
 }
 

@@ -16,6 +16,7 @@ mod extent;
 mod found;
 pub(crate) mod groups;
 mod grown;
+mod inner;
 mod measured;
 mod memory;
 pub(crate) mod planes;
@@ -23,13 +24,15 @@ mod seeds;
 mod shade;
 mod sides;
 mod simplex;
-mod wrong;
+mod standing;
+mod wrong_plate;
 
 use std::borrow::Cow;
 
-use glam::{DMat4, DVec3, IVec2};
+use glam::{DMat4, IVec2};
 
 use crate::lights::Comparison;
+use crate::measured_points::MeasuredPoints;
 use crate::picture::{Color, Level, Pyramid, index_in, places};
 use crate::pose::Paint;
 use crate::raster::{Coverage, Rasterizer, project};
@@ -45,10 +48,12 @@ use found::{Found, InFrame};
 use groups::{cross, most_around};
 use grown::Grown;
 use memory::{Known, Place};
-use planes::FoundPlane;
+use planes::{FoundPlane, clearer};
 pub(crate) use seeds::Colored;
 use seeds::{Seed, Seeds};
 use shade::Brightness;
+use standing::standing;
+use wrong_plate::wrong_plate;
 
 /// Maximum number of pixels of the level for the search: more take longer and find no more.
 const MOST_PIXELS: i32 = 150_000;
@@ -82,8 +87,8 @@ pub(crate) struct Sight<'a> {
     pub(crate) pyramid: &'a Pyramid,
     pub(crate) lights: &'a [Light],
     pub(crate) world_from_camera: &'a DMat4,
-    /// Points that a depth sensor measured, in camera space.
-    pub(crate) points: &'a [DVec3],
+    /// Points by each source that measured some; of use to planes alone.
+    pub(crate) points: &'a [MeasuredPoints],
     /// Things whose planes are searched for, if any are.
     pub(crate) planes_of: Option<Colored>,
     /// Memory of the search in the previous picture; `None` for a picture by itself.
@@ -178,22 +183,39 @@ impl Sight<'_> {
             toy.before(grown, (frame, &plate), needed)
         });
         let alone = evidence.map_or(Vec::new(), |(grown, needed)| grown.alone(&needed));
-        let planes_on = |grown: Option<&Grown>, colored| {
+        let measured: Vec<_> = self
+            .points
+            .iter()
+            .map(|points| toy.beside(points, level))
+            .collect();
+        let shape = self.shape.merged_in_px(planes::CELL_PX, level);
+        let planes_on = |grown: Option<&Grown>, colored, are_things_of_points| {
             let place = planes::Place {
-                shape: &self.shape.merged_in_px(planes::CELL_PX, level),
+                shape: &shape,
                 receivers: self.receivers,
-                points: &toy.beside(self.points, level),
+                points: &measured,
+                are_things_of_points,
             };
             sides::with_sides(&place, (level, grown, colored), &compared)
         };
-        let planes = match (&grown, self.planes_of) {
-            (_, None) => Vec::new(),
-            (None, Some(Colored::Alike)) => {
-                let alike = Grown::from(&seeds_of(Colored::Alike), Seed::Thing, &plate);
-                planes_on(alike.as_ref(), Colored::Alike)
+        let of_picture = |colored| match &grown {
+            None if colored == Colored::Alike => {
+                let alike = Grown::from(&seeds_of(colored), Seed::Thing, &plate);
+                planes_on(alike.as_ref(), colored, false)
             }
-            (grown, Some(_)) => planes_on(grown.as_ref(), Colored::Otherwise),
+            grown => planes_on(grown.as_ref(), Colored::Otherwise, false),
         };
+        let of_points = || {
+            let points = (&*measured, self.receivers);
+            let things = standing(grown.as_ref(), points, level, &compared.pixels);
+            things.map_or(Vec::new(), |things| {
+                planes_on(Some(&things), Colored::Otherwise, true)
+            })
+        };
+        // Points may be of a world that is a little off.
+        let planes = self
+            .planes_of
+            .map_or(Vec::new(), |colored| clearer([of_points(), of_picture(colored)]));
         let grown = grown.map(|mut grown| {
             let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, &plate);
             grown.absorb(&shadows);
@@ -212,7 +234,7 @@ impl Sight<'_> {
             grown,
             before,
             alone,
-            wrong: wrong.map(|wrong| wrong::wrong_plate(&wrong, toy, size_px, &compared.pixels)),
+            wrong: wrong.map(|wrong| wrong_plate(&wrong, toy, size_px, &compared.pixels)),
             in_plate,
             on_things,
             in_frame,
@@ -328,13 +350,12 @@ impl Toy {
         Self { coverage, shown }
     }
 
-    /// The points in camera space that are seen beside the toy.
-    fn beside(&self, points: &[DVec3], level: &Level) -> Vec<DVec3> {
-        let is_beside = |point: &DVec3| {
+    /// The points that are seen beside the toy.
+    fn beside(&self, measured: &MeasuredPoints, level: &Level) -> MeasuredPoints {
+        measured.filtered(|point| {
             let at = level.intrinsics.pixel_of(*point);
             at.is_some_and(|at| !self.coverage.is_near(at.floor().as_ivec2(), BESIDE_PX))
-        };
-        points.iter().copied().filter(is_beside).collect()
+        })
     }
 
     fn expected(&self, at: IVec2) -> Option<Color> {

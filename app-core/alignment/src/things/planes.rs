@@ -8,12 +8,13 @@
 use glam::{DMat4, DQuat, DVec2, DVec3, IVec2, Vec3Swizzles};
 
 use super::extent::{Extent, Outline};
-use super::groups::cross;
 use super::grown::Grown;
+use super::inner::{most_on, pixels};
 use super::measured::Measured;
 use super::seeds::Colored;
 use super::simplex::descend;
 use crate::lights::{Compared, Comparison, OnPlane};
+use crate::measured_points::MeasuredPoints;
 use crate::picture::{Color, Level};
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
@@ -21,15 +22,12 @@ use crate::report::PlaneAlignment;
 use crate::shape::Shape;
 use app_scene::scene::{Intrinsics, MAX_RECEIVERS};
 
-/// Least pixels of a thing, in the level, for a search, and most pixels that a search samples.
-const LEAST_PIXELS: usize = 300;
+/// Most pixels of the level that a search samples.
 const MOST_PIXELS: usize = 2500;
 /// Least shadowed pixels that a level and a tilted plane need.
 const LEAST_SHADOWED: [usize; 2] = [90, 250];
 /// Least part of the light that a shadowed pixel loses.
 const SHADOWED: f32 = 0.25;
-/// Largest noise of a pixel that counts, in plates.
-pub(super) const NOISIEST: f32 = 0.2;
 /// Largest loss of a pixel: a squared difference in plates.
 const MOST_LOSS: f64 = 0.03;
 /// Largest loss of an accepted plane: absolute, and over the smaller loss of the known receivers and
@@ -84,6 +82,18 @@ pub(crate) struct FoundPlane {
     /// off.
     pub(crate) instead_of: Option<usize>,
     pub(crate) report: PlaneAlignment,
+    /// Contrast of its sides in the plate, in logarithms of light; 0 for an upright one.
+    pub(super) contrast: f64,
+}
+
+/// The planes of the first search, unless those of the second end at clearer edges.
+pub(super) fn clearer([first, second]: [Vec<FoundPlane>; 2]) -> Vec<FoundPlane> {
+    let contrast = |planes: &[FoundPlane]| planes.iter().map(|found| found.contrast).fold(0.0, f64::max);
+    if contrast(&second) > contrast(&first) || first.is_empty() {
+        second
+    } else {
+        first
+    }
 }
 
 impl FoundPlane {
@@ -94,11 +104,13 @@ impl FoundPlane {
     }
 }
 
-/// The toy with its vertices merged, the known receivers and the points of a depth sensor, in camera space.
+/// The toy with its vertices merged, the known receivers and measured points, in camera space.
 pub(super) struct Place<'a> {
     pub(super) shape: &'a Shape,
     pub(super) receivers: &'a [SeenReceiver],
-    pub(super) points: &'a [DVec3],
+    pub(super) points: &'a [MeasuredPoints],
+    /// Whether the things are those of exact points, which then bound their planes.
+    pub(super) are_things_of_points: bool,
 }
 
 /// Finds the planes of a level's things: their upper sides.
@@ -123,37 +135,24 @@ pub(super) fn find(
             grown,
             thing,
             colored,
+            points: None,
+            is_bounded_by_points: place.are_things_of_points,
         };
-        let by_points = || found(search()?.measured(&outline, place.points)?, &outline);
-        let found = by_points().or_else(|| found(search()?, &outline))?;
+        let by_points = |points| {
+            let outline = Outline {
+                points: Some(points),
+                ..outline
+            };
+            found(search()?.measured(&outline)?, &outline)
+        };
+        let measured = place.points.iter().find_map(by_points);
+        let found = measured.or_else(|| found(search()?, &outline))?;
         Some(FoundPlane {
             instead_of: (on != GROUND && found.is_near(&receivers[on])).then_some(on),
             ..found
         })
     });
     planes.collect()
-}
-
-/// The inner pixels of a thing, row by row.
-fn pixels<'a>(comparison: &'a Comparison, grown: &Grown, thing: usize) -> Vec<&'a Compared> {
-    let is_within = |at: IVec2| cross(at, 1).all(|at| grown.of_pixel(at) == Some(thing));
-    let all = comparison.pixels.iter();
-    all.filter(|pixel| pixel.noise < NOISIEST && is_within(pixel.at))
-        .collect()
-}
-
-/// The receiver behind most of the pixels; `None` for too few pixels.
-fn most_on(pixels: &[&Compared]) -> Option<usize> {
-    if pixels.len() < LEAST_PIXELS {
-        return None;
-    }
-    let mut counts = [0; MAX_RECEIVERS];
-    for pixel in pixels {
-        if let Some(count) = counts.get_mut(pixel.on) {
-            *count += 1;
-        }
-    }
-    (0..counts.len()).max_by_key(|on| counts[*on])
 }
 
 /// Searches for a thing's plane, first with all of its pixels, then with those of its upper side.
@@ -172,6 +171,7 @@ fn found(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     Some(FoundPlane {
         plane: extent.plane(&endless),
         instead_of: None,
+        contrast: extent.contrast(outline.level, &endless),
         report: PlaneAlignment {
             height_m: extent.height_m(&endless, search.table),
             tilt_rad: (plane.heights[1].hypot(plane.heights[2]) / search.size_m).atan(),
@@ -246,9 +246,9 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The same search, about the plane of a depth sensor's points; `None` if they are on none.
-    fn measured(mut self, outline: &Outline<'_>, points: &[DVec3]) -> Option<Self> {
-        self.measured = Some(Measured::of(outline, self.middle, points)?);
+    /// The same search, about the plane of the outline's measured points; `None` if they are on none.
+    fn measured(mut self, outline: &Outline<'_>) -> Option<Self> {
+        self.measured = Some(Measured::of(outline, self.middle)?);
         Some(self)
     }
 

@@ -6,7 +6,8 @@ use std::collections::HashSet;
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
 use super::grown::Grown;
-use super::planes::{self, FoundPlane, GROUND, NOISIEST, Place, Search};
+use super::inner::NOISIEST;
+use super::planes::{self, FoundPlane, GROUND, Place, Search};
 use super::seeds::Colored;
 use crate::lights::{Compared, Comparison};
 use crate::picture::{Level, places};
@@ -89,6 +90,7 @@ fn upright(
             },
             plane: side.plane,
             instead_of: None,
+            contrast: 0.0,
         })
     });
     taken.take(MAX_RECEIVERS.saturating_sub(known.len())).collect()

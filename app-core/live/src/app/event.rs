@@ -238,6 +238,8 @@ pub enum PlatformCommand {
         finds_planes: bool,
         /// Whether the printed card is detected, which costs more.
         finds_card: bool,
+        /// Whether depths are measured, if the phone can, which costs time and warms it.
+        measures_depth: bool,
         /// Whether the session starts a new world.
         is_new_world: bool,
     },

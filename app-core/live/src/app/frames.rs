@@ -213,6 +213,7 @@ impl App {
             .with_exposure(self.exposure_of(latest))
             .with_light_estimate(latest.light_estimate)
             .with_people(latest.people.clone())
+            .with_depth(latest.depth.clone())
             .with_shown_pose(self.playback.pose())
             .with_effect(effect);
         Some(input)

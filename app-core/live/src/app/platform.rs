@@ -106,6 +106,7 @@ pub(super) struct Commanded {
     finds_planes: bool,
     finds_card: bool,
     finds_people: bool,
+    measures_depth: bool,
     locks_exposure: bool,
     underexposes: bool,
     is_awake: bool,
@@ -123,6 +124,9 @@ impl Commanded {
             finds_card: tracking && asked.card,
             // Of all that warms a phone, it is what a picture can most easily do without.
             finds_people: tracking && step == Step::Play && platform.thermal == Thermal::Nominal,
+            // From the step before the toy is placed, where the session runs anew in any case; and
+            // the first thing that heat takes away.
+            measures_depth: tracking && step >= Step::TakePlate && platform.thermal == Thermal::Nominal,
             // Plate and frames are compared with one another.
             locks_exposure: tracking && (step >= Step::PlaceToy || asked.held_exposure),
             underexposes: tracking && step == Step::PlaceToy && asked.lens,
@@ -164,13 +168,14 @@ impl Commanded {
         if wanted.frames_per_s != self.frames_per_s {
             commands.push(PlatformCommand::FrameRate(wanted.frames_per_s).into());
         }
-        let is_run_anew = (wanted.tracking, wanted.finds_planes, wanted.finds_card)
-            != (self.tracking, self.finds_planes, self.finds_card);
+        let run = |of: &Self| [of.tracking, of.finds_planes, of.finds_card, of.measures_depth];
+        let is_run_anew = run(&wanted) != run(self);
         if wanted.tracking && (is_run_anew || is_new_world) {
             commands.push(
                 PlatformCommand::RunTracking {
                     finds_planes: wanted.finds_planes,
                     finds_card: wanted.finds_card,
+                    measures_depth: wanted.measures_depth,
                     is_new_world,
                 }
                 .into(),

@@ -60,6 +60,7 @@ impl App {
                 world_from_object: input.world_from_object,
                 exposure: input.exposure,
                 light_estimate: input.light_estimate,
+                depth: input.depth,
                 shown_pose: input.shown_pose,
                 world_from_shown: input.world_from_shown,
             })

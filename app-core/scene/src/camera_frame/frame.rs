@@ -7,6 +7,7 @@ use glam::{DMat4, DVec2};
 use super::arrival::Stamp;
 use super::display::Display;
 use super::image::CameraImage;
+use crate::depth::Depth;
 use crate::people::People;
 use crate::scene::{Camera, Intrinsics, LightEstimate};
 
@@ -104,6 +105,8 @@ pub struct CameraFrame {
     pub light_estimate: Option<LightEstimate>,
     /// The people in the picture; `None` if the platform does not tell.
     pub people: Option<People>,
+    /// Depths of the picture, if the platform measures them and was asked to.
+    pub depth: Option<Depth>,
     /// Presentation of the picture.
     pub display: Display,
 }

@@ -14,6 +14,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec2, DVec3};
 
+use crate::place_mesh::PlaceMesh;
 use crate::toy::Toy;
 
 pub use crate::toy::Pose;
@@ -64,6 +65,9 @@ pub struct Scene {
     pub plates: Vec<Plate>,
     /// A light probe in the scene, if any: lights are estimated from it if none are listed.
     pub probe: Option<Probe>,
+    /// A measured mesh of the place, if there is one. Only alignment uses it, to find planes on
+    /// which things let the shadow fall.
+    pub place_mesh: Option<PlaceMesh>,
     /// Uncertainty of camera, toy and lights.
     pub uncertainty: Uncertainty,
     /// All poses and places that frames will show, if known beforehand: learning then covers all of
@@ -98,6 +102,7 @@ impl Scene {
             lights: Vec::new(),
             plates: Vec::new(),
             probe: None,
+            place_mesh: None,
             uncertainty: Uncertainty::default(),
             film: Arc::default(),
         }
@@ -163,6 +168,13 @@ impl Scene {
     #[must_use]
     pub fn with_probe(mut self, probe: Option<Probe>) -> Self {
         self.probe = probe;
+        self
+    }
+
+    /// Sets the measured mesh of the place.
+    #[must_use]
+    pub fn with_place_mesh(mut self, place_mesh: Option<PlaceMesh>) -> Self {
+        self.place_mesh = place_mesh;
         self
     }
 

@@ -6,18 +6,20 @@ use super::field::{at, check_named, each, in_index, non_empty, read_named};
 use super::light_estimate::light_estimate;
 use super::light_probe::probe;
 use super::place::{self, camera, intrinsics, light, plates, receiver};
-use super::record::{CaptureRecord, FrameRecord, PoseRecord};
+use super::record::{CaptureRecord, FrameRecord, PlaceMeshRecord, PoseRecord};
 use super::{Capture, Frame, PictureStore, TruthFiles, uncertainty};
 use crate::SessionWarning;
 use crate::error::SessionError;
 use crate::files::{Files, INDEX_FILE};
 use crate::picture::PictureSize;
 use app_scene::lens::Distortion;
+use app_scene::place_mesh::PlaceMesh;
 use app_scene::scene::{Intrinsics, Pose, Scene, check};
 use app_scene::toy::{self, Toy};
 use glam::DMat4;
 
 const MAX_TOY_BYTES: u64 = 256 << 20;
+const MAX_PLACE_MESH_BYTES: u64 = 64 << 20;
 
 /// Checks every value, then reads the files that all frames share: the toy, the plates, the probe.
 pub(super) fn capture_from_record(
@@ -37,6 +39,10 @@ pub(super) fn capture_from_record(
     let uncertainty = uncertainty.map(|record| uncertainty::uncertainty("uncertainty", record));
     let uncertainty = uncertainty.transpose()?.unwrap_or_default();
 
+    let place_mesh = record.place_mesh.as_ref();
+    let place_mesh = place_mesh
+        .map(|record| place_mesh_of(files.as_ref(), record))
+        .transpose()?;
     let toy = read_toy(files.as_ref(), &record.toy.file)?;
     let mut warnings = toy_warnings(&toy, &record.toy.file);
     let physical_pose = pose(
@@ -80,6 +86,7 @@ pub(super) fn capture_from_record(
     .with_lights(lights)
     .with_plates(plates)
     .with_probe(probe)
+    .with_place_mesh(place_mesh)
     .with_uncertainty(uncertainty);
     Ok(Capture {
         store,
@@ -120,6 +127,20 @@ fn read_toy(files: &dyn Files, path: &str) -> Result<Toy, SessionError> {
     toy::packed(path, &bytes, &mut neighbour)
         .and_then(|bytes| Toy::from_glb(path, &bytes))
         .map_err(|error| SessionError::new(path, field, error))
+}
+
+fn place_mesh_of(files: &dyn Files, record: &PlaceMeshRecord) -> Result<PlaceMesh, SessionError> {
+    let field = "place_mesh.file";
+    let deviation_m = record.deviation.map(|deviation_m| {
+        at(
+            "place_mesh.deviation",
+            check::number(deviation_m, &check::UNCERTAINTY_M),
+        )
+    });
+    let deviation_m = deviation_m.transpose()?;
+    let bytes = read_named(files, &record.file, field, MAX_PLACE_MESH_BYTES)?;
+    PlaceMesh::from_glb(&record.file, &bytes, deviation_m)
+        .map_err(|error| SessionError::new(&record.file, field, error))
 }
 
 fn toy_warnings(toy: &Toy, file: &str) -> Vec<SessionWarning> {

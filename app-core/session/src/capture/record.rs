@@ -134,6 +134,9 @@ pub struct CaptureRecord {
     /// corrects them by the toy's shadow.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probe: Option<ProbeRecord>,
+    /// A measured mesh of the place: planes of things are searched close to it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub place_mesh: Option<PlaceMeshRecord>,
     /// Largest errors of camera, toy and lights: alignment changes nothing by more. Not bounded by
     /// default.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -231,6 +234,21 @@ pub struct ReceiverRecord {
     pub half_extent: [f64; 2],
     /// Appearance of the receiver.
     pub surface: SurfaceRecord,
+}
+
+/// A mesh of the place as a scanner measured it, with or without the toy.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+pub struct PlaceMeshRecord {
+    /// Path of the mesh, glTF 2.0, in the session's folder. Its scene space is the world, metres. Its materials are not
+    /// used.
+    #[cfg_attr(feature = "schema", schemars(length(min = 1)))]
+    pub file: String,
+    /// Standard deviation of its points, metres; unknown by default. The smaller it is, the closer
+    /// planes stay to the mesh.
+    #[cfg_attr(feature = "schema", schemars(transform = Within(check::UNCERTAINTY_M)))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deviation: Option<f64>,
 }
 
 /// Appearance of a receiver.

@@ -2,8 +2,9 @@
 
 use super::record::{
     BackgroundRecord, CaptureRecord, Encoding, FacetRecord, IntrinsicsRecord, LensRecord,
-    LightEstimateRecord, LightKind, LightRecord, LightUncertaintyRecord, PoseRecord, PoseUncertaintyRecord,
-    ProbeKind, ProbePictureRecord, ProbeRecord, ReceiverRecord, SurfaceRecord, ToyRecord, UncertaintyRecord,
+    LightEstimateRecord, LightKind, LightRecord, LightUncertaintyRecord, PlaceMeshRecord, PoseRecord,
+    PoseUncertaintyRecord, ProbeKind, ProbePictureRecord, ProbeRecord, ReceiverRecord, SurfaceRecord,
+    ToyRecord, UncertaintyRecord,
 };
 use app_scene::lens::Distortion;
 use app_scene::scene::{
@@ -21,6 +22,8 @@ pub struct ScenePaths<'a> {
     pub plates: &'a [String],
     /// Pictures of the probe, in their order.
     pub probe: &'a [String],
+    /// The mesh of the place; `None` to leave it out.
+    pub place_mesh: Option<&'a str>,
 }
 
 impl CaptureRecord {
@@ -58,6 +61,14 @@ impl CaptureRecord {
                 .probe
                 .as_ref()
                 .and_then(|probe| ProbeRecord::new(probe, paths.probe)),
+            place_mesh: scene
+                .place_mesh
+                .as_ref()
+                .zip(paths.place_mesh)
+                .map(|(mesh, file)| PlaceMeshRecord {
+                    file: file.to_owned(),
+                    deviation: mesh.deviation_m(),
+                }),
             uncertainty: uncertainty.map(UncertaintyRecord::from),
         }
     }

@@ -9,6 +9,7 @@ use image::{ExtendedColorType, ImageEncoder};
 use super::error::WriteError;
 use crate::tags::{JPEG_MAGIC, PNG_MAGIC};
 use app_scene::camera_frame::CameraImage;
+use app_scene::depth::Depth;
 use app_scene::scene::Image;
 
 /// A platform's own encoder: from a camera picture to the bytes of a PNG or JPEG file, or `None` if
@@ -73,6 +74,23 @@ pub(super) fn png(image: &Image) -> Result<Vec<u8>, WriteError> {
     let mut file = Vec::new();
     let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Fast, FilterType::Adaptive);
     write(encoder, image)?;
+    Ok(file)
+}
+
+/// Depths as a grey PNG of 16 bit, in millimetres.
+pub(super) fn depth_png(depth: &Depth) -> Result<Vec<u8>, WriteError> {
+    let mut file = Vec::new();
+    let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Fast, FilterType::Adaptive);
+    let [width_px, height_px] = depth.size_px().to_array();
+    // The encoder takes the processor's order of bytes.
+    let bytes: Vec<u8> = depth
+        .depths_mm()
+        .iter()
+        .flat_map(|depth_mm| depth_mm.to_ne_bytes())
+        .collect();
+    encoder
+        .write_image(&bytes, width_px, height_px, ExtendedColorType::L16)
+        .map_err(|error| WriteError::Picture(error.to_string()))?;
     Ok(file)
 }
 

@@ -4,6 +4,7 @@ use glam::DMat4;
 
 use crate::record::{FrameRecord, PoseRecord};
 use app_scene::camera_frame::CameraImage;
+use app_scene::depth::Depth;
 use app_scene::scene::{Camera, LightEstimate, Pose};
 use app_scene::toy::Toy;
 
@@ -20,19 +21,35 @@ pub struct LiveFrame {
     pub exposure: f64,
     /// The platform's light estimate.
     pub light_estimate: Option<LightEstimate>,
+    /// Depths of the picture, if a sensor measured them.
+    pub depth: Option<Depth>,
     /// The shown pose.
     pub shown_pose: Pose,
     /// Its place, if it differs from the real toy's.
     pub world_from_shown: Option<DMat4>,
 }
 
+/// Paths of a frame's files, relative to the session.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LivePaths {
+    pub(super) picture: String,
+    pub(super) depth: Option<String>,
+}
+
 impl LiveFrame {
-    /// Its entry in the index's `frames`: taken `time_secs` after the first, with its picture at
-    /// `path`.
-    pub(super) fn entry(&self, time_secs: f64, path: &str, toy: &Toy) -> FrameRecord {
+    /// Size of its pictures in memory.
+    pub(super) fn n_bytes(&self) -> u64 {
+        let depths = self.depth.as_ref().map_or(&[][..], Depth::depths_mm);
+        (self.image.n_bytes() + size_of_val(depths)) as u64
+    }
+
+    /// Its entry in the index's `frames`: taken `time_secs` after the first, with its picture and
+    /// its depths at these paths.
+    pub(super) fn entry(&self, time_secs: f64, paths: &LivePaths, toy: &Toy) -> FrameRecord {
         FrameRecord {
             time: time_secs,
-            image: path.to_owned(),
+            image: paths.picture.clone(),
+            depth: paths.depth.clone(),
             intrinsics: Some((&self.camera.intrinsics).into()),
             world_from_object: Some(self.world_from_object.to_cols_array()),
             world_from_shown: self.world_from_shown.map(|matrix| matrix.to_cols_array()),

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::error::Loss;
 use super::inflate::Compression;
-use super::message::{FrameMessage, NamedPicture, SessionMessage};
+use super::message::{FrameMessage, NamedPictures, SessionMessage};
 use super::topics::Topic;
 use super::viewer::image_file;
 use super::wire::{CHANNEL, MESSAGE, Rest};
@@ -59,10 +59,42 @@ impl Home {
 pub(super) struct FoundFrame {
     /// Its entry in the index, JSON.
     pub(super) entry: String,
-    /// Path of its picture.
-    pub(super) path: String,
-    /// Number of its picture.
-    pub(super) picture: u32,
+    /// Path and number of its picture.
+    picture: (String, u32),
+    /// Path and number of its depths, if the recording has them.
+    depth: Option<(String, u32)>,
+}
+
+/// Pictures of one channel.
+#[derive(Default)]
+struct Pictures {
+    /// By their numbers, once all are found.
+    spans: BTreeMap<u32, Span>,
+    /// Sequence number and position, in the order of the file.
+    numbered: Vec<(u32, Span)>,
+    /// Number of pictures before the first gap, if there is one.
+    n_before_gap: Option<usize>,
+}
+
+impl Pictures {
+    /// Numbers the pictures by their sequence numbers, or by their order if another program has
+    /// rewritten the recording without those. By order, pictures after a gap cannot be numbered and
+    /// are skipped. `wanted` are the numbers that frames have.
+    fn number(&mut self, wanted: impl Iterator<Item = u32>) {
+        let numbered = std::mem::take(&mut self.numbered);
+        self.spans = numbered.iter().copied().collect();
+        let mut wanted = wanted;
+        if self.spans.len() < numbered.len() {
+            let n = self.n_before_gap.unwrap_or(numbered.len());
+            let spans = numbered.into_iter().map(|(_, span)| span);
+            self.spans = (0..).zip(spans.take(n)).collect();
+        } else if self.n_before_gap.is_none() && !wanted.all(|number| self.spans.contains_key(&number)) {
+            // The first number of a program that does not count from 0.
+            let first = self.spans.keys().next().copied().unwrap_or(0);
+            let spans = std::mem::take(&mut self.spans).into_iter();
+            self.spans = spans.map(|(number, span)| (number - first, span)).collect();
+        }
+    }
 }
 
 /// A message of a channel for arbitrary JSON objects.
@@ -82,12 +114,8 @@ pub(super) struct Found {
     /// The last chunk's session; `None` before the first.
     pub(super) session: Option<SessionMessage>,
     pub(super) frames: Vec<FoundFrame>,
-    /// Pictures by their numbers, once all are found.
-    pub(super) pictures: BTreeMap<u32, Span>,
-    /// Sequence number and position of pictures, in the order of the file.
-    numbered: Vec<(u32, Span)>,
-    /// Number of pictures before the first gap, if there is one.
-    n_before_gap: Option<usize>,
+    pictures: Pictures,
+    depths: Pictures,
     /// Whether a chunk of a session occurs twice.
     pub(super) has_two_sessions: bool,
     pub(super) files: BTreeMap<String, Span>,
@@ -178,7 +206,11 @@ impl Found {
             }
             Read::Image(file) => {
                 let file = message.at + file.start..message.at + file.end;
-                self.numbered.push((message.sequence, home.span(file)));
+                let pictures = match message.topic {
+                    Topic::Depth => &mut self.depths,
+                    _ => &mut self.pictures,
+                };
+                pictures.numbered.push((message.sequence, home.span(file)));
             }
             Read::Frame(frame) => {
                 self.n_frame_bytes += frame.entry.len() as u64;
@@ -211,30 +243,32 @@ impl Found {
 
     /// Records that something may be missing here.
     pub(super) fn gap(&mut self) {
-        self.n_before_gap.get_or_insert(self.numbered.len());
-    }
-
-    /// Numbers the pictures by their sequence numbers, or by their order if another program has
-    /// rewritten the recording without those. By order, pictures after a gap cannot be numbered and
-    /// are skipped.
-    pub(super) fn number_pictures(&mut self) {
-        let numbered = std::mem::take(&mut self.numbered);
-        self.pictures = numbered.iter().copied().collect();
-        if self.pictures.len() < numbered.len() {
-            let n = self.n_before_gap.unwrap_or(numbered.len());
-            let spans = numbered.into_iter().map(|(_, span)| span);
-            self.pictures = (0..).zip(spans.take(n)).collect();
-        } else if self.n_before_gap.is_none() && !self.has_all_pictures() {
-            // The first number of a program that does not count from 0.
-            let first = self.pictures.keys().next().copied().unwrap_or(0);
-            let pictures = std::mem::take(&mut self.pictures).into_iter();
-            self.pictures = pictures.map(|(number, span)| (number - first, span)).collect();
+        for pictures in [&mut self.pictures, &mut self.depths] {
+            pictures.n_before_gap.get_or_insert(pictures.numbered.len());
         }
     }
 
-    fn has_all_pictures(&self) -> bool {
-        let mut frames = self.frames.iter();
-        frames.all(|frame| self.pictures.contains_key(&frame.picture))
+    /// Numbers pictures and depths.
+    pub(super) fn number_pictures(&mut self) {
+        let frames = self.frames.iter();
+        self.pictures.number(frames.clone().map(|frame| frame.picture.1));
+        self.depths
+            .number(frames.filter_map(|frame| Some(frame.depth.as_ref()?.1)));
+    }
+
+    /// Path and position of the pictures and depths of a frame; `None` if one is lost.
+    fn spans_of(&self, frame: &FoundFrame) -> Option<Vec<(String, Span)>> {
+        let picture = (&frame.picture, &self.pictures);
+        let depth = frame.depth.as_ref().map(|depth| (depth, &self.depths));
+        let all = std::iter::once(picture).chain(depth);
+        all.map(|((path, number), pictures)| Some((path.clone(), *pictures.spans.get(number)?)))
+            .collect()
+    }
+
+    /// Path and position of all pictures and depths.
+    pub(super) fn picture_spans(&self) -> impl Iterator<Item = (String, Span)> + '_ {
+        let of_frames = self.frames.iter();
+        of_frames.filter_map(|frame| self.spans_of(frame)).flatten()
     }
 
     /// Adds the losses that only the whole shows: missing chunks and files, missing pictures of
@@ -256,8 +290,8 @@ impl Found {
             self.losses.push(Loss::Files { n_files, n_written });
         }
         let n_frames = self.frames.len();
-        self.frames
-            .retain(|frame| self.pictures.contains_key(&frame.picture));
+        let frames = std::mem::take(&mut self.frames).into_iter();
+        self.frames = frames.filter(|frame| self.spans_of(frame).is_some()).collect();
         if self.frames.len() < n_frames {
             let n_frames = u32::try_from(n_frames - self.frames.len()).unwrap_or(u32::MAX);
             self.losses.push(Loss::Pictures { n_frames });
@@ -296,14 +330,14 @@ impl<'a> Read<'a> {
                 }
                 Self::Session(Box::new(session))
             }
-            Topic::Image => Self::Image(image_file(message.data)?),
+            Topic::Image | Topic::Depth => Self::Image(image_file(message.data)?),
             Topic::Frame => {
                 let frame: FrameMessage = serde_json::from_slice(message.data).ok()?;
                 let entry = frame.entry.get().to_owned();
-                let named: NamedPicture = serde_json::from_str(&entry).ok()?;
+                let named: NamedPictures = serde_json::from_str(&entry).ok()?;
                 Self::Frame(FoundFrame {
-                    path: named.image,
-                    picture: frame.picture,
+                    picture: (named.image, frame.picture),
+                    depth: named.depth.zip(frame.depth),
                     entry,
                 })
             }

@@ -20,6 +20,8 @@ const N_ITEMS: usize = 256;
 const MAX_BYTES: u64 = 48 << 20;
 /// Path of the toy.
 const TOY: &str = "toy.glb";
+/// Path of the mesh of the place.
+const PLACE_MESH: &str = "place.glb";
 
 /// A recording to write, on a thread of the caller, which has the file.
 #[derive(Debug)]
@@ -117,11 +119,15 @@ impl RecordingJob {
                 // The probe's pictures are not kept: a replay estimates the lights from the toy's
                 // shadow alone.
                 probe: &[],
+                place_mesh: Some(PLACE_MESH),
             },
         ));
         let index = json!(index).to_string();
         let begun = Writer::new(sink, &index, options.device, options.limits).and_then(|mut writer| {
             writer.file(0, TOY, options.toy)?;
+            if let Some(mesh) = &self.scene.place_mesh {
+                writer.file(0, PLACE_MESH, &mesh.to_glb())?;
+            }
             for (plate, path) in self.scene.plates.iter().zip(&paths) {
                 writer.file(0, path, &png(&plate.image)?)?;
             }

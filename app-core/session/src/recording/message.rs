@@ -21,12 +21,16 @@ pub(super) struct SessionMessage {
 pub(super) struct FrameMessage<'a> {
     /// Number of its picture.
     pub(super) picture: u32,
+    /// Number of its depths, if they are in the recording.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) depth: Option<u32>,
     #[serde(borrow)]
     pub(super) entry: &'a RawValue,
 }
 
 /// The part of a frame's entry that the reader needs.
 #[derive(Deserialize)]
-pub(super) struct NamedPicture {
+pub(super) struct NamedPictures {
     pub(super) image: String,
+    pub(super) depth: Option<String>,
 }

@@ -7,8 +7,8 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
 use serde_json::json;
 
-use super::codec::PictureCodec;
-use super::entry::LiveFrame;
+use super::codec::{PictureCodec, depth_png};
+use super::entry::{LiveFrame, LivePaths};
 use super::error::WriteError;
 use super::topics::Topic;
 use super::writer::{Flushed, Picture, Writer};
@@ -57,7 +57,7 @@ impl Item {
             Self::Session(text) => text.len(),
             Self::File { path, bytes } => path.len() + bytes.len(),
             Self::Frame { picture, entry } => picture.len() + entry.len(),
-            Self::Live(live) => live.image.n_bytes(),
+            Self::Live(live) => return live.n_bytes(),
             Self::Note { message, .. } => message.len(),
             Self::Tick { .. } => 0,
         };
@@ -157,8 +157,18 @@ struct LiveEncoder {
     codec: PictureCodec,
     /// The toy of their clips.
     toy: Arc<Toy>,
-    /// The latest picture with its number and its path.
-    latest: Option<(CameraImage, u32, String)>,
+    /// The latest picture with the number and the path of itself and of its depths.
+    latest: Option<LatestPicture>,
+    n_depths: u32,
+}
+
+/// A picture that was written.
+#[derive(Debug)]
+struct LatestPicture {
+    image: CameraImage,
+    number: u32,
+    depth_number: Option<u32>,
+    paths: LivePaths,
 }
 
 /// The output end of the queue.
@@ -179,6 +189,7 @@ impl RecordingReceiver {
             codec,
             toy,
             latest: None,
+            n_depths: 0,
         });
     }
 
@@ -239,21 +250,35 @@ impl RecordingReceiver {
             encoder.ok_or_else(|| WriteError::Picture("live frames are not accepted".to_owned()))?;
         let time_secs = 1e-9 * time_ns as f64;
         let before = encoder.latest.as_ref();
-        if let Some((_, number, path)) = before.filter(|(image, ..)| image.is(&live.image)) {
-            let entry = json!(live.entry(time_secs, path, &encoder.toy)).to_string();
-            return writer.frame(time_ns, Picture::Again(*number), &entry).map(|_| ());
+        if let Some(same) = before.filter(|before| before.image.is(&live.image)) {
+            let entry = json!(live.entry(time_secs, &same.paths, &encoder.toy)).to_string();
+            let depth = same.depth_number.map(Picture::Again);
+            let written = writer.frame_with_depth(time_ns, Picture::Again(same.number), depth, &entry);
+            return written.map(|_| ());
         }
         let file = encoder.codec.encode(&live.image)?;
-        let number = before.map_or(0, |(_, number, _)| number + 1);
+        let depth_file = live.depth.as_ref().map(depth_png).transpose()?;
+        let number = before.map_or(0, |before| before.number + 1);
         let ending = if file.starts_with(JPEG_MAGIC) {
             "jpg"
         } else {
             "png"
         };
-        let path = format!("frames/{number:06}.{ending}");
-        let entry = json!(live.entry(time_secs, &path, &encoder.toy)).to_string();
-        let number = writer.frame(time_ns, Picture::New(&file), &entry)?;
-        encoder.latest = Some((live.image.clone(), number, path));
+        let n_depths = encoder.n_depths;
+        let paths = LivePaths {
+            picture: format!("frames/{number:06}.{ending}"),
+            depth: depth_file.is_some().then(|| format!("depths/{n_depths:06}.png")),
+        };
+        let entry = json!(live.entry(time_secs, &paths, &encoder.toy)).to_string();
+        let depth = depth_file.as_deref().map(Picture::New);
+        let (number, depth_number) = writer.frame_with_depth(time_ns, Picture::New(&file), depth, &entry)?;
+        encoder.n_depths += u32::from(depth_number.is_some());
+        encoder.latest = Some(LatestPicture {
+            image: live.image.clone(),
+            number,
+            depth_number,
+            paths,
+        });
         Ok(())
     }
 

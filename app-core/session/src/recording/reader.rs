@@ -20,7 +20,7 @@ use crate::{FileError, Files, INDEX_FILE, MAX_INDEX_BYTES, check_path};
 pub struct Recording {
     source: Box<dyn Source>,
     index: Vec<u8>,
-    /// Pictures of frames come before attached files.
+    /// Pictures and depths of frames come before attached files.
     spans: BTreeMap<String, Span>,
     n_frames: usize,
     device: BTreeMap<String, String>,
@@ -49,10 +49,7 @@ impl Recording {
         let Some(index) = index_of(&session.session, &found) else {
             return Err(RecordingError::NoSession { losses: found.losses });
         };
-        let pictures = found.frames.iter().filter_map(|frame| {
-            let span = found.pictures.get(&frame.picture)?;
-            Some((frame.path.clone(), *span))
-        });
+        let pictures: Vec<(String, Span)> = found.picture_spans().collect();
         let mut spans = found.files;
         spans.extend(pictures);
         spans.remove(INDEX_FILE);

@@ -15,6 +15,8 @@ pub enum Topic {
     Session,
     /// Camera pictures, `foxglove.CompressedImage`.
     Image,
+    /// Depths of frames, `foxglove.CompressedImage`.
+    Depth,
     /// Projection of a frame's camera, `foxglove.CameraCalibration`.
     Calibration,
     /// Poses of camera and toy, `foxglove.FrameTransform`.
@@ -37,9 +39,10 @@ pub enum Topic {
 
 impl Topic {
     /// All topics; a channel's id and its schema's are its position here, counted from 1.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Session,
         Self::Image,
+        Self::Depth,
         Self::Calibration,
         Self::Transform,
         Self::Frame,
@@ -66,6 +69,7 @@ impl Topic {
         match self {
             Self::Session => "/session",
             Self::Image => "/camera/image",
+            Self::Depth => "/camera/depth",
             Self::Calibration => "/camera/calibration",
             Self::Transform => "/tf",
             Self::Frame => "/frame",
@@ -91,7 +95,7 @@ impl Topic {
 
     fn descriptor(self) -> Option<&'static Descriptor> {
         match self {
-            Self::Image => Some(&COMPRESSED_IMAGE),
+            Self::Image | Self::Depth => Some(&COMPRESSED_IMAGE),
             Self::Calibration => Some(&CAMERA_CALIBRATION),
             Self::Transform => Some(&FRAME_TRANSFORM),
             _ => None,
@@ -108,7 +112,7 @@ impl Topic {
             ),
             Self::Frame => (
                 "shadow_capture.Frame",
-                "An entry of a session's frames, and the sequence number of its picture on /camera/image.",
+                "An entry of a session's frames, the sequence number of its picture on /camera/image, and that of its depths on /camera/depth.",
                 &["picture", "entry"],
             ),
             Self::Planes => ("shadow_capture.Planes", "Planes that the platform tracks.", &[]),

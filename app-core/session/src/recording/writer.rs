@@ -70,6 +70,17 @@ pub enum Picture<'a> {
     Again(u32),
 }
 
+impl<'a> Picture<'a> {
+    /// The file of a new one, and its number, `n` after those before it.
+    fn numbered(self, n: u32) -> Result<(Option<&'a [u8]>, u32), WriteError> {
+        match self {
+            Self::New(bytes) => Ok((Some(bytes), n)),
+            Self::Again(sequence) if sequence < n => Ok((None, sequence)),
+            Self::Again(sequence) => Err(WriteError::NoSuchPicture { sequence }),
+        }
+    }
+}
+
 /// Writes one recording.
 ///
 /// Flushed data can be read whatever happens to the process. Dropping a writer ends the file
@@ -88,6 +99,7 @@ pub struct Writer<W> {
     n_bytes: u64,
     n_frames: u32,
     n_pictures: u32,
+    n_depths: u32,
     flushed: Flushed,
 }
 
@@ -119,6 +131,7 @@ impl<W: Write> Writer<W> {
             n_bytes: 0,
             n_frames: 0,
             n_pictures: 0,
+            n_depths: 0,
             flushed: Flushed::default(),
         };
         let header = Body::new().text("shadow-capture");
@@ -187,16 +200,31 @@ impl<W: Write> Writer<W> {
     /// When the entry is no JSON object, the picture is too large or was never recorded, or writing
     /// has ended or ends with this call.
     pub fn frame(&mut self, time_ns: u64, picture: Picture, entry: &str) -> Result<u32, WriteError> {
+        let (picture, _) = self.frame_with_depth(time_ns, picture, None, entry)?;
+        Ok(picture)
+    }
+
+    /// Adds a frame with its depths, a PNG, which are counted apart from pictures: the entry names
+    /// both. Returns the numbers of picture and depths.
+    ///
+    /// # Errors
+    /// As [`Self::frame`].
+    pub fn frame_with_depth(
+        &mut self,
+        time_ns: u64,
+        picture: Picture,
+        depth: Option<Picture>,
+        entry: &str,
+    ) -> Result<(u32, Option<u32>), WriteError> {
         self.check()?;
         let raw = object("a frame's entry", entry)?;
         let shape: EntryShape = serde_json::from_str(entry).unwrap_or_default();
-        let (bytes, sequence) = match picture {
-            Picture::New(bytes) => (bytes, self.n_pictures),
-            Picture::Again(sequence) if sequence < self.n_pictures => (&[][..], sequence),
-            Picture::Again(sequence) => return Err(WriteError::NoSuchPicture { sequence }),
-        };
+        let (bytes, number) = picture.numbered(self.n_pictures)?;
+        let depth = depth.map(|depth| depth.numbered(self.n_depths)).transpose()?;
+        let depth_number = depth.map(|(_, number)| number);
         let message = FrameMessage {
-            picture: sequence,
+            picture: number,
+            depth: depth_number,
             entry: raw,
         };
         let message = serde_json::to_vec(&message).map_err(|error| json_error("a frame's entry", &error))?;
@@ -204,12 +232,15 @@ impl<W: Write> Writer<W> {
         let transforms = viewer::transforms(time_ns, &self.shape, &shape);
         // Headers and a viewer's messages are far smaller.
         const ROOM: u64 = 4096;
-        self.make_room(time_ns, (bytes.len() + message.len()) as u64 + ROOM)?;
+        let pictures = [(Topic::Image, Some((bytes, number))), (Topic::Depth, depth)];
+        let pictures = pictures.map(|(topic, picture)| Some((topic, picture?.0?, picture?.1)));
+        let n_bytes: usize = pictures.iter().flatten().map(|(_, bytes, _)| bytes.len()).sum();
+        self.make_room(time_ns, (n_bytes + message.len()) as u64 + ROOM)?;
         let n_frames = self.n_frames;
         let chunk = self.open_chunk(time_ns)?;
-        if matches!(picture, Picture::New(_)) {
+        for (topic, bytes, number) in pictures.into_iter().flatten() {
             let image = viewer::compressed_image(time_ns, bytes);
-            chunk.message(Topic::Image, sequence, time_ns, &image);
+            chunk.message(topic, number, time_ns, &image);
         }
         if let Some(calibration) = calibration {
             chunk.message(Topic::Calibration, n_frames, time_ns, &calibration);
@@ -219,9 +250,10 @@ impl<W: Write> Writer<W> {
         }
         chunk.message(Topic::Frame, n_frames, time_ns, &message);
         self.n_frames += 1;
-        self.n_pictures = self.n_pictures.max(sequence + 1);
+        self.n_pictures = self.n_pictures.max(number + 1);
+        self.n_depths = depth_number.map_or(self.n_depths, |number| self.n_depths.max(number + 1));
         self.close_if_due(time_ns)?;
-        Ok(sequence)
+        Ok((number, depth_number))
     }
 
     /// Adds a message to one of the channels for arbitrary JSON objects ([`Topic::NOTES`]).

@@ -5,8 +5,7 @@ use std::process::ExitCode;
 
 use app_core::session::Session;
 use clap::Parser;
-use desk::files::Folder;
-use desk::import::{Format, Lacking, Written, read, write};
+use desk::import::{Format, Lacking, Source, Written, read, write};
 use desk::program::exit_code;
 
 /// Convert another program's recording to a session. The program asks by name for each value that
@@ -16,7 +15,7 @@ use desk::program::exit_code;
 struct Args {
     /// Format of the recording
     format: Format,
-    /// Folder of the recording
+    /// Folder of the recording, or a .r3d of Record3D
     recording: PathBuf,
     /// Folder of the session to write, which must not exist yet
     out: PathBuf,
@@ -29,11 +28,11 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {
-    let folder = Folder::open(&args.recording)?;
-    let imported = read(args.format, &folder, &folder.paths()?, args.lacking.object)?;
+    let files = Source::open(&args.recording)?;
+    let imported = read(args.format, &files, &files.paths()?, args.lacking.object)?;
     let recording = args.recording.canonicalize()?;
     let name = recording.file_name().unwrap_or_default().to_string_lossy();
-    let Written { capture, notes } = write(&name, &folder, &imported, &args.lacking, &args.out)?;
+    let Written { capture, notes } = write(&name, &files, &imported, &args.lacking, &args.out)?;
     for note in notes {
         println!("note: {note}");
     }

@@ -73,6 +73,7 @@ pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyh
     };
     findings.wrong.extend(messages(capture.warnings()));
     findings.facts.extend(sense::without(capture.scene()));
+    findings.facts.extend(sense::place_mesh(capture.scene()));
     findings.wrong.extend(sense::wrong(capture.scene()));
     let frames = (0..capture.n_frames()).map(|index| (index, capture.frame(index)));
     for (index, frame) in frames {

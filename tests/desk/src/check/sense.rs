@@ -27,6 +27,18 @@ pub(super) fn without(scene: &Scene) -> Vec<String> {
     facts
 }
 
+/// The mesh of the place.
+pub(super) fn place_mesh(scene: &Scene) -> Option<String> {
+    let mesh = scene.place_mesh.as_ref()?;
+    let deviation = mesh.deviation_m().map_or(String::new(), |deviation_m| {
+        format!(" with a deviation of {:.1} mm", 1e3 * deviation_m)
+    });
+    Some(format!(
+        "place_mesh: {} triangles{deviation}: planes of things are searched close to it",
+        mesh.triangles().len()
+    ))
+}
+
 /// The depths of the first frame.
 pub(super) fn depth(frame: &SessionFrame) -> Option<String> {
     let depth = frame.depth.as_ref()?;

@@ -2,43 +2,121 @@
 
 use std::io::Cursor;
 
+use app_core::depth::millimetres;
 use app_core::session::Files;
-use image::{DynamicImage, ImageFormat, ImageReader, Limits};
+use image::{DynamicImage, GrayImage, ImageBuffer, ImageFormat, ImageReader, Limits, Luma};
 
 use super::error::{ImportError, ImportReason};
-use super::imported::ImportedDepth;
+use super::imported::{DepthEncoding, ImportedDepth};
 use super::pictures::{MAX_FILE_BYTES, read};
 
 /// Confidence of ARKit from which on a depth counts: medium.
 const LEAST_CONFIDENCE: u8 = 1;
 
+/// Depths in millimetres, 0 if unknown.
+type Depths = ImageBuffer<Luma<u16>, Vec<u16>>;
+
 impl ImportedDepth {
+    /// Path of its file in a session.
+    pub(super) fn path(&self) -> String {
+        match self.encoding {
+            DepthEncoding::Png => self.file.clone(),
+            DepthEncoding::Floats { .. } => format!("{}.png", self.file),
+        }
+    }
+
     /// The bytes of its file in a session.
     pub(super) fn png(&self, files: &dyn Files) -> Result<Vec<u8>, ImportError> {
-        let bytes = read(files, &self.image)?;
-        let Some(confidence) = &self.confidence else {
+        let bytes = read(files, &self.file)?;
+        if self.encoding == DepthEncoding::Png && self.confidence.is_none() {
             return Ok(bytes);
-        };
-        let wrong = |path: &str| ImportError::new(path, "the file", ImportReason::NotDepths);
-        let DynamicImage::ImageLuma16(mut depths) = decoded(bytes).ok_or_else(|| wrong(&self.image))? else {
-            return Err(wrong(&self.image));
-        };
-        let Some(DynamicImage::ImageLuma8(confidences)) = decoded(read(files, confidence)?) else {
-            return Err(wrong(confidence));
-        };
-        if confidences.dimensions() != depths.dimensions() {
-            return Err(wrong(confidence));
         }
-        for (depth, confidence) in depths.pixels_mut().zip(confidences.pixels()) {
-            if confidence.0[0] < LEAST_CONFIDENCE {
-                depth.0[0] = 0;
+        let wrong = |path: &str| ImportError::new(path, "the file", ImportReason::NotDepths);
+        let mut depths = self.depths(bytes).ok_or_else(|| wrong(&self.file))?;
+        if let Some(path) = &self.confidence {
+            let confidences = self.confidences(read(files, path)?);
+            let confidences = confidences.filter(|map| map.dimensions() == depths.dimensions());
+            let confidences = confidences.ok_or_else(|| wrong(path))?;
+            for (depth, confidence) in depths.pixels_mut().zip(confidences.pixels()) {
+                if confidence.0[0] < LEAST_CONFIDENCE {
+                    depth.0[0] = 0;
+                }
             }
         }
         let mut png = Cursor::new(Vec::new());
         depths
             .write_to(&mut png, ImageFormat::Png)
-            .map_err(|_| wrong(&self.image))?;
+            .map_err(|_| wrong(&self.file))?;
         Ok(png.into_inner())
+    }
+
+    fn depths(&self, bytes: Vec<u8>) -> Option<Depths> {
+        match self.encoding {
+            DepthEncoding::Png => match decoded(bytes)? {
+                DynamicImage::ImageLuma16(depths) => Some(depths),
+                _ => None,
+            },
+            DepthEncoding::Floats {
+                size_px: [width, height],
+            } => {
+                let bytes = unpacked(bytes, u64::from(width) * u64::from(height) * 4)?;
+                let (metres, _) = bytes.as_chunks::<4>();
+                let metres = metres.iter().map(|bytes| f32::from_le_bytes(*bytes));
+                ImageBuffer::from_raw(width, height, metres.map(millimetres).collect())
+            }
+        }
+    }
+
+    fn confidences(&self, bytes: Vec<u8>) -> Option<GrayImage> {
+        match self.encoding {
+            DepthEncoding::Png => match decoded(bytes)? {
+                DynamicImage::ImageLuma8(confidences) => Some(confidences),
+                _ => None,
+            },
+            DepthEncoding::Floats {
+                size_px: [width, height],
+            } => {
+                let bytes = unpacked(bytes, u64::from(width) * u64::from(height))?;
+                ImageBuffer::from_raw(width, height, bytes)
+            }
+        }
+    }
+}
+
+/// Bytes that are `n_bytes` long, compressed by LZFSE if they are not so yet.
+fn unpacked(bytes: Vec<u8>, n_bytes: u64) -> Option<Vec<u8>> {
+    if bytes.len() as u64 == n_bytes {
+        return Some(bytes);
+    }
+    // A few bytes may stand for many: the decoder stops at the expected number.
+    let mut unpacked = Vec::new();
+    let mut source = &bytes[..];
+    let mut decoder = lzfse_rust::LzfseRingDecoder::default();
+    let mut sink = Bounded {
+        bytes: &mut unpacked,
+        n_bytes,
+    };
+    decoder.decode(&mut source, &mut sink).ok()?;
+    (unpacked.len() as u64 == n_bytes).then_some(unpacked)
+}
+
+/// A sink that refuses more than a number of bytes.
+struct Bounded<'a> {
+    bytes: &'a mut Vec<u8>,
+    n_bytes: u64,
+}
+
+impl std::io::Write for Bounded<'_> {
+    fn write(&mut self, more: &[u8]) -> std::io::Result<usize> {
+        if (self.bytes.len() + more.len()) as u64 > self.n_bytes {
+            return Err(std::io::ErrorKind::FileTooLarge.into());
+        }
+        self.bytes.extend_from_slice(more);
+        Ok(more.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
     }
 }
 

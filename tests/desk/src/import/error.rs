@@ -26,6 +26,9 @@ pub enum ImportReason {
     /// The text is no JSON, or not that of the format.
     #[error("{0}")]
     Json(#[from] serde_json::Error),
+    /// A value out of range.
+    #[error(transparent)]
+    Field(FieldError),
     /// The file is not text.
     #[error("not UTF-8")]
     NotText,
@@ -109,7 +112,7 @@ pub enum ImportReason {
     NotAPicture,
     /// Depths or confidences of another kind.
     #[error(
-        "not what a depth sensor's picture is: grey PNGs of 16 bit for depths and of 8 bit for confidences, of one size"
+        "not what a depth sensor's picture is: grey PNGs of 16 bit for depths and of 8 bit for confidences, of one size; or the .depth and .conf of Record3D, of its dw x dh"
     )]
     NotDepths,
     /// A picture whose size differs from the first.

@@ -12,7 +12,7 @@ use super::{bop, colmap, nerfstudio, record3d, stray_scanner};
 pub enum Format {
     /// A folder with `transforms.json`.
     Nerfstudio,
-    /// A folder with `metadata` or `metadata.json` and pictures in `rgbd`, `rgb` or beside it.
+    /// A .r3d, or a folder with `metadata` or `metadata.json` and pictures in `rgbd`, `rgb` or beside it.
     #[value(name = "record3d")]
     Record3d,
     /// A folder with `odometry.csv`, `camera_matrix.csv` and the video's frames in `rgb`.

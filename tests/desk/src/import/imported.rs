@@ -11,13 +11,27 @@ pub(super) const MAX_FRAMES: usize = 100_000;
 /// Limit for focal lengths, image coordinates and metres.
 pub(super) const MAX_NUMBER: f64 = 1e6;
 
-/// Depths of a frame: grey PNGs.
+/// Depths of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImportedDepth {
-    /// Path of the depths in millimetres, of 16 bit; 0 if unknown.
-    pub image: String,
+    /// Path of the depths.
+    pub file: String,
     /// Path of their confidences, of 8 bit; 0 if low.
     pub confidence: Option<String>,
+    /// Encoding of both.
+    pub encoding: DepthEncoding,
+}
+
+/// Encoding of depths and of their confidences.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthEncoding {
+    /// Grey PNGs: depths of 16 bit in millimetres, 0 if unknown.
+    Png,
+    /// LZFSE, or no compression: depths as floats of 32 bit in metres, little-endian.
+    Floats {
+        /// Width and height of both.
+        size_px: [u32; 2],
+    },
 }
 
 /// A camera frame of another format.

@@ -16,6 +16,7 @@ mod paths;
 mod pictures;
 mod ply;
 mod record3d;
+mod source;
 mod stray_scanner;
 mod values;
 mod write;
@@ -23,8 +24,9 @@ mod write_nerfstudio;
 
 pub use error::{ImportError, ImportReason};
 pub use formats::{Format, parse, read};
-pub use imported::{Imported, ImportedDepth, ImportedFrame};
+pub use imported::{DepthEncoding, Imported, ImportedDepth, ImportedFrame};
 pub use lens::Lens;
 pub use ply::glb_of_ply;
+pub use source::{Archive, Source};
 pub use write::{Lacking, PlateFrames, Written, write};
 pub use write_nerfstudio::write_transforms;

@@ -2,12 +2,14 @@
 //!
 //! Poses are quaternion (x, y, z, w), then position, with ARKit's camera axes; the world is that of
 //! the recording's start, so that up is unknown. `K` is column by column. There may be more poses
-//! than pictures.
+//! than pictures. A frame's depths are `.depth`, its confidences `.conf`, each compressed by LZFSE:
+//! `dw` x `dh` floats in metres, and as many bytes from 0, low, to 2; they show what the picture shows.
 
+use app_core::scene::check;
 use serde::Deserialize;
 
 use super::error::{ImportError, ImportReason};
-use super::imported::{Imported, ImportedFrame};
+use super::imported::{DepthEncoding, Imported, ImportedDepth, ImportedFrame};
 use super::lens::Lens;
 use super::paths::Known;
 use super::values::{number, ordered, pose, time_s as time, without_picture};
@@ -21,6 +23,8 @@ struct Metadata {
     matrix: Vec<f64>,
     w: Option<f64>,
     h: Option<f64>,
+    dw: Option<u32>,
+    dh: Option<u32>,
     fps: Option<f64>,
     poses: Vec<Vec<f64>>,
     #[serde(default, rename = "perFrameIntrinsicCoeffs")]
@@ -35,6 +39,7 @@ pub(super) fn parse(file: &str, text: &str, known: &Known) -> Result<Imported, I
     let n_poses = metadata.poses.len();
     let last_frame = n_poses.saturating_sub(1) as u64;
     let first_number = first_number(file, known, last_frame)?;
+    let depth_px = metadata.depth_px(file)?;
     let mut found = Vec::new();
     let mut missing = Vec::new();
     for index in 0..n_poses {
@@ -43,21 +48,31 @@ pub(super) fn parse(file: &str, text: &str, known: &Known) -> Result<Imported, I
             .into_iter()
             .flat_map(|folder| ["jpg", "png"].map(|kind| format!("{folder}{number}.{kind}")));
         match known.first(names) {
-            Some(image) => found.push((index, image)),
+            Some(image) => {
+                let depth = depth_px.and_then(|size_px| depth(number, size_px, known));
+                found.push((index, image, depth));
+            }
             None => missing.push(format!("rgbd/{number}.jpg")),
         }
     }
     let n_times = metadata.times_s.as_ref().map_or(0, Vec::len);
-    let has_times = found.last().is_some_and(|(last, _)| *last < n_times);
-    let frames = found
-        .into_iter()
-        .map(|(index, image)| metadata.frame(file, index, image, has_times));
+    let has_times = found.last().is_some_and(|(last, ..)| *last < n_times);
+    let found_depths = found
+        .iter()
+        .any(|(index, ..)| depth(*index as u64 + first_number, [0; 2], known).is_some());
+    let frames = found.into_iter().map(|(index, image, depth)| {
+        let frame = metadata.frame(file, index, image, has_times)?;
+        Ok(ImportedFrame { depth, ..frame })
+    });
     let frames = frames.collect::<Result<Vec<_>, _>>()?;
     let mut notes = Vec::from_iter(without_picture(&missing, n_poses));
     if n_times > 0 && !has_times {
         notes.push(format!(
             "frameTimestamps has {n_times} times for {n_poses} poses: none is used"
         ));
+    }
+    if depth_px.is_none() && found_depths {
+        notes.push("dw and dh are missing: depths are left out".to_owned());
     }
     if first_number > 0 {
         notes.push("the pictures are counted from 1".to_owned());
@@ -68,6 +83,16 @@ pub(super) fn parse(file: &str, text: &str, known: &Known) -> Result<Imported, I
         is_metric: true,
         recorded_from_object: None,
         notes,
+    })
+}
+
+/// The depths of a frame with that number.
+fn depth(number: u64, size_px: [u32; 2], known: &Known) -> Option<ImportedDepth> {
+    let named = |ending: &str| known.first(FOLDERS.map(|folder| format!("{folder}{number}.{ending}")));
+    Some(ImportedDepth {
+        file: named("depth")?,
+        confidence: named("conf"),
+        encoding: DepthEncoding::Floats { size_px },
     })
 }
 
@@ -90,6 +115,17 @@ fn first_number(file: &str, known: &Known, last_frame: u64) -> Result<u64, Impor
 }
 
 impl Metadata {
+    /// Size of the depths, if it is stated.
+    fn depth_px(&self, file: &str) -> Result<Option<[u32; 2]>, ImportError> {
+        let Some((width, height)) = self.dw.zip(self.dh) else {
+            return Ok(None);
+        };
+        match check::picture_size(width, height) {
+            Ok(()) => Ok(Some([width, height])),
+            Err(error) => Err(ImportError::new(file, "dw, dh", ImportReason::Field(error))),
+        }
+    }
+
     fn frame(
         &self,
         file: &str,

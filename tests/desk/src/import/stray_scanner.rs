@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use super::error::{ImportError, ImportReason};
-use super::imported::{Imported, ImportedDepth, ImportedFrame};
+use super::imported::{DepthEncoding, Imported, ImportedDepth, ImportedFrame};
 use super::lens::Lens;
 use super::paths::Known;
 use super::values::{OPENCV_FROM_CAMERA, number, ordered, pose, time_s, without_picture};
@@ -81,8 +81,9 @@ pub(super) fn parse(odometry: &str, matrix: Option<&str>, known: &Known) -> Resu
 /// The depths of a frame; the scanner counts them from 0.
 fn depth(frame: u64, known: &Known) -> Option<ImportedDepth> {
     Some(ImportedDepth {
-        image: known.first([format!("depth/{frame:06}.png")])?,
+        file: known.first([format!("depth/{frame:06}.png")])?,
         confidence: known.first([format!("confidence/{frame:06}.png")]),
+        encoding: DepthEncoding::Png,
     })
 }
 

@@ -1,5 +1,6 @@
 //! Writes a session from a recording of another format and from the arguments.
 
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -12,9 +13,10 @@ use app_core::toy::Toy;
 use glam::{DMat4, DQuat, DVec3};
 use serde::de::DeserializeOwned;
 
-use super::imported::{Imported, ImportedFrame};
+use super::imported::{Imported, ImportedDepth, ImportedFrame};
 use super::pictures::{Fitted, fit};
 use super::ply::glb_of_ply_file;
+use super::source::Source;
 use crate::files::{Folder, SESSION_FILE};
 use crate::output::{make_folder, write_whole};
 use crate::toy_file::read_toy;
@@ -191,7 +193,7 @@ pub struct Written {
 /// session.
 pub fn write(
     name: &str,
-    files: &Folder,
+    files: &Source,
     imported: &Imported,
     lacking: &Lacking,
     out: &Path,
@@ -235,19 +237,26 @@ pub fn write(
 }
 
 fn write_files(
-    files: &Folder,
+    files: &Source,
     imported: &Imported,
     fitted: &Fitted,
     (toy, index): (&[u8], CaptureRecord),
     out: &Path,
 ) -> anyhow::Result<Capture> {
     write_whole(&out.join("toy.glb"), toy)?;
+    let depths: HashSet<String> = index
+        .frames
+        .iter()
+        .filter_map(|frame| frame.depth.clone())
+        .collect();
     for (place, frame) in imported.frames.iter().enumerate() {
         let file = out.join(fitted.path(&frame.image));
         make_folder(file.parent().unwrap_or(out))?;
         write_whole(&file, &fitted.picture(files, imported, place)?)?;
-        if let Some(depth) = &frame.depth {
-            let file = out.join(&depth.image);
+        let depth = frame.depth.as_ref();
+        // A plate has none.
+        if let Some(depth) = depth.filter(|depth| depths.contains(&depth.path())) {
+            let file = out.join(depth.path());
             make_folder(file.parent().unwrap_or(out))?;
             write_whole(&file, &depth.png(files)?)?;
         }
@@ -302,6 +311,7 @@ fn index(
         backgrounds: plates.into_iter().map(plate).collect(),
         frames,
         probe: None,
+        place_mesh: None,
         uncertainty: None,
     })
 }
@@ -317,7 +327,7 @@ fn frames(imported: &Imported, fitted: &Fitted, lacking: &Lacking) -> anyhow::Re
         FrameRecord {
             time: times_s[place],
             image: fitted.path(&frame.image),
-            depth: frame.depth.as_ref().map(|depth| depth.image.clone()),
+            depth: frame.depth.as_ref().map(ImportedDepth::path),
             intrinsics: fitted.intrinsics.get(place).map(Into::into),
             world_from_camera: world_from_camera.to_cols_array(),
             ..FrameRecord::default()

@@ -369,6 +369,7 @@ fn capture_record(record: ShotRecord) -> Result<CaptureRecord, ShotError> {
         backgrounds: record.backgrounds,
         frames,
         probe: None,
+        place_mesh: None,
         uncertainty: record.uncertainty,
     })
 }

@@ -109,6 +109,7 @@ fn record(given: &Given, found: &Found, wanted: &Wanted) -> CaptureRecord {
             })
             .collect(),
         probe: None,
+        place_mesh: None,
         uncertainty: None,
     }
 }

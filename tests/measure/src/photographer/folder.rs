@@ -38,6 +38,7 @@ fn index(shot: &Shot) -> Index {
         toy: "toy.glb",
         plates: &["plate.png".to_owned()],
         probe: &(0..n_pictures).map(probe_file).collect::<Vec<_>>(),
+        place_mesh: None,
     };
     let frame = FrameRecord {
         image: "frame.png".to_owned(),

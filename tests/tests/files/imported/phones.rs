@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use app_core::session::Session;
-use desk::files::{BUNDLED_SESSION, Folder};
-use desk::import::{Format, ImportError, Imported, Lacking, Lens, parse, read, write, write_transforms};
+use desk::files::BUNDLED_SESSION;
+use desk::import::{
+    Format, ImportError, Imported, Lacking, Lens, Source, parse, read, write, write_transforms,
+};
 use desk::stored::Stored;
 use glam::{DMat4, DQuat, DVec3};
 use harness::bundled_session;
@@ -253,7 +255,7 @@ fn the_bundled_session_comes_back_from_nerfstudio() {
     let folder = Temporary::new("nerfstudio");
     let [there, back] = ["there", "back"].map(|name| folder.0.join(name));
     write_transforms(&Stored::open(BUNDLED_SESSION).unwrap(), &there).unwrap();
-    let files = Folder::open(&there).unwrap();
+    let files = Source::open(&there).unwrap();
     let imported = read(Format::Nerfstudio, &files, &files.paths().unwrap(), None).unwrap();
     let given = bundled_session();
     let error = write("llama", &files, &imported, &Lacking::default(), &back)

@@ -3,8 +3,8 @@
 use std::fs;
 
 use app_core::scene::Image;
-use desk::files::{BUNDLED_SESSION, Folder};
-use desk::import::{Format, Lacking, Written, read, write};
+use desk::files::BUNDLED_SESSION;
+use desk::import::{Format, Lacking, Source, Written, read, write};
 use desk::output::write_png;
 use harness::temporary::Temporary;
 
@@ -34,7 +34,7 @@ impl Small {
     }
 
     pub(crate) fn import(&self, format: Format, lacking: &Lacking) -> anyhow::Result<Written> {
-        let files = Folder::open(self.folder.0.join("recording")).unwrap();
+        let files = Source::open(&self.folder.0.join("recording")).unwrap();
         let imported = read(format, &files, &files.paths().unwrap(), lacking.object)?;
         write(
             "small",

@@ -2,6 +2,7 @@
 
 mod converted;
 mod damage;
+mod depths;
 mod killed;
 mod library;
 mod limits;

@@ -94,6 +94,7 @@ fn the_example_has_every_key_and_the_reader_takes_it() {
     let people = encode(&DynamicImage::new_luma8(256, 192), ImageFormat::Png);
     let files = [
         ("toy.glb", toy_glb(true)),
+        ("place.glb", toy_glb(true)),
         ("plate.png", photo.clone()),
         ("frame_0000.png", photo.clone()),
         ("frame_0001.png", photo.clone()),

@@ -41,6 +41,7 @@ impl Parts {
         let photo = DynamicImage::new_rgb8(2, 2);
         let files = [
             ("toy.glb", toy_glb(true)),
+            ("place.glb", toy_glb(true)),
             ("frame.png", encode(&photo, ImageFormat::Png)),
             ("plate.jpg", encode(&photo, ImageFormat::Jpeg)),
             (
@@ -138,6 +139,7 @@ pub(crate) fn good_index() -> Value {
             "facets": [{"at": 0.5, "slope_deg": 30}],
             "pictures": [{"image": "frame.png", "exposure_ratio": 0.25, "world_from_camera": IDENTITY,
                 "intrinsics": {"fx": 2.5, "fy": 2.5, "cx": 1.0, "cy": 1.0}}]},
+        "place_mesh": {"file": "place.glb", "deviation": 0.002},
         "uncertainty": {"toy": {"position": 0.002, "rotation_deg": 1}, "camera": {"position": 0, "rotation_deg": 0.5},
             "lights": {"direction_deg": 20, "distance_ratio": 1.5, "size_ratio": 2}}
     })

@@ -23,7 +23,7 @@ fn told(scene: &Scene) -> String {
             (&scene.name, scene.width_px, scene.height_px),
             (scene.world_from_object, &scene.physical_pose),
             (&scene.receivers, &scene.lights, plates),
-            (&probe.shape, pictures, &scene.uncertainty),
+            (&probe.shape, pictures, &scene.uncertainty, &scene.place_mesh),
         )
     )
 }
@@ -50,6 +50,7 @@ fn a_scene_comes_back() {
             toy: "toy.glb",
             plates: &["plate.jpg".to_owned()],
             probe: &["frame.png", "frame.png"].map(str::to_owned),
+            place_mesh: Some("place.glb"),
         };
         let intrinsics = given.frame(0).unwrap().camera.intrinsics;
         let mut record = CaptureRecord::new(given.scene(), &intrinsics, paths);

@@ -119,6 +119,7 @@ pub(crate) fn frame(id: u64, time_ns: i64, world_epoch: u32, tracking: Tracking)
         world_from_card: (tracking == Tracking::Normal).then_some(DMat4::IDENTITY),
         light_estimate: None,
         people: None,
+        depth: None,
         display: Display::default(),
     }
 }

@@ -1,4 +1,4 @@
-//! The part of a plate that shows something that the frame does not.
+//! The wrong part of a plate.
 
 use glam::IVec2;
 

@@ -1,0 +1,162 @@
+//! Depths of frames and the mesh of the place in recordings: counted and named apart from pictures,
+//! in the chunk of their frame.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use app_core::depth::Depth;
+use app_core::place_mesh::PlaceMesh;
+use app_core::recording::{
+    Ending, Item, Limits, LiveFrame, Loss, Picture, PictureCodec, Recording, RecordingJob, RecordingOptions,
+    WriteError, Writer,
+};
+use app_core::session::{Capture, Files, Session};
+use desk::convert::write;
+use desk::files::BUNDLED_SESSION;
+use desk::stored::Stored;
+use glam::{UVec2, Vec3};
+use harness::bundled_session;
+use harness::temporary::Temporary;
+
+use crate::recording::small::{CHUNK, open, records};
+
+/// Depths of the shape of the bundled session's pictures.
+fn depth(first_mm: u16) -> Depth {
+    let depths: Vec<u16> = (0..64 * 36).map(|index| first_mm + index % 7).collect();
+    Depth::new(UVec2::new(64, 36), depths).unwrap()
+}
+
+fn mesh() -> PlaceMesh {
+    let points = [Vec3::ZERO, Vec3::X, Vec3::Z, Vec3::new(0.5, 0.02, 0.5)];
+    PlaceMesh::new(points, [[0, 2, 1], [1, 2, 3]], Some(0.002)).unwrap()
+}
+
+/// Four frames: the second repeats the first one's picture, and the third has no depths.
+fn recorded() -> Vec<u8> {
+    let session = bundled_session();
+    let scene = session.scene().clone().with_place_mesh(Some(mesh()));
+    let frame = session.frame(0).unwrap();
+    let live = LiveFrame {
+        image: frame.image.clone().into(),
+        camera: frame.camera,
+        world_from_object: frame.world_from_object,
+        exposure: 1.0,
+        light_estimate: None,
+        depth: Some(depth(300)),
+        shown_pose: frame.shown_pose,
+        world_from_shown: None,
+    };
+    let other = LiveFrame {
+        image: session.scene().plates[0].image.clone().into(),
+        depth: None,
+        ..live.clone()
+    };
+    let last = LiveFrame {
+        depth: Some(depth(500)),
+        ..live.clone()
+    };
+    let (sender, job) = RecordingJob::new(1, scene, live.camera.intrinsics);
+    for (time_ns, frame) in [(0, live.clone()), (1, live), (2, other), (3, last)] {
+        sender.offer(time_ns, Item::Live(Box::new(frame))).unwrap();
+    }
+    drop(sender);
+    let toy = fs::read(format!("{BUNDLED_SESSION}/toy.glb")).unwrap();
+    let options = RecordingOptions {
+        toy: &toy,
+        codec: PictureCodec::PHONE,
+        device: BTreeMap::new(),
+        limits: Limits::APP,
+    };
+    let mut sink = Vec::new();
+    let outcome = job.run(&mut sink, options);
+    assert_eq!((outcome.n_frames, outcome.ending), (4, Ending::Asked));
+    sink
+}
+
+fn told(capture: &Capture) -> Vec<Option<Vec<u16>>> {
+    let frames = (0..capture.n_frames()).map(|index| capture.frame(index).unwrap());
+    let depths = frames.map(|frame| frame.depth.map(|depth| depth.depths_mm().to_vec()));
+    depths.collect()
+}
+
+#[test]
+fn depths_and_mesh_come_back_also_by_a_folder() {
+    let folder = Temporary::new("recorded-depths");
+    let [path, unpacked, again] = ["a.mcap", "folder", "b.mcap"].map(|name| folder.0.join(name));
+    fs::write(&path, recorded()).unwrap();
+    write(&Stored::open(&path).unwrap(), None, &unpacked).unwrap();
+    write(&Stored::open(&unpacked).unwrap(), None, &again).unwrap();
+    let [near, far] = [300, 500].map(|mm| Some(depth(mm).depths_mm().to_vec()));
+    for path in [&path, &unpacked, &again] {
+        let capture = Capture::open(Stored::open(path).unwrap()).unwrap();
+        capture.check_pictures(0..4).unwrap();
+        assert_eq!(told(&capture), [near.clone(), near.clone(), None, far.clone()]);
+        let read = capture.scene().place_mesh.as_ref().unwrap();
+        assert_eq!(
+            (read.triangles(), read.deviation_m()),
+            (mesh().triangles(), Some(0.002))
+        );
+        assert_eq!(read.points(), mesh().points());
+    }
+    let stored = Stored::open(&path).unwrap();
+    let paths = stored.paths().unwrap();
+    let depths: Vec<&String> = paths.iter().filter(|path| path.starts_with("depths/")).collect();
+    assert_eq!(depths, ["depths/000000.png", "depths/000001.png"]);
+}
+
+/// A recorder of before depths had a channel attached them like any other file.
+#[test]
+fn attached_depths_are_read() {
+    let mut writer = Writer::new(Vec::new(), "{}", BTreeMap::new(), Limits::default()).unwrap();
+    writer.file(0, "d.png", b"depths").unwrap();
+    writer
+        .frame(
+            0,
+            Picture::New(b"picture"),
+            r#"{"image":"a.png","depth":"d.png"}"#,
+        )
+        .unwrap();
+    let (bytes, _) = writer.finish().unwrap();
+    let recording = open(&bytes).unwrap();
+    assert_eq!((recording.n_frames(), recording.losses().len()), (1, 0));
+    assert_eq!(recording.read("d.png", 100).unwrap(), b"depths");
+}
+
+#[test]
+fn a_frame_whose_depths_are_lost_is_left_out_and_told() {
+    let entry = |image: &str, depth: &str| format!(r#"{{"image":"{image}","depth":"{depth}"}}"#);
+    let mut writer = Writer::new(Vec::new(), "{}", BTreeMap::new(), Limits::default()).unwrap();
+    let [picture, depth] = [b"picture", b"depths "].map(|bytes| Picture::New(bytes));
+    let written = writer.frame_with_depth(0, picture, Some(depth), &entry("a.png", "a-d.png"));
+    assert_eq!(written.unwrap(), (0, Some(0)));
+    // A chunk later, the depths are those of the frame before.
+    let again = Some(Picture::Again(0));
+    let written = writer.frame_with_depth(2_000_000_000, picture, again, &entry("b.png", "a-d.png"));
+    assert_eq!(written.unwrap(), (1, Some(0)));
+    let missing = writer.frame_with_depth(
+        3_000_000_000,
+        picture,
+        Some(Picture::Again(1)),
+        &entry("c", "c-d"),
+    );
+    assert_eq!(missing, Err(WriteError::NoSuchPicture { sequence: 1 }));
+    let (bytes, _) = writer.finish().unwrap();
+    let whole = open(&bytes).unwrap();
+    assert_eq!((whole.n_frames(), whole.losses()), (2, &[][..]));
+    assert_eq!(whole.read("a-d.png", 100).unwrap(), b"depths ");
+    assert_eq!(whole.read("b.png", 100).unwrap(), b"picture");
+
+    let mut damaged = bytes.clone();
+    let (_, first) = records(&bytes)
+        .into_iter()
+        .find(|(kind, _)| *kind == CHUNK)
+        .unwrap();
+    damaged[first.end - 20] ^= 1;
+    let left: Recording = open(&damaged).unwrap();
+    assert_eq!(left.n_frames(), 0, "{:?}", left.losses());
+    let lost = left
+        .losses()
+        .iter()
+        .any(|loss| matches!(loss, Loss::Pictures { n_frames: 1 }));
+    assert!(lost, "{:?}", left.losses());
+}
