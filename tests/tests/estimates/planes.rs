@@ -64,7 +64,7 @@ fn painted(planes: &[(DMat4, DVec2)], paint: &Paint) -> (Scene, Shot) {
         .extend(planes.iter().map(|(world_from_plane, half_extent_m)| Ground {
             world_from_plane: *world_from_plane,
             half_extent_m: *half_extent_m,
-            paint: paint.clone(),
+            paint: *paint,
         }));
     let shot = Shot::of(&world).unwrap();
     let mut scene = shot.scene.clone();

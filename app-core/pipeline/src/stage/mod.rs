@@ -440,18 +440,7 @@ impl Stage {
             people: self.people.marks(),
         };
         method.encode(recorder, &self.toy, &pictures, delta);
-        if delta.keeps_pose() {
-            report.skipped.push(SkippedWork {
-                what: "shadows of the shown pose",
-                reason: "it is the one that is there",
-            });
-        }
-        if change < Change::View && keeps_sharpness {
-            report.skipped.push(SkippedWork {
-                what: "capture path",
-                reason: "scene, pose and camera are known",
-            });
-        }
+        report.skipped.extend(skipped(delta));
         report.skipped.extend_from_slice(method.skipped());
         report.region = Some(method.region());
         report.change = Some(change);
@@ -492,4 +481,18 @@ impl Stage {
     fn size_px(&self) -> UVec2 {
         UVec2::new(self.scene.width_px, self.scene.height_px)
     }
+}
+
+/// Work that a frame does not need.
+fn skipped(delta: FrameDelta) -> impl Iterator<Item = SkippedWork> {
+    let pose = delta.keeps_pose().then_some(SkippedWork {
+        what: "shadows of the shown pose",
+        reason: "it is the one that is there",
+    });
+    let is_known = delta.change < Change::View && delta.keeps_sharpness;
+    let capture = is_known.then_some(SkippedWork {
+        what: "capture path",
+        reason: "scene, pose and camera are known",
+    });
+    pose.into_iter().chain(capture)
 }
