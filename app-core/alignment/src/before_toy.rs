@@ -2,7 +2,7 @@
 //! outline is then not its own, and no pose fits, or a blur seems to.
 
 use super::Aligner;
-use super::photograph::MOST_OUTLINE_PX;
+use super::photograph::{MOST_OUTLINE_PX, Photograph};
 use super::view::Seen;
 use app_scene::frame::FrameInput;
 use app_scene::scene::Light;
@@ -20,8 +20,7 @@ impl Aligner {
         lights: &[Light],
     ) -> Result<Seen, ToyError> {
         let is_trusted = seen.view.is_trusted(MOST_OUTLINE_PX);
-        let is_sharp = seen.view.sharpness.outline_spread == seen.view.sharpness.plate_spread;
-        if self.are_shadows_withheld || seen.view.report.is_none() || (is_trusted && is_sharp) {
+        if self.are_shadows_withheld || seen.view.report.is_none() || (is_trusted && is_sharp(&seen)) {
             return Ok(seen);
         }
         let sighted = seen
@@ -31,14 +30,21 @@ impl Aligner {
         let Some(misleading) = misleading.filter(Things::has_any) else {
             return Ok(seen);
         };
-        let clear = seen.photograph.clear_of(&misleading);
         let as_given = seen.input.clone().with_world_from_object(input.world_from_object);
+        // The first look made the plate as soft as the outline seemed.
+        let clear = Photograph::new(&self.scene, &as_given, None).clear_of(&misleading);
         let again = self.posed(clear, input, (as_given, seen.view.camera_report))?;
-        if !again.view.is_trusted(MOST_OUTLINE_PX) {
+        if !again.view.is_trusted(MOST_OUTLINE_PX) || (is_trusted && !is_sharp(&again)) {
             return Ok(seen);
         }
         Ok(Seen::again(&self.scene, again.view, input))
     }
+}
+
+/// Whether the outline is no softer than the texture around it.
+fn is_sharp(seen: &Seen) -> bool {
+    let sharpness = &seen.view.sharpness;
+    sharpness.outline_spread == sharpness.plate_spread
 }
 
 /// Whether an outline at such a mark is not that of the toy before its plate.

@@ -23,6 +23,8 @@ pub(super) struct FoundReceiver {
 pub(super) struct FoundPlanes {
     found: Vec<FoundReceiver>,
     pub(super) report: Vec<PlaneAlignment>,
+    /// Number of those that were found before the latest search.
+    n_before: usize,
     n_searches: usize,
     /// Whether things in the place's own colours were searched.
     is_alike_searched: bool,
@@ -54,20 +56,30 @@ impl FoundPlanes {
     pub(super) fn take(&mut self, planes: Vec<FoundReceiver>) -> bool {
         self.n_searches += 1;
         let is_any = !planes.is_empty();
+        self.n_before = self.found.len();
         self.report.extend(planes.iter().map(|found| found.report));
         self.found.extend(planes);
         is_any
     }
 
-    /// Adds the planes to a scene, each once.
+    /// Adds all planes to a scene that has none of them.
     pub(super) fn add_to(&self, scene: &mut Arc<Scene>) {
-        for found in &self.found {
-            let receivers = &mut Arc::make_mut(scene).receivers;
-            let receiver = found.receiver.clone();
-            match found.instead_of.and_then(|index| receivers.get_mut(index)) {
-                Some(known) => *known = receiver,
-                None => receivers.push(receiver),
-            }
+        add(&self.found, scene);
+    }
+
+    /// Adds the planes of the latest search to the scene in which it searched.
+    pub(super) fn add_latest_to(&self, scene: &mut Arc<Scene>) {
+        add(&self.found[self.n_before..], scene);
+    }
+}
+
+fn add(found: &[FoundReceiver], scene: &mut Arc<Scene>) {
+    for found in found {
+        let receivers = &mut Arc::make_mut(scene).receivers;
+        let receiver = found.receiver.clone();
+        match found.instead_of.and_then(|index| receivers.get_mut(index)) {
+            Some(known) => *known = receiver,
+            None => receivers.push(receiver),
         }
     }
 }

@@ -223,8 +223,8 @@ impl Aligner {
         &self.scene
     }
 
-    /// The conditions of a search for things in the pictures that follow; `None` if the latest one does not show the
-    /// toy at its place.
+    /// The conditions of a search for things in the pictures that follow; `None` if the latest one
+    /// does not show the toy at its place, or if its shadows are withheld.
     #[must_use]
     pub fn conditions(&self) -> Option<Conditions> {
         let view = self.view.as_ref()?;
@@ -489,7 +489,7 @@ impl Aligner {
             scene: (!Arc::ptr_eq(&reported, &self.scene)).then(|| Arc::clone(&self.scene)),
             things: self.things.clone(),
             sharpness: view.map_or(input.sharpness, |view| view.sharpness),
-            grain: view.map_or(input.grain, |view| view.grain),
+            grain: input.grain.or(view.and_then(|view| view.grain)),
             gloss: self.gloss.unwrap_or(input.gloss),
             reflection: self.reflection.found.map(|found| found.reflection),
             report,

@@ -244,7 +244,7 @@ impl Aligner {
         if planes_of.is_none() || sighted.things.is_none() || !self.planes.take(sighted.planes) {
             return Ok(Looked::Things(sighted.things));
         }
-        self.planes.add_to(&mut self.scene);
+        self.planes.add_latest_to(&mut self.scene);
         Ok(Looked::Planes(Box::new(Seen::again(
             &self.scene,
             seen.view.clone(),

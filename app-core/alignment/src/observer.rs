@@ -103,7 +103,8 @@ impl Observer {
         // Without lights no highlight constrains it: a later frame may.
         self.gloss = (!lights.is_empty()).then_some(gloss);
         let input = input.clone().with_things(things).with_sharpness(sharpness);
-        let input = input.with_grain(grain);
+        let given = input.grain;
+        let input = input.with_grain(given.or(grain));
         let reflection = reflection.map(|found| found.reflection);
         Ok(input.with_reflection(reflection).with_gloss(gloss))
     }

@@ -48,7 +48,9 @@ impl Conditions {
     }
 
     fn is_like(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.scene, &other.scene) && self.lights == other.lights
+        Arc::ptr_eq(&self.scene, &other.scene)
+            && self.lights == other.lights
+            && self.reflection.is_some() == other.reflection.is_some()
     }
 }
 
@@ -112,7 +114,6 @@ impl ThingWatcher {
         if self.looked.as_ref().is_some_and(|known| known.is_like(&looked)) {
             return Ok(Watched::Unchanged);
         }
-        self.looked = Some(looked);
         let input = input.clone().with_camera(halved(&input.camera, small.n_halvings));
         let input = input.with_image(image);
         let scale = 0.25_f64.powi(small.n_halvings.cast_signed());
@@ -122,9 +123,9 @@ impl ThingWatcher {
             Some(found) => photograph.freed_of(&small.scene, &input, found)?,
             None => photograph,
         };
-        let before = self.memory.take();
-        let sighted = photograph.things(&small.scene, &input, &conditions.lights, (None, before.as_ref()))?;
-        self.memory = sighted.memory;
+        let before = (None, self.memory.as_ref());
+        let sighted = photograph.things(&small.scene, &input, &conditions.lights, before)?;
+        (self.looked, self.memory) = (Some(looked), sighted.memory);
         let is_same = |known: &Things| {
             sighted
                 .things

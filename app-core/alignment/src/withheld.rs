@@ -35,7 +35,8 @@ impl Aligner {
     }
 }
 
-/// The same, and the pixels of people, each grown by a pixel of their mask.
+/// A mask with the pixels of people, each grown by a pixel of theirs; the given one if there are
+/// none.
 pub(super) fn without_people(input: &FrameInput, withheld: Option<Mask>) -> Option<Mask> {
     let Some(people) = input.people.as_ref().filter(|people| people.has_any()) else {
         return withheld;

@@ -1,5 +1,6 @@
 //! Shadows in the picture: the toy projected onto each receiver from points over a light. A blurred
-//! picture's shadow is the mean over shifts in the picture as well: each point has its own.
+//! picture's shadow is the mean over shifts in the picture as well: each point of the light has its
+//! own shift. Planes of things and reflections are compared with sharp ones.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, IVec2};
 
@@ -235,6 +236,9 @@ impl<const N: usize> Point<N> {
 ///
 /// Source: the sequence R2 of Roberts 2018, and the transform of Box and Muller 1958.
 fn shifts(n: usize, deviation_px: f64) -> Vec<DVec2> {
+    if deviation_px == 0.0 {
+        return vec![DVec2::ZERO; n];
+    }
     /// Inverse powers of the plastic number.
     const STEPS: DVec2 = DVec2::new(0.754_877_666_246_693, 0.569_840_290_998_053);
     let shift = |index: usize| {

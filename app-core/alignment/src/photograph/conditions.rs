@@ -168,7 +168,8 @@ impl Photograph {
         Ok(gloss::gloss(&gloss::Look::new(&shape, &surfels, &lights)))
     }
 
-    /// Grain of the picture beside its plate, which is made as soft; `None` if the picture is clean.
+    /// Grain of the picture beside its plate, which is made as soft; `None` if the
+    /// picture is clean, or too large or without a plate, so that its grain is unknown.
     pub(crate) fn grain(&self, plate_spread: Spread) -> Option<Grain> {
         let level = self.pyramid.level(0);
         // The means of several pixels have less noise than the picture.

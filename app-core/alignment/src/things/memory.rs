@@ -12,7 +12,7 @@ use app_scene::scene::{Intrinsics, Light};
 use app_scene::things::Mark;
 
 /// Evidence that a thing needs, over that of a single picture: one that was marked in the previous
-/// picture, one that had at least that evidence there, and one that comes.
+/// picture, one that had half the evidence of a single picture there, and one that comes.
 const HELD: f32 = 0.5;
 const SEEN: f32 = 1.0;
 const NEW: f32 = 2.0;
@@ -101,13 +101,18 @@ impl Memory {
                 let point = before_from_camera.transform_point3(point);
                 self.place.intrinsics.pixel_of(point)
             });
+            // The previous picture may not have shown it.
             let index = there.and_then(|px| index_in(self.frame.size_px, px.floor().as_ivec2()));
-            let known = index.and_then(|index| self.known.get(index).copied());
-            counts[thing][known.unwrap_or_default() as usize] += 1;
+            if let Some(known) = index.and_then(|index| self.known.get(index)) {
+                counts[thing][*known as usize] += 1;
+            }
         }
         let needed = |[nothing, candidate, marked]: [u32; 3]| {
-            let least = SAME_PLACE * (nothing + candidate + marked) as f32;
-            if marked as f32 > least {
+            let n_shown = nothing + candidate + marked;
+            let least = SAME_PLACE * n_shown as f32;
+            if n_shown == 0 {
+                SEEN
+            } else if marked as f32 > least {
                 HELD
             } else if (candidate + marked) as f32 > least {
                 SEEN
@@ -120,14 +125,19 @@ impl Memory {
 
     /// Marks of the largest level of the next picture: as before where neither the picture nor
     /// light, toy and camera changed, up to the next change of a thing's outline.
-    pub(crate) fn steadied(&self, now: &Self, size_px: IVec2, marks: Vec<Mark>) -> Vec<Mark> {
+    /// A pixel of it has `per_px` of the level.
+    pub(super) fn steadied(
+        &self,
+        now: &Self,
+        (size_px, per_px): (IVec2, f64),
+        marks: Vec<Mark>,
+    ) -> Vec<Mark> {
         let (known_px, known) = &self.marks;
         let is_comparable = *known_px == size_px && self.frame.size_px == now.frame.size_px;
         if !is_comparable || !self.place.is_like(&now.place, self.frame.size_px) {
             return marks;
         }
         let has_changed = self.frame.changed(&now.frame);
-        let per_px = f64::from(self.frame.size_px.x) / f64::from(size_px.x);
         #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
         let reach_px = (SAME_OUTLINE_PX / per_px).round() as i32;
         let near = [known, &marks].map(|marks| {
@@ -162,8 +172,18 @@ impl Codes {
     /// Pixels that differ from those of another picture of the same size by more than noise.
     fn changed(&self, other: &Self) -> Mask {
         let both = self.pixels.iter().zip(&other.pixels);
-        let apart: Vec<f32> = both.map(|(a, b)| apart(*a, *b)).collect();
-        let noise = median(apart.iter().copied(), f32::total_cmp).unwrap_or(0.0);
+        let apart: Vec<f32> = both
+            .map(|(a, b)| match (a[0].is_nan(), b[0].is_nan()) {
+                (false, false) => apart(*a, *b),
+                (true, true) => 0.0,
+                _ => f32::INFINITY,
+            })
+            .collect();
+        let known = apart
+            .iter()
+            .zip(&self.pixels)
+            .filter(|(_, pixel)| !pixel[0].is_nan());
+        let noise = median(known.map(|(apart, _)| *apart), f32::total_cmp).unwrap_or(0.0);
         let least = CHANGED_CODES.max(OF_NOISE * noise);
         let mut changed = Mask::new(self.size_px);
         let unlike = places(self.size_px)

@@ -127,7 +127,10 @@ pub(crate) fn find(sight: &Sight<'_>) -> (Option<Sighting>, Option<Memory>) {
     }
     let (size_px, marks) = sight.marks(level, &found);
     let marks = match sight.memory {
-        Some(before) => before.steadied(&memory, size_px, marks),
+        Some(before) => {
+            let per_px = level.intrinsics.fx_px / sight.pyramid.level(0).intrinsics.fx_px;
+            before.steadied(&memory, (size_px, per_px), marks)
+        }
         None => marks,
     };
     let memory = memory.with_marks(size_px, &marks);
@@ -396,7 +399,8 @@ impl Toy {
     }
 
     /// Things in a level's frame alone. They are before the toy if they are visible beside it and
-    /// the toy does not look as expected, and beside it if they are large. `None` without any seeds. `seeds` are those of the plate.
+    /// the toy does not look as expected, and beside it if they are large. `None` without any
+    /// seeds. `seeds` are those of the plate.
     /// `needed` gives the evidence that each thing needs.
     fn in_frame(&self, seeds: &Seeds, frame: &Codes, needed: impl Fn(&Grown) -> Vec<f32>) -> Option<InFrame> {
         let within: Vec<IVec2> = self.coverage.pixels().filter(|at| self.is_within(*at)).collect();

@@ -1,5 +1,5 @@
-//! Things by exact points: what stands on the receiver under the toy, if pictures contradict that
-//! its light falls on the receiver.
+//! Finds things by exact points: they stand on the receiver under the toy, and the picture shows
+//! that the toy's shadow does not fall on the receiver there.
 //!
 //! Pictures alone show a thing by colours that differ from the place's; points also show one of the
 //! same material.

@@ -17,8 +17,8 @@ use app_scene::toy::PosedMesh;
 /// The people in the latest picture.
 #[derive(Default)]
 pub(super) struct Crowd {
-    /// The mask, its camera and the toy's place, from which the marks were made.
-    of: Option<(People, Camera, DMat4)>,
+    /// The mask, its camera, the toy's place and the parts of the picture, from which the marks were made.
+    of: Option<(People, Camera, DMat4, [PixelRect; 2])>,
     /// Corners of the physical toy in object space; empty until there is a mask.
     toy: Vec<DVec3>,
     /// `None` if nobody is near the toy.
@@ -41,16 +41,24 @@ impl Stage {
             (self.people.of, self.people.marks) = (None, None);
             return;
         };
-        let is_known = self.people.of.as_ref().is_some_and(|(known, camera, toy)| {
-            known.is(people) && *camera == input.camera && *toy == input.world_from_object
-        });
+        // What is learned and drawn so far may reach farther than this frame needs.
+        let drawn = self.state.as_ref().map(|state| state.method.region());
+        let parts = [footprint.region, drawn.unwrap_or(footprint.region)];
+        let is_known = self
+            .people
+            .of
+            .as_ref()
+            .is_some_and(|(known, camera, toy, in_parts)| {
+                let is_same_view = *camera == input.camera && *toy == input.world_from_object;
+                known.is(people) && is_same_view && *in_parts == parts
+            });
         if is_known {
             return;
         }
-        self.people.of = Some((people.clone(), input.camera, input.world_from_object));
+        self.people.of = Some((people.clone(), input.camera, input.world_from_object, parts));
         let marks = self.people_in(input, people);
         let size_px = self.size_px();
-        let near = marks.filter(|marks| is_in(marks, &footprint.region, size_px));
+        let near = marks.filter(|marks| parts.iter().any(|part| is_in(marks, part, size_px)));
         let is_same = match (&self.people.marks, &near) {
             (None, None) => true,
             (Some(known), Some(near)) => known.given().is_like(near),
