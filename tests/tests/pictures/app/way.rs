@@ -52,7 +52,7 @@ impl Person {
                     self.tell(ShellEvent::Aligned(Some(Box::new(job.run()))))
                 }
                 ShellCommand::Work(WorkCommand::Watch(job)) => {
-                    self.tell(ShellEvent::Watched(Some(Box::new(job.run()))));
+                    self.tell(ShellEvent::Watched(Box::new(job.run())));
                 }
                 ShellCommand::Work(WorkCommand::Record(job)) => self.recordings.extend(job.map(|job| *job)),
                 ShellCommand::Platform(PlatformCommand::Knock) => self.n_knocks += 1,
