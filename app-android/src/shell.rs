@@ -278,9 +278,7 @@ impl<P: Phone> Shell<P> {
             PlatformCommand::Knock => self.phone.knock(),
             PlatformCommand::FrameRate(frames_per_s) => self.pace.set_rate(frames_per_s),
             // ARCore does not give access to the exposure.
-            PlatformCommand::LockExposure(_)
-            | PlatformCommand::Underexpose(_)
-            | PlatformCommand::FindPeople(_) => {}
+            PlatformCommand::LockExposure(_) | PlatformCommand::Underexpose(_) => {}
         }
     }
 }

@@ -270,16 +270,17 @@ impl Shell {
         match command {
             PlatformCommand::AskPermission => camera::ask_permission(),
             PlatformCommand::OpenSettings => self.open_settings(),
-            PlatformCommand::FindPeople(finds) => self.session.find_people(finds),
             PlatformCommand::RunTracking {
                 finds_planes,
                 finds_card,
+                finds_people,
                 measures_depth,
                 is_new_world,
             } => {
                 let finds = Finds {
                     planes: finds_planes,
                     card: finds_card,
+                    people: finds_people,
                     depth: measures_depth,
                 };
                 self.session.run(finds, is_new_world);

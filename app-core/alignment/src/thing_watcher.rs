@@ -57,8 +57,8 @@ impl Conditions {
 /// The things in a picture.
 #[derive(Clone, Debug)]
 pub enum Watched {
-    /// The picture shows what the one before showed.
-    Unchanged,
+    /// The picture shows what the one before showed, with these things in it.
+    Unchanged(Option<Things>),
     /// The things; `None` if there are none, or none can be detected.
     Things(Option<Things>),
 }
@@ -89,6 +89,7 @@ struct SmallScene {
 #[derive(Debug)]
 struct Looked {
     conditions: Conditions,
+    camera: Camera,
     world_from_object: glam::DMat4,
     blocks: Blocks,
 }
@@ -108,11 +109,12 @@ impl ThingWatcher {
         let image = smaller(input.image.rgba(), small.n_halvings);
         let looked = Looked {
             conditions: conditions.clone(),
+            camera: input.camera,
             world_from_object: input.world_from_object,
             blocks: Blocks::of(&image),
         };
         if self.looked.as_ref().is_some_and(|known| known.is_like(&looked)) {
-            return Ok(Watched::Unchanged);
+            return Ok(Watched::Unchanged(self.things.clone()));
         }
         let input = input.clone().with_camera(halved(&input.camera, small.n_halvings));
         let input = input.with_image(image);
@@ -168,6 +170,7 @@ impl Looked {
         let least = CHANGED_CODES.max(OF_NOISE * noise);
         let n_changed = apart.into_iter().filter(|apart| *apart > least).count();
         n_changed < LEAST_CHANGED
+            && self.camera == other.camera
             && self.world_from_object == other.world_from_object
             && self.conditions.is_like(&other.conditions)
     }

@@ -38,10 +38,10 @@ pub struct FrameInput {
     /// The platform's estimate of the light, if there is one. Only alignment uses it, and only if
     /// no light is listed.
     pub light_estimate: Option<LightEstimate>,
-    /// Depths of the picture, if a sensor measured them. Only alignment uses them, to find planes on
+    /// Depths of the picture, of its shape, if a sensor measured them. Only alignment uses them, to find planes on
     /// which things let the shadow fall.
     pub depth: Option<Depth>,
-    /// The people in the picture, if the platform shows where they are: one whose mask overlaps the
+    /// The people in the picture, in a mask of its shape, if the platform shows where they are: one whose mask overlaps the
     /// toy is before it, others are beside it. They stay as the camera shows them, and nothing is
     /// learned from their pixels.
     pub people: Option<People>,
@@ -284,8 +284,12 @@ impl FrameInput {
             check::camera("things.camera", things.camera())?;
         }
         if let Some(people) = &self.people {
-            let [width_px, height_px] = people.size_px().to_array();
-            InputError::at("people", check::picture_size(width_px, height_px))?;
+            let size = check::map_size(people.size_px().to_array(), self.image.size_px());
+            InputError::at("people", size)?;
+        }
+        if let Some(depth) = &self.depth {
+            let size = check::map_size(depth.size_px().to_array(), self.image.size_px());
+            InputError::at("depth", size)?;
         }
         let estimate = self.light_estimate.as_ref();
         estimate.map_or(Ok(()), |estimate| estimate.check("light_estimate"))

@@ -35,7 +35,7 @@ impl PlaceMesh {
     /// corners. `deviation_m` is the standard deviation of a point, if it is known.
     ///
     /// # Errors
-    /// When there is no triangle, there are too many, a corner does not exist, or a number is out
+    /// When there is no point or no triangle, there are too many, a corner does not exist, or a number is out
     /// of range.
     pub fn new(
         points: impl Into<Arc<[Vec3]>>,
@@ -45,7 +45,7 @@ impl PlaceMesh {
         let (points, triangles) = (points.into(), triangles.into());
         check::at_most(points.len(), MAX_PLACE_POINTS)?;
         check::at_most(triangles.len(), MAX_PLACE_TRIANGLES)?;
-        if triangles.is_empty() {
+        if points.is_empty() || triangles.is_empty() {
             return Err(FieldError::Empty);
         }
         for number in points.iter().flat_map(|point| point.to_array()) {

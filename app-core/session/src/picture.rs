@@ -126,11 +126,7 @@ fn grey_decoder(bytes: &[u8], kind: ColorType) -> Result<Option<PngDecoder<Curso
 /// Whether a picture has the shape of a session's pictures and a size within the limits.
 fn is_alike(decoder: &impl ImageDecoder, size: PictureSize) -> bool {
     let (width_px, height_px) = decoder.dimensions();
-    let [width, height, of_width, of_height] =
-        [width_px, height_px, size.width_px, size.height_px].map(f64::from);
-    // Sides of the same shape, each rounded to whole pixels.
-    let is_alike = (width * of_height - height * of_width).abs() <= of_width.max(of_height);
-    is_alike && check::picture_size(width_px, height_px).is_ok()
+    check::map_size([width_px, height_px], [size.width_px, size.height_px]).is_ok()
 }
 
 /// Checks format and size of a photograph or a mask, and a JPEG's end, without decoding it.

@@ -144,9 +144,10 @@ impl Worker {
                 Pace::Live => self.align(*job),
                 Pace::Repeatable => self.waiting.push(*job),
             },
-            WorkCommand::Watch(job) => self.run("watch", ShellEvent::Watched(None), move |_| {
-                ShellEvent::Watched(Some(Box::new(job.run())))
-            }),
+            WorkCommand::Watch(job) => {
+                let died = ShellEvent::Watched(Box::new(job.without_result()));
+                self.run("watch", died, move |_| ShellEvent::Watched(Box::new(job.run())));
+            }
             WorkCommand::SavePhoto => self.save_photo(live),
             WorkCommand::Video(true) => self.begin_video(),
             WorkCommand::Video(false) => self.video = None,

@@ -3,25 +3,12 @@
 use app_core::depth::{Depth, millimetres};
 use glam::UVec2;
 
-use crate::frame::RawPlane;
+use crate::map::{ONE_BYTE, RawMap};
 
 /// The constant `kCVPixelFormatType_DepthFloat32`.
 const METRES: u32 = u32::from_be_bytes(*b"fdep");
-/// The constant `kCVPixelFormatType_OneComponent8`.
-const CONFIDENCE: u32 = u32::from_be_bytes(*b"L008");
 /// `ARConfidenceLevel` from which on a depth counts: medium.
 const LEAST_CONFIDENCE: u8 = 1;
-
-/// A pixel buffer of one plane, while it is locked.
-#[derive(Clone, Copy, Debug)]
-pub struct RawMap<'a> {
-    /// `OSType` of the pixel buffer.
-    pub pixel_format: u32,
-    /// Width and height.
-    pub size_px: [usize; 2],
-    /// Its pixels.
-    pub plane: RawPlane<'a>,
-}
 
 /// The content of `ARDepthData`, unchanged.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +29,7 @@ pub fn depth(raw: &RawDepth<'_>) -> Option<Depth> {
     let depths_mm: Vec<u16> = match &raw.confidence {
         Some(map) if map.size_px != size_px => return None,
         Some(map) => {
-            let confidences = map.rows::<1>(CONFIDENCE)?;
+            let confidences = map.rows::<1>(ONE_BYTE)?;
             let trusted = metres.zip(confidences);
             trusted
                 .map(|(metres, [confidence])| {
@@ -60,28 +47,10 @@ pub fn depth(raw: &RawDepth<'_>) -> Option<Depth> {
     Depth::new(UVec2::new(width.ok()?, height.ok()?), depths_mm)
 }
 
-impl<'a> RawMap<'a> {
-    /// The pixels of `N` bytes, row by row without padding; `None` if the buffer has another format
-    /// or fewer bytes.
-    fn rows<const N: usize>(&self, pixel_format: u32) -> Option<impl Iterator<Item = [u8; N]> + use<'a, N>> {
-        let RawPlane { bytes, row_stride } = self.plane;
-        let [width, height] = self.size_px;
-        let n_row_bytes = width.checked_mul(N)?;
-        let n_bytes = row_stride
-            .checked_mul(height.checked_sub(1)?)?
-            .checked_add(n_row_bytes)?;
-        let fits = self.pixel_format == pixel_format
-            && n_row_bytes > 0
-            && n_row_bytes <= row_stride
-            && n_bytes <= bytes.len();
-        let rows = bytes.chunks(row_stride.max(1)).take(height);
-        fits.then(|| rows.flat_map(move |row| row[..n_row_bytes].as_chunks::<N>().0.iter().copied()))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::map::RawPlane;
 
     fn bytes(metres: &[f32]) -> Vec<u8> {
         metres.iter().flat_map(|metres| metres.to_ne_bytes()).collect()
@@ -109,7 +78,7 @@ mod tests {
             ([2, 2], &[300, 400, 500, 600][..])
         );
         let trusted = RawDepth {
-            confidence: Some(map(CONFIDENCE, &[2, 0, 9, 1, 2], 3)),
+            confidence: Some(map(ONE_BYTE, &[2, 0, 9, 1, 2], 3)),
             ..raw
         };
         assert_eq!(depth(&trusted).expect("depths").depths_mm(), [300, 0, 500, 600]);
@@ -131,10 +100,10 @@ mod tests {
         let good = map(METRES, &metres, 8);
         let other_size = RawMap {
             size_px: [1, 4],
-            ..map(CONFIDENCE, &[2; 4], 1)
+            ..map(ONE_BYTE, &[2; 4], 1)
         };
         let wrong = [
-            (map(CONFIDENCE, &metres, 8), None),
+            (map(ONE_BYTE, &metres, 8), None),
             (map(METRES, &metres[..12], 8), None),
             (map(METRES, &metres, 7), None),
             (map(METRES, &[], 0), None),

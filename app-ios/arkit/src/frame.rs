@@ -9,6 +9,8 @@ use glam::{DMat4, DVec3, Vec3Swizzles};
 
 use crate::convert;
 use crate::depth::{RawDepth, depth};
+use crate::map::{RawMap, RawPlane};
+use crate::people::people;
 
 /// The constant `kCVPixelFormatType_420YpCbCr8BiPlanarFullRange`.
 const FULL_RANGE: u32 = u32::from_be_bytes(*b"420f");
@@ -21,15 +23,6 @@ const LIMITED: isize = 1;
 
 /// Nanoseconds in a second.
 const NS: f64 = 1e9;
-
-/// A plane of a pixel buffer, while it is locked.
-#[derive(Clone, Copy, Debug)]
-pub struct RawPlane<'a> {
-    /// The bytes of all rows.
-    pub bytes: &'a [u8],
-    /// Bytes per row.
-    pub row_stride: usize,
-}
 
 /// A plane that ARKit has found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -67,6 +60,8 @@ pub struct RawFrame<'a> {
     pub exposure: Option<[f64; 2]>,
     /// Depths, if they are measured.
     pub depth: Option<RawDepth<'a>>,
+    /// Mask of the people in it, if it is asked for.
+    pub people: Option<RawMap<'a>>,
     /// Lumen and kelvin, if light is estimated.
     pub light: Option<[f64; 2]>,
     /// Planes found so far.
@@ -154,7 +149,7 @@ pub fn camera_frame(
             color_temperature_k: Some(kelvin).filter(|kelvin| kelvin.is_finite() && *kelvin > 0.0),
             ..LightEstimate::default()
         }),
-        people: None,
+        people: raw.people.as_ref().and_then(people),
         depth: raw.depth.as_ref().and_then(depth),
         display: Display {
             quarter_turns: convert::quarter_turns(raw.orientation),
@@ -294,6 +289,7 @@ mod tests {
             exposure: Some([0.01, 50.0]),
             light: Some([1000.0, 6500.0]),
             depth: None,
+            people: None,
             surfaces: vec![RawSurface {
                 id: [1; 16],
                 alignment: 0,

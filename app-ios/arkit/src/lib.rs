@@ -4,6 +4,7 @@
 pub mod convert;
 pub mod depth;
 pub mod frame;
+pub mod map;
 pub mod people;
 
 #[cfg(target_os = "ios")]
@@ -18,8 +19,6 @@ mod pixels;
 pub mod read;
 #[cfg(target_os = "ios")]
 mod scan;
-#[cfg(target_os = "ios")]
-mod segments;
 #[cfg(target_os = "ios")]
 pub mod session;
 #[cfg(target_arch = "aarch64")]

@@ -9,8 +9,8 @@ use objc2_core_video::{
     CVPixelBufferUnlockBaseAddress,
 };
 
-use super::depth::RawMap;
-use super::frame::{RawPlane, image};
+use super::frame::image;
+use super::map::{RawMap, RawPlane};
 
 /// A pixel buffer whose bytes may be read, until it is dropped.
 pub(super) struct Locked<'a>(&'a CVPixelBuffer);
@@ -28,16 +28,19 @@ impl<'a> Locked<'a> {
         (0..n_planes).map(|index| self.plane(index)).collect()
     }
 
-    /// The pixels of a buffer that is not planar.
-    pub(super) fn map(&self) -> RawMap<'_> {
+    /// The pixels of the buffer; `None` if it is planar.
+    pub(super) fn map(&self) -> Option<RawMap<'_>> {
+        if CVPixelBufferGetPlaneCount(self.0) != 0 {
+            return None;
+        }
         let size_px = [CVPixelBufferGetWidth(self.0), CVPixelBufferGetHeight(self.0)];
         let row_stride = CVPixelBufferGetBytesPerRow(self.0);
         let first = CVPixelBufferGetBaseAddress(self.0).cast::<u8>();
-        RawMap {
+        Some(RawMap {
             pixel_format: CVPixelBufferGetPixelFormatType(self.0),
             size_px,
             plane: self.rows(first, row_stride, size_px[1]),
-        }
+        })
     }
 
     fn plane(&self, index: usize) -> RawPlane<'_> {

@@ -1,5 +1,5 @@
 //! Reads an `ARFrame` into plain numbers. This is the shell's only file that reads a frame of
-//! ARKit, but for its mask of people.
+//! ARKit.
 
 use std::ffi::c_void;
 
@@ -48,6 +48,9 @@ pub(super) fn with_raw<T>(
     };
     let maps = depth_maps(frame);
     let locked_maps = maps.as_ref().and_then(LockedMaps::new);
+    // SAFETY: a property of a frame that was delivered, which never changes.
+    let people = unsafe { frame.segmentationBuffer() };
+    let locked_people = people.as_deref().and_then(Locked::new);
     let lent = textures.and_then(|textures| textures.lend(&buffer));
     let locked = if lent.is_none() {
         Some(Locked::new(&buffer)?)
@@ -78,7 +81,8 @@ pub(super) fn with_raw<T>(
         transform,
         tracking,
         exposure,
-        depth: locked_maps.as_ref().map(LockedMaps::raw),
+        depth: locked_maps.as_ref().and_then(LockedMaps::raw),
+        people: locked_people.as_ref().and_then(Locked::map),
         // SAFETY: properties of an estimate that never changes.
         light: light.map(|light| unsafe { [light.ambientIntensity(), light.ambientColorTemperature()] }),
         surfaces: surfaces.map(|anchor| surface(&anchor)).collect(),
@@ -119,11 +123,15 @@ impl<'a> LockedMaps<'a> {
         })
     }
 
-    fn raw(&self) -> RawDepth<'_> {
-        RawDepth {
-            metres: self.metres.map(),
-            confidence: self.confidence.as_ref().map(Locked::map),
-        }
+    /// Returns `None` if a buffer is planar.
+    fn raw(&self) -> Option<RawDepth<'_>> {
+        Some(RawDepth {
+            metres: self.metres.map()?,
+            confidence: match &self.confidence {
+                Some(confidence) => Some(confidence.map()?),
+                None => None,
+            },
+        })
     }
 }
 

@@ -5,7 +5,6 @@ use std::path::Path;
 use std::rc::Rc;
 
 use app_core::app::{ArSession, ShellEvent};
-use app_core::camera_frame::CameraFrame;
 use app_core::gpu::DeviceHandle;
 use glam::DMat4;
 use objc2::rc::{Allocated, Retained, autoreleasepool};
@@ -14,7 +13,7 @@ use objc2::{
     AnyThread, ClassType, DefinedClass, MainThreadMarker, MainThreadOnly, define_class, msg_send, sel,
 };
 use objc2_ar_kit::{
-    ARAnchor, ARFrame, ARFrameSemantics, ARObjectAnchor, ARPlaneDetection, ARReferenceImage,
+    ARAnchor, ARConfiguration, ARFrame, ARFrameSemantics, ARObjectAnchor, ARPlaneDetection, ARReferenceImage,
     ARReferenceObject, ARSession, ARSessionDelegate, ARSessionObserver, ARSessionRunOptions,
     ARWorldTrackingConfiguration,
 };
@@ -24,7 +23,7 @@ use objc2_ui_kit::UIView;
 use super::coaching::Coach;
 use super::frame::{Count, camera_frame};
 use super::textures::TextureCache;
-use super::{card, read, scan, segments, shim};
+use super::{card, read, scan, shim};
 use crate::convert::{self, AfterFailure};
 use app_shell::guard::guarded;
 
@@ -49,8 +48,6 @@ struct Shared {
     orientation: Cell<isize>,
     /// Detections of the latest run.
     finds: Cell<Finds>,
-    /// Whether masks of people are asked for.
-    finds_people: Cell<bool>,
     /// The card's reference image, if a person uses the card and ARKit has not refused it.
     card: RefCell<Card>,
     /// Reference object of the toy; `None` without a scan, or if ARKit has refused it.
@@ -68,6 +65,8 @@ pub struct Finds {
     pub planes: bool,
     /// The printed card.
     pub card: bool,
+    /// People, on phones that mask them.
+    pub people: bool,
     /// Depths, on phones that measure them.
     pub depth: bool,
 }
@@ -105,15 +104,15 @@ impl Shared {
             configuration.setPlaneDetection(planes);
             // Pictures with local tone mapping cannot be compared with one another.
             configuration.setVideoHDRAllowed(false);
-            if finds.depth && measures_depth() {
-                configuration.setFrameSemantics(ARFrameSemantics::SceneDepth);
-            }
             if let Some(card) = card {
                 configuration.setDetectionImages(Some(&NSSet::from_slice(&[&*card])));
                 configuration.setMaximumNumberOfTrackedImages(1);
             }
-            if self.finds_people.get() {
-                segments::ask(&configuration);
+            if finds.depth {
+                ask(&configuration, ARFrameSemantics::SceneDepth);
+            }
+            if finds.people {
+                ask(&configuration, ARFrameSemantics::PersonSegmentation);
             }
             if let Some(scan) = &*self.scan.borrow() {
                 configuration.setDetectionObjects(&NSSet::from_slice(&[&**scan]));
@@ -169,10 +168,7 @@ impl Shared {
         let textures = self.textures.borrow();
         let orientation = self.orientation.get();
         let taken = read::with_raw(frame, held, orientation, textures.as_ref(), |raw, lent| {
-            camera_frame(raw, lent, count).map(|taken| CameraFrame {
-                people: segments::read(frame),
-                ..taken
-            })
+            camera_frame(raw, lent, count)
         });
         match taken {
             Some(Ok(frame)) => {
@@ -273,7 +269,6 @@ impl Session {
             is_interrupted: Cell::new(false),
             orientation: Cell::new(0),
             finds: Cell::default(),
-            finds_people: Cell::default(),
             card: RefCell::default(),
             scan: RefCell::default(),
             coach: RefCell::default(),
@@ -313,14 +308,6 @@ impl Session {
             return;
         }
         self.forget_toys();
-        if self.is_running.get() {
-            self.shared.run(&self.session, ARSessionRunOptions::empty());
-        }
-    }
-
-    /// Masks people from now on, at once if the session runs, if this phone can; `false` ends that.
-    pub fn find_people(&self, finds: bool) {
-        self.shared.finds_people.set(finds);
         if self.is_running.get() {
             self.shared.run(&self.session, ARSessionRunOptions::empty());
         }
@@ -405,13 +392,18 @@ impl Session {
     }
 }
 
-/// Whether this phone measures depths, by a LiDAR scanner.
-fn measures_depth() -> bool {
+/// Asks for depths or masks beside what a configuration asks for already, if this phone can do both.
+fn ask(configuration: &ARConfiguration, semantics: ARFrameSemantics) {
+    // SAFETY: a property of a configuration of our own.
+    let semantics = unsafe { configuration.frameSemantics() } | semantics;
     let class = ARWorldTrackingConfiguration::class();
-    let semantics = ARFrameSemantics::SceneDepth;
     // The class that is asked matters, and the binding has the method on its parent alone.
     // SAFETY: a method of every configuration's class that takes semantics and returns a truth value.
-    unsafe { msg_send![class, supportsFrameSemantics: semantics] }
+    let can: bool = unsafe { msg_send![class, supportsFrameSemantics: semantics] };
+    if can {
+        // SAFETY: the class supports these semantics.
+        unsafe { configuration.setFrameSemantics(semantics) };
+    }
 }
 
 /// A new anchor.

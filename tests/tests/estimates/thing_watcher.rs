@@ -66,7 +66,7 @@ fn aligned() -> (Conditions, FrameInput) {
 fn things(watched: Watched) -> Option<Things> {
     match watched {
         Watched::Things(things) => things,
-        Watched::Unchanged => panic!("the picture has changed"),
+        Watched::Unchanged(_) => panic!("the picture has changed"),
     }
 }
 
@@ -80,21 +80,39 @@ fn marks_follow_a_hand_and_none_stays() {
         watcher.look(&conditions, &seen).unwrap()
     };
     assert!(things(look(Image::clone(&plain))).is_none_or(|things| !things.has_any()));
-    assert!(matches!(look(Image::clone(&plain)), Watched::Unchanged));
+    assert!(matches!(look(Image::clone(&plain)), Watched::Unchanged(_)));
     for left_px in [500, 440, 380, 380, 420, 470] {
         let rect = hand(left_px);
         let watched = look(painted(&plain, rect));
-        if let Watched::Things(things) = watched {
-            let [of_it, beyond] = marked(things.as_ref(), rect);
-            assert!(
-                of_it > 0.9 && beyond < 0.1,
-                "at {left_px}: {of_it:.2} of it, {beyond:.2} beyond"
-            );
-        } else {
-            assert_eq!(left_px, 380, "it rests there alone");
-        }
+        let things = match watched {
+            Watched::Things(things) => things,
+            Watched::Unchanged(things) => {
+                assert_eq!(left_px, 380, "it rests there alone");
+                things
+            }
+        };
+        let [of_it, beyond] = marked(things.as_ref(), rect);
+        assert!(
+            of_it > 0.9 && beyond < 0.1,
+            "at {left_px}: {of_it:.2} of it, {beyond:.2} beyond"
+        );
     }
     assert!(things(look(Image::clone(&plain))).is_none_or(|things| !things.has_any()));
+}
+
+#[test]
+fn a_picture_of_another_camera_is_searched_though_it_looks_the_same() {
+    let (conditions, input) = aligned();
+    let mut watcher = ThingWatcher::default();
+    let mut look = |input: &FrameInput| watcher.look(&conditions, input).unwrap();
+    assert!(matches!(look(&input), Watched::Things(_)));
+    assert!(matches!(look(&input), Watched::Unchanged(_)));
+    let mut camera = input.camera;
+    camera.world_from_camera *= glam::DMat4::from_translation(glam::DVec3::X * 1e-3);
+    assert!(matches!(
+        look(&input.clone().with_camera(camera)),
+        Watched::Things(_)
+    ));
 }
 
 /// The picture with noise of three codes.

@@ -281,12 +281,9 @@ impl Place {
         self.watch.job(time_s, input)
     }
 
-    /// Adopts the result of a search for things; `None` if its thread did not end.
-    pub(super) fn take_watched(&mut self, done: Option<WatchedJob>) {
-        match done {
-            Some(done) => self.watch.take(done),
-            None => self.watch.begin_anew(),
-        }
+    /// Adopts the result of a search for things.
+    pub(super) fn take_watched(&mut self, done: WatchedJob) {
+        self.watch.take(done);
     }
 
     fn apply(&mut self, given: &Camera, aligner: &Aligner, alignment: Alignment) {

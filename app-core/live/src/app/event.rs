@@ -181,8 +181,9 @@ pub enum ShellEvent {
     Searched(Option<Box<SearchedJob>>),
     /// [`WorkCommand::Align`] ended; `None` if its thread did not end normally.
     Aligned(Option<Box<AlignedJob>>),
-    /// [`WorkCommand::Watch`] ended; `None` if its thread did not end normally.
-    Watched(Option<Box<WatchedJob>>),
+    /// [`WorkCommand::Watch`] ended, [without a result](WatchJob::without_result) if its thread did
+    /// not end normally.
+    Watched(Box<WatchedJob>),
     /// Names of available toy files, in answer to [`WorkCommand::PickToy`].
     ToyFiles(Vec<String>),
     /// A toy was read, or could not be read for this reason.
@@ -238,13 +239,14 @@ pub enum PlatformCommand {
         finds_planes: bool,
         /// Whether the printed card is detected, which costs more.
         finds_card: bool,
+        /// Whether the people in the pictures are masked, if the platform can, which warms the
+        /// phone.
+        finds_people: bool,
         /// Whether depths are measured, if the phone can, which costs time and warms it.
         measures_depth: bool,
         /// Whether the session starts a new world.
         is_new_world: bool,
     },
-    /// Mask the people in the camera's pictures, if the platform can, or end that.
-    FindPeople(bool),
     /// Pause the AR session.
     PauseTracking,
     /// Lock exposure, white balance and focus, or release them.

@@ -42,7 +42,7 @@ impl App {
         if camera.is_some() {
             self.camera = camera;
         }
-        let frame = Arc::new(frame);
+        let frame = Arc::new(frame.with_maps_of_its_shape());
         self.latest = Some(Arc::clone(&frame));
         self.follow_table(&frame);
         self.place_check(&frame);
@@ -190,9 +190,9 @@ impl App {
         }
     }
 
-    pub(super) fn watched(&mut self, done: Option<Box<WatchedJob>>) {
+    pub(super) fn watched(&mut self, done: WatchedJob) {
         if let Some(place) = &mut self.place {
-            place.take_watched(done.map(|done| *done));
+            place.take_watched(done);
         }
     }
 

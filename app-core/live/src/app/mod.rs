@@ -207,7 +207,7 @@ impl App {
             ShellEvent::Plated(done) => self.plated(done),
             ShellEvent::Searched(done) => self.searched(done, &mut commands),
             ShellEvent::Aligned(done) => self.aligned(done, &mut commands),
-            ShellEvent::Watched(done) => self.watched(done),
+            ShellEvent::Watched(done) => self.watched(*done),
             ShellEvent::ToyFiles(files) => self.toy_files = Some(files),
             ShellEvent::Toy(read) => self.take_toy(read),
             ShellEvent::Saved(saved) => self.saved(saved),
@@ -225,7 +225,9 @@ impl App {
             card: (self.uses_card && self.step <= Step::PlaceToy)
                 || self.phone_check.is_some_and(|check| check.shows_card()),
         };
-        let wanted = Commanded::wanted(self.step, &self.platform, (self.captures, asked));
+        let wanted = self
+            .commanded
+            .next(self.step, &self.platform, (self.captures, asked));
         self.captures = wanted.captures;
         let job = self.follow_recording(wanted.captures.recording);
         let is_new_world = std::mem::take(&mut self.wants_new_world);

@@ -109,27 +109,37 @@ pub(super) struct Commanded {
     measures_depth: bool,
     locks_exposure: bool,
     underexposes: bool,
+    /// The step in which the phone is or was warm: what warms it most stays off until the next one,
+    /// since each change runs the session anew.
+    warm_in: Option<Step>,
     is_awake: bool,
     pub(super) frames_per_s: u32,
     pub(super) captures: Captures,
 }
 
 impl Commanded {
-    /// The state that a step requires.
-    pub(super) fn wanted(step: Step, platform: &Platform, (captures, asked): (Captures, Asked)) -> Self {
+    /// The state that a step requires, after this one.
+    pub(super) fn next(&self, step: Step, platform: &Platform, (captures, asked): (Captures, Asked)) -> Self {
         let tracking = step != Step::Welcome && platform.can_track();
+        let warm_in = if platform.thermal == Thermal::Nominal {
+            self.warm_in.filter(|warm_in| *warm_in == step)
+        } else {
+            Some(step)
+        };
+        let is_cool = tracking && warm_in.is_none();
         Self {
             tracking,
             finds_planes: tracking && step == Step::FindTable,
             finds_card: tracking && asked.card,
-            // Of all that warms a phone, it is what a picture can most easily do without.
-            finds_people: tracking && step == Step::Play && platform.thermal == Thermal::Nominal,
-            // From the step before the toy is placed, where the session runs anew in any case; and
-            // the first thing that heat takes away.
-            measures_depth: tracking && step >= Step::TakePlate && platform.thermal == Thermal::Nominal,
+            // Of all that warms a phone, masks and depths are what a picture can most easily do
+            // without.
+            finds_people: is_cool && step == Step::Play,
+            // From the step before the toy is placed, where the session runs anew in any case.
+            measures_depth: is_cool && step >= Step::TakePlate,
             // Plate and frames are compared with one another.
             locks_exposure: tracking && (step >= Step::PlaceToy || asked.held_exposure),
             underexposes: tracking && step == Step::PlaceToy && asked.lens,
+            warm_in,
             is_awake: platform.is_foreground && step != Step::Welcome,
             frames_per_s: if platform.thermal >= Thermal::Serious {
                 30
@@ -168,13 +178,28 @@ impl Commanded {
         if wanted.frames_per_s != self.frames_per_s {
             commands.push(PlatformCommand::FrameRate(wanted.frames_per_s).into());
         }
-        let run = |of: &Self| [of.tracking, of.finds_planes, of.finds_card, of.measures_depth];
-        let is_run_anew = run(&wanted) != run(self);
-        if wanted.tracking && (is_run_anew || is_new_world) {
+        let run = |of: &Self| {
+            [
+                of.tracking,
+                of.finds_planes,
+                of.finds_card,
+                of.finds_people,
+                of.measures_depth,
+            ]
+        };
+        let is_run = wanted.tracking && (is_new_world || run(&wanted) != run(self));
+        // A dark exposure is a fraction of the locked one, which is locked anew after a run.
+        let was_dark = self.underexposes && self.tracking;
+        let is_dark = was_dark && wanted.underexposes && !is_run;
+        if was_dark && !is_dark && wanted.tracking {
+            commands.push(PlatformCommand::Underexpose(false).into());
+        }
+        if is_run {
             commands.push(
                 PlatformCommand::RunTracking {
                     finds_planes: wanted.finds_planes,
                     finds_card: wanted.finds_card,
+                    finds_people: wanted.finds_people,
                     measures_depth: wanted.measures_depth,
                     is_new_world,
                 }
@@ -183,33 +208,19 @@ impl Commanded {
         } else if !wanted.tracking && self.tracking {
             commands.push(PlatformCommand::PauseTracking.into());
         }
-        // A paused camera masks nobody.
-        if wanted.tracking && wanted.finds_people != self.finds_people {
-            commands.push(PlatformCommand::FindPeople(wanted.finds_people).into());
-        }
-        // A restarted camera has no exposure lock.
-        let is_locked = self.locks_exposure && self.tracking && wanted.tracking;
-        let was_dark = self.underexposes && self.tracking;
-        if was_dark && !wanted.underexposes && wanted.tracking {
-            commands.push(PlatformCommand::Underexpose(false).into());
-        }
-        if wanted.locks_exposure != is_locked && wanted.tracking {
+        let was_locked = self.locks_exposure && self.tracking;
+        // A run may release the lock.
+        let is_locked_anew = wanted.locks_exposure && is_run;
+        if wanted.tracking && (is_locked_anew || wanted.locks_exposure != was_locked) {
             commands.push(PlatformCommand::LockExposure(wanted.locks_exposure).into());
         }
-        if wanted.underexposes && !was_dark {
+        if wanted.underexposes && !is_dark {
             commands.push(PlatformCommand::Underexpose(true).into());
         }
         if wanted.is_awake != self.is_awake {
             commands.push(PlatformCommand::KeepAwake(wanted.is_awake).into());
         }
-        *self = Self {
-            finds_people: if wanted.tracking {
-                wanted.finds_people
-            } else {
-                self.finds_people
-            },
-            ..wanted
-        };
+        *self = wanted;
         commands
     }
 }

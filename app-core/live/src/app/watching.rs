@@ -1,6 +1,6 @@
 //! The search for things beside the toy between two alignments, on another thread.
 
-use app_alignment::{AlignError, Conditions, ThingWatcher, Watched};
+use app_alignment::{Conditions, ThingWatcher, Watched};
 use app_scene::frame::FrameInput;
 use app_scene::things::Things;
 
@@ -21,12 +21,23 @@ impl WatchJob {
     /// Runs the search, which takes a tenth of a second or two.
     #[must_use]
     pub fn run(mut self) -> WatchedJob {
-        let result = self.watcher.look(&self.conditions, &self.input);
+        let watched = self.watcher.look(&self.conditions, &self.input).ok();
         WatchedJob {
             place: self.place,
             time_s: self.time_s,
             watcher: self.watcher,
-            result,
+            watched,
+        }
+    }
+
+    /// The result if the thread of the search does not end normally: nothing, and a new watcher.
+    #[must_use]
+    pub fn without_result(&self) -> WatchedJob {
+        WatchedJob {
+            place: self.place,
+            time_s: self.time_s,
+            watcher: ThingWatcher::default(),
+            watched: None,
         }
     }
 }
@@ -37,7 +48,8 @@ pub struct WatchedJob {
     place: u64,
     time_s: f64,
     watcher: ThingWatcher,
-    result: Result<Watched, AlignError>,
+    /// `None` if the search failed.
+    watched: Option<Watched>,
 }
 
 /// The things beside a placed toy, and the search for them.
@@ -130,17 +142,12 @@ impl Watch {
         if self.conditions.is_none() || !is_later {
             return;
         }
-        match done.result {
-            // An alignment may have searched the picture in between.
-            Ok(Watched::Unchanged) => {}
-            Ok(Watched::Things(things)) => (self.things, self.seen_s) = (things, Some(done.time_s)),
-            Err(_) => self.things = None,
+        match done.watched {
+            // An alignment may have found other things in between, in an earlier picture.
+            Some(Watched::Unchanged(things) | Watched::Things(things)) => {
+                (self.things, self.seen_s) = (things, Some(done.time_s));
+            }
+            None => self.things = None,
         }
-    }
-
-    /// Starts with a new watcher if the thread of a search did not end.
-    pub(super) fn begin_anew(&mut self) {
-        self.watcher = Some(ThingWatcher::default());
-        self.things = None;
     }
 }

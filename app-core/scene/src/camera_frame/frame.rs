@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec2};
+use glam::{DMat4, DVec2, UVec2};
 
 use super::arrival::Stamp;
 use super::display::Display;
 use super::image::CameraImage;
 use crate::depth::Depth;
 use crate::people::People;
+use crate::scene::check;
 use crate::scene::{Camera, Intrinsics, LightEstimate};
 
 /// Quality of the platform's camera tracking, with the reason if a person can help.
@@ -112,6 +113,16 @@ pub struct CameraFrame {
 }
 
 impl CameraFrame {
+    /// The frame without depths or a mask that are too large, or not of the picture's shape.
+    #[must_use]
+    pub fn with_maps_of_its_shape(mut self) -> Self {
+        let picture_px = self.image.size_px();
+        let is_right = |size_px: UVec2| check::map_size(size_px.to_array(), picture_px).is_ok();
+        self.depth = self.depth.filter(|depth| is_right(depth.size_px()));
+        self.people = self.people.filter(|people| is_right(people.size_px()));
+        self
+    }
+
     /// The camera, if its pose can be trusted.
     #[must_use]
     pub fn camera(&self) -> Option<Camera> {

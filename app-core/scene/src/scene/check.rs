@@ -108,6 +108,20 @@ pub enum FieldError {
         /// The most pixels allowed.
         max_pixels: u64,
     },
+    /// A map of a picture of another shape than the picture.
+    #[error(
+        "{width_px} x {height_px} px are not the shape of the picture, {picture_width_px} x {picture_height_px} px"
+    )]
+    OtherShape {
+        /// Columns of the map.
+        width_px: u32,
+        /// Rows of the map.
+        height_px: u32,
+        /// Columns of the picture.
+        picture_width_px: u32,
+        /// Rows of the picture.
+        picture_height_px: u32,
+    },
     /// Pictures that would take more memory than a session may.
     #[error("the pictures hold more than {max_pixels} pixels in all")]
     TooManyPixels {
@@ -199,6 +213,30 @@ pub fn picture_size(width_px: u32, height_px: u32) -> Result<(), FieldError> {
         });
     }
     Ok(())
+}
+
+/// Whether a map of a picture, which may be coarser or finer, has the picture's shape; both are
+/// width and height in pixels, and each side is rounded to whole pixels.
+fn is_alike(size_px: [u32; 2], picture_px: [u32; 2]) -> bool {
+    let [width, height] = size_px.map(f64::from);
+    let [of_width, of_height] = picture_px.map(f64::from);
+    (width * of_height - height * of_width).abs() <= of_width.max(of_height)
+}
+
+/// Refuses a map of a picture with too many pixels, or of another shape than the picture.
+pub fn map_size(size_px: [u32; 2], picture_px: [u32; 2]) -> Result<(), FieldError> {
+    let [width_px, height_px] = size_px;
+    picture_size(width_px, height_px)?;
+    if is_alike(size_px, picture_px) {
+        return Ok(());
+    }
+    let [picture_width_px, picture_height_px] = picture_px;
+    Err(FieldError::OtherShape {
+        width_px,
+        height_px,
+        picture_width_px,
+        picture_height_px,
+    })
 }
 
 /// Refuses a list longer than the limit.

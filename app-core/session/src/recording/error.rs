@@ -52,13 +52,13 @@ pub enum WriteError {
         /// The limit.
         max_bytes: u64,
     },
-    /// A camera picture could not be encoded, for this reason. Nothing was written.
-    #[error("a picture cannot be encoded: {0}")]
+    /// A camera picture or its depths could not be encoded, for this reason. Nothing was written.
+    #[error("a picture or its depths cannot be encoded: {0}")]
     Picture(String),
-    /// A frame repeats a picture that was never written. Nothing was written.
-    #[error("picture {sequence} is repeated, but was never recorded")]
+    /// A frame repeats a picture, or depths, that were never written. Nothing was written.
+    #[error("picture or depths {sequence} are repeated, but were never recorded")]
     NoSuchPicture {
-        /// Number of the picture, from 0.
+        /// Number of the picture, or of the depths, from 0.
         sequence: u32,
     },
 }
@@ -134,8 +134,10 @@ pub enum Loss {
         /// Number of written files.
         n_written: u32,
     },
-    /// Frames whose picture was in a lost chunk, or is after one without its number.
-    #[error("{n_frames} frames are skipped, since their picture is lost or cannot be identified")]
+    /// Frames whose picture, or depths, were in a lost chunk, or are after one without its number.
+    #[error(
+        "{n_frames} frames are skipped, since their picture or its depths are lost or cannot be identified"
+    )]
     Pictures {
         /// Their number.
         n_frames: u32,

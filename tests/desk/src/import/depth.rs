@@ -127,3 +127,24 @@ fn decoded(bytes: Vec<u8>) -> Option<DynamicImage> {
     reader.limits(limits);
     reader.decode().ok()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::Bounded;
+
+    #[test]
+    fn a_sink_takes_its_number_of_bytes_and_refuses_the_next() {
+        let mut bytes = Vec::new();
+        let mut sink = Bounded {
+            bytes: &mut bytes,
+            n_bytes: 4,
+        };
+        assert!(sink.write_all(&[1, 2, 3]).is_ok());
+        assert!(sink.write_all(&[4, 5]).is_err(), "two more do not fit");
+        assert!(sink.write_all(&[4]).is_ok());
+        assert!(sink.write_all(&[5]).is_err());
+        assert_eq!(bytes, [1, 2, 3, 4], "nothing beyond the number is kept");
+    }
+}

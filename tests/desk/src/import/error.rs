@@ -35,6 +35,9 @@ pub enum ImportReason {
     /// The file or field does not exist.
     #[error("missing")]
     Missing,
+    /// A file that is no archive, in place of a folder.
+    #[error("neither a folder nor a ZIP archive, as Record3D's .r3d is")]
+    NotAnArchive,
     /// The value is no number, or not a finite one.
     #[error("{0:?} is not a finite number of at most {max:e}", max = super::imported::MAX_NUMBER)]
     NotANumber(String),

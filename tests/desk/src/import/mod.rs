@@ -27,6 +27,6 @@ pub use formats::{Format, parse, read};
 pub use imported::{DepthEncoding, Imported, ImportedDepth, ImportedFrame};
 pub use lens::Lens;
 pub use ply::glb_of_ply;
-pub use source::{Archive, Source};
+pub use source::Source;
 pub use write::{Lacking, PlateFrames, Written, write};
 pub use write_nerfstudio::write_transforms;

@@ -6,6 +6,7 @@ use std::io::Read;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
+use super::error::ImportReason;
 use anyhow::Context;
 use app_core::session::{FileError, Files, Folder, check_path};
 use zip::ZipArchive;
@@ -63,7 +64,10 @@ impl Source {
 
 impl Archive {
     fn open(path: &Path) -> anyhow::Result<Self> {
-        let zip = ZipArchive::new(File::open(path)?)?;
+        let zip = ZipArchive::new(File::open(path)?).map_err(|error| match error {
+            ZipError::InvalidArchive(_) => ImportReason::NotAnArchive.into(),
+            error => anyhow::Error::from(error),
+        })?;
         // Names that a session may not use are left out: nothing is written to them.
         let names = zip.file_names().collect::<Result<Vec<_>, _>>()?;
         let is_file = |name: &str| check_path(name).is_ok() && !name.ends_with('/');

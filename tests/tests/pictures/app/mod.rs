@@ -2,6 +2,7 @@
 
 mod conditions;
 mod happenings;
+mod heat;
 mod lens;
 mod orders;
 mod phone_check;

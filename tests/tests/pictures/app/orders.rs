@@ -2,7 +2,7 @@
 
 use app_core::app::{
     AlignJob, AlignedJob, App, GraphicsState, Notice, Permission, Placing, PlateJob, PlatformCommand,
-    SearchJob, ShellCommand, ShellEvent, Show, Step, ToyRefusal, UserAction, WorkCommand,
+    SearchJob, ShellCommand, ShellEvent, Show, Step, ToyRefusal, UserAction, WatchJob, WorkCommand,
 };
 use app_core::camera_frame::{Exposure, Tracking};
 use app_core::frame::FrameInput;
@@ -20,6 +20,7 @@ struct Platform {
     is_foreground: bool,
     runs: bool,
     is_locked: bool,
+    n_runs: u32,
     is_dark: bool,
     is_awake: bool,
     makes_video: bool,
@@ -30,6 +31,7 @@ struct Platform {
     jobs: Vec<AlignJob>,
     plates: Vec<PlateJob>,
     searches: Vec<SearchJob>,
+    watches: Vec<WatchJob>,
     recordings: Vec<RecordingJob>,
 }
 
@@ -78,8 +80,16 @@ impl Platform {
                 let plates = plates.map(|job| is_whole.then(|| Box::new(job.run())));
                 let searches = self.searches.drain(..);
                 let searches = searches.map(|job| is_whole.then(|| Box::new(job.run())));
+                let watches = self
+                    .watches
+                    .drain(..)
+                    .map(|job| if is_whole { job.run() } else { job.without_result() });
                 let plates = plates.map(ShellEvent::Plated);
-                plates.chain(searches.map(ShellEvent::Searched)).collect()
+                let watches = watches.map(|done| ShellEvent::Watched(Box::new(done)));
+                plates
+                    .chain(searches.map(ShellEvent::Searched))
+                    .chain(watches)
+                    .collect()
             }
             Happening::OtherToy(is_toy) => {
                 let read = if is_toy {
@@ -149,9 +159,12 @@ impl Platform {
         }
         match command {
             ShellCommand::Platform(PlatformCommand::RunTracking { .. }) => {
-                self.is_locked &= self.runs;
-                self.is_dark &= self.runs;
+                // A running camera may keep its exposure, and may not.
+                let is_kept = self.runs && self.n_runs.is_multiple_of(2);
+                self.is_locked &= is_kept;
+                self.is_dark &= is_kept;
                 self.runs = true;
+                self.n_runs += 1;
             }
             ShellCommand::Platform(PlatformCommand::PauseTracking) => self.runs = false,
             ShellCommand::Platform(PlatformCommand::LockExposure(is_on)) => self.is_locked = is_on,
@@ -175,6 +188,7 @@ impl Platform {
             ShellCommand::Work(WorkCommand::Align(job)) => self.jobs.push(*job),
             ShellCommand::Work(WorkCommand::Plate(job)) => self.plates.push(*job),
             ShellCommand::Work(WorkCommand::Search(job)) => self.searches.push(*job),
+            ShellCommand::Work(WorkCommand::Watch(job)) => self.watches.push(*job),
             _ => {}
         }
         Ok(())

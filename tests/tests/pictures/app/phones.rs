@@ -457,34 +457,3 @@ fn a_package_for_engineers_keeps_its_preset_and_says_once_what_would_be_next() {
     let log = moving.live.app().log().text();
     assert_eq!(log.matches("preset fast would be next").count(), 1, "{log}");
 }
-
-/// Depths warm the phone and matter to alignment alone: they are measured from the step before it
-/// on, and are the first thing that heat takes.
-#[test]
-fn depths_are_measured_from_the_plate_on_and_not_by_a_warm_phone() {
-    let measures = |commands: &[ShellCommand]| {
-        commands.iter().find_map(|command| match command {
-            ShellCommand::Platform(PlatformCommand::RunTracking { measures_depth, .. }) => {
-                Some(*measures_depth)
-            }
-            _ => None,
-        })
-    };
-    let mut app = world::app();
-    let begun: Vec<ShellCommand> = world::opening()
-        .into_iter()
-        .flat_map(|event| app.event(event))
-        .collect();
-    assert_eq!(measures(&begun), Some(false));
-    let mut app = world::at_ghost();
-    // It was asked for before, with the end of the search for a table.
-    assert_eq!(
-        measures(&app.event(ShellEvent::Thermal(Thermal::Fair))),
-        Some(false)
-    );
-    assert_eq!(measures(&app.event(ShellEvent::Thermal(Thermal::Serious))), None);
-    assert_eq!(
-        measures(&app.event(ShellEvent::Thermal(Thermal::Nominal))),
-        Some(true)
-    );
-}

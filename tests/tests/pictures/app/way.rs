@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use app_core::app::{
-    App, Placing, PlatformCommand, ShellCommand, ShellEvent, Show, Step, UserAction, Verdict, WorkCommand,
+    App, Placing, PlatformCommand, ShellCommand, ShellEvent, Show, Step, UserAction, Verdict, WatchJob,
+    WorkCommand,
 };
 use app_core::interface::announced;
 use app_core::recording::RecordingJob;
@@ -25,6 +26,8 @@ pub(crate) struct Person {
     pub(crate) feed: Feed,
     /// Recordings that are waiting to be written.
     pub(crate) recordings: Vec<RecordingJob>,
+    /// Searches for things, which do not end; `None` if each ends at once.
+    pub(crate) watches: Option<Vec<WatchJob>>,
     /// Haptic pulses so far.
     pub(crate) n_knocks: usize,
     /// The words that were announced last.
@@ -51,9 +54,10 @@ impl Person {
                 ShellCommand::Work(WorkCommand::Align(job)) => {
                     self.tell(ShellEvent::Aligned(Some(Box::new(job.run()))))
                 }
-                ShellCommand::Work(WorkCommand::Watch(job)) => {
-                    self.tell(ShellEvent::Watched(Some(Box::new(job.run()))));
-                }
+                ShellCommand::Work(WorkCommand::Watch(job)) => match &mut self.watches {
+                    Some(watches) => watches.push(*job),
+                    None => self.tell(ShellEvent::Watched(Box::new(job.run()))),
+                },
                 ShellCommand::Work(WorkCommand::Record(job)) => self.recordings.extend(job.map(|job| *job)),
                 ShellCommand::Platform(PlatformCommand::Knock) => self.n_knocks += 1,
                 ShellCommand::Platform(PlatformCommand::Announce(_)) => self.announced = announced(&self.app),
@@ -126,6 +130,7 @@ pub(crate) fn photographed() -> Person {
         app,
         feed,
         recordings: Vec::new(),
+        watches: None,
         n_knocks: 0,
         announced: String::new(),
         card_px: None,
@@ -187,6 +192,32 @@ fn a_ghost_that_is_a_little_off_becomes_a_toy_that_moves() {
     let turned_rad = (yaw_rad(&input.world_from_object) - yaw_rad(truth)).abs();
     assert!(turned_rad < 0.01, "{turned_rad}");
     assert_eq!(input.lights.as_ref().map(|lights| lights.len()), Some(1));
+}
+
+#[test]
+fn a_search_that_died_counts_for_its_own_place_alone() {
+    let mut person = placed(OFF_M);
+    person.watches = Some(Vec::new());
+    let n_begun = |person: &mut Person| {
+        person.frames(10);
+        assert_eq!(person.app.step(), Step::Play, "{:?}", person.app.verdict());
+        person.watches.as_ref().map_or(0, Vec::len)
+    };
+    assert_eq!(n_begun(&mut person), 1, "one at a time");
+    person.act(UserAction::Replace);
+    person.act(UserAction::Placed);
+    assert_eq!(n_begun(&mut person), 2, "one of each place");
+    let die = |person: &mut Person, index: usize| {
+        let died = person
+            .watches
+            .as_ref()
+            .map(|watches| watches[index].without_result());
+        person.tell(ShellEvent::Watched(Box::new(died.expect("a search"))));
+    };
+    die(&mut person, 0);
+    assert_eq!(n_begun(&mut person), 2, "that of the present place still runs");
+    die(&mut person, 1);
+    assert_eq!(n_begun(&mut person), 3, "another one begins");
 }
 
 #[test]
