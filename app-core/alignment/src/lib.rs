@@ -78,6 +78,7 @@ mod toy_search;
 mod view;
 mod warning;
 mod withheld;
+mod without_people;
 
 use std::sync::Arc;
 
@@ -368,7 +369,7 @@ impl Aligner {
     /// Camera and pose in a new view.
     fn see(&mut self, input: &FrameInput, kept: Option<&KeptLights>) -> Result<Seen, ToyError> {
         let withheld = self.withheld(input, (&input.camera, CAMERA_GROWN), kept)?;
-        let withheld = withheld::without_people(input, withheld);
+        let withheld = without_people::without_people(input, withheld);
         let Scene {
             plates, receivers, ..
         } = &*self.scene;

@@ -11,7 +11,7 @@ use super::picture::{Mask, Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
 use super::report::{AssumedLight, EstimatedLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::shape::Shape;
-use super::withheld::without_people;
+use super::without_people::without_people;
 use super::{lights, pose};
 use crate::no_light::NoLight;
 use crate::probe::TrackedLight;

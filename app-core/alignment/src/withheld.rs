@@ -5,7 +5,7 @@ use glam::{DVec2, UVec2};
 use super::Aligner;
 use super::kept_lights::KeptLights;
 use super::lights::flat_shadows;
-use super::picture::{Mask, places};
+use super::picture::Mask;
 use super::raster::{Rasterizer, project};
 use super::receivers::SeenReceiver;
 use super::shape::Shape;
@@ -33,27 +33,6 @@ impl Aligner {
             .with_world_from_object(self.held.unwrap_or(input.world_from_object));
         shadows(&self.scene, &placed, lights.in_use(), grown).map(Some)
     }
-}
-
-/// A mask with the pixels of people, each grown by a pixel of theirs; the given one if there are
-/// none.
-pub(super) fn without_people(input: &FrameInput, withheld: Option<Mask>) -> Option<Mask> {
-    let Some(people) = input.people.as_ref().filter(|people| people.has_any()) else {
-        return withheld;
-    };
-    let size_px = UVec2::from_array(input.image.size_px());
-    let mut mask = Mask::new(size_px.as_ivec2());
-    for at in places(size_px.as_ivec2()) {
-        if people.is_person((at.as_dvec2() + 0.5) / size_px.as_dvec2()) {
-            mask.mark(at);
-        }
-    }
-    let mut mask = mask.grown(size_px.x.div_ceil(people.size_px().x).cast_signed());
-    if let Some(withheld) = withheld {
-        let both = places(size_px.as_ivec2()).filter(|at| withheld.has(*at));
-        both.for_each(|at| mask.mark(at));
-    }
-    Some(mask)
 }
 
 /// All shadows of the toy in the input's place, grown in all directions by a fraction of the

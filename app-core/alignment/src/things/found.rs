@@ -3,7 +3,7 @@
 use glam::{DVec2, IVec2};
 
 use super::grown::Grown;
-use super::memory::Known;
+use super::known::Known;
 use super::planes::FoundPlane;
 use super::shade::Brightness;
 use crate::picture::{Mask, places};

@@ -11,7 +11,7 @@ use glam::{DVec2, IVec2};
 use super::codes::{Codes, apart};
 use super::colors::Colors;
 use super::groups::{STEPS, groups, place_of};
-use super::memory::Known;
+use super::known::Known;
 use super::seeds::{Seed, Seeds};
 use crate::picture::{bilinear, index_in, places, square};
 

@@ -5,15 +5,15 @@ use glam::{DMat4, DVec3, IVec2};
 
 use super::codes::{Codes, apart};
 use super::grown::Grown;
+use super::known::{HELD, Known};
 use crate::median::median;
 use crate::picture::{Mask, index_in, places};
 use crate::receivers::{SeenReceiver, receiver_at};
 use app_scene::scene::{Intrinsics, Light};
 use app_scene::things::Mark;
 
-/// Evidence that a thing needs, over that of a single picture: one that was marked in the previous
-/// picture, one that had half the evidence of a single picture there, and one that comes.
-const HELD: f32 = 0.5;
+/// Evidence that a thing needs, over that of a single picture: one that had half of that evidence in
+/// the previous picture, and one that comes. One that was marked there needs [`HELD`].
 const SEEN: f32 = 1.0;
 const NEW: f32 = 2.0;
 /// Share of a thing's pixels that the previous picture must have shown as a thing.
@@ -27,31 +27,6 @@ const OF_NOISE: f32 = 3.0;
 /// Distance in pixels of a level within which the outline of a thing in an unchanged part of the
 /// picture stays.
 const SAME_OUTLINE_PX: f64 = 3.0;
-
-/// State of a thing in a picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Known {
-    /// There is hardly any evidence for it.
-    #[default]
-    Nothing,
-    /// It has less evidence than it needs, but enough to stay if it had been marked before.
-    Candidate,
-    /// It is marked.
-    Marked,
-}
-
-impl Known {
-    /// The state of a thing that needs `needed` times the evidence of a single picture.
-    pub(super) fn of(needed: f32, has: impl Fn(f32) -> bool) -> Self {
-        if has(needed) {
-            Self::Marked
-        } else if has(HELD) {
-            Self::Candidate
-        } else {
-            Self::Nothing
-        }
-    }
-}
 
 /// Place from which a picture was taken, with the toy and the lights in it.
 #[derive(Clone, Debug)]

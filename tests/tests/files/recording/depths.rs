@@ -79,6 +79,15 @@ fn told(capture: &Capture) -> Vec<Option<Vec<u16>>> {
     depths.collect()
 }
 
+/// The corners of its triangles, which are not shared once it was read.
+fn corners(mesh: &PlaceMesh) -> Vec<[Vec3; 3]> {
+    let point = |index: u32| mesh.points()[index as usize];
+    mesh.triangles()
+        .iter()
+        .map(|corners| corners.map(point))
+        .collect()
+}
+
 #[test]
 fn depths_and_mesh_come_back_also_by_a_folder() {
     let folder = Temporary::new("recorded-depths");
@@ -92,11 +101,8 @@ fn depths_and_mesh_come_back_also_by_a_folder() {
         capture.check_pictures(0..4).unwrap();
         assert_eq!(told(&capture), [near.clone(), near.clone(), None, far.clone()]);
         let read = capture.scene().place_mesh.as_ref().unwrap();
-        assert_eq!(
-            (read.triangles(), read.deviation_m()),
-            (mesh().triangles(), Some(0.002))
-        );
-        assert_eq!(read.points(), mesh().points());
+        assert_eq!(read.deviation_m(), Some(0.002));
+        assert_eq!(corners(read), corners(&mesh()));
     }
     let stored = Stored::open(&path).unwrap();
     let paths = stored.paths().unwrap();

@@ -1,0 +1,27 @@
+//! Pixels of people, which alignment must not read.
+
+use glam::UVec2;
+
+use super::picture::{Mask, places};
+use app_scene::frame::FrameInput;
+
+/// A mask with the pixels of people, each grown by a pixel of theirs; the given one if there are
+/// none.
+pub(super) fn without_people(input: &FrameInput, withheld: Option<Mask>) -> Option<Mask> {
+    let Some(people) = input.people.as_ref().filter(|people| people.has_any()) else {
+        return withheld;
+    };
+    let size_px = UVec2::from_array(input.image.size_px());
+    let mut mask = Mask::new(size_px.as_ivec2());
+    for at in places(size_px.as_ivec2()) {
+        if people.is_person((at.as_dvec2() + 0.5) / size_px.as_dvec2()) {
+            mask.mark(at);
+        }
+    }
+    let mut mask = mask.grown(size_px.x.div_ceil(people.size_px().x).cast_signed());
+    if let Some(withheld) = withheld {
+        let both = places(size_px.as_ivec2()).filter(|at| withheld.has(*at));
+        both.for_each(|at| mask.mark(at));
+    }
+    Some(mask)
+}
