@@ -177,7 +177,7 @@ fn a_tilted_plane_is_found() {
 fn a_tilted_plane_that_looks_like_the_table_is_found() {
     let tilt_rad = -0.2;
     let world_from_board = board(0.025, tilt_rad);
-    let (scene, shot) = painted(&[(world_from_board, HALF_M)], &waves(0.88));
+    let (scene, shot) = painted(&[(world_from_board, 1.4 * HALF_M)], &waves(0.88));
     let mut observer = Observer::default();
     observer.observed(&scene, &shot.input).unwrap();
     let told = observer.planes().first().expect("a plane");
