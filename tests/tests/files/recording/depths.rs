@@ -10,6 +10,7 @@ use app_core::recording::{
     Ending, Item, Limits, LiveFrame, Loss, Picture, PictureCodec, Recording, RecordingJob, RecordingOptions,
     WriteError, Writer,
 };
+use app_core::scene::FieldError;
 use app_core::session::{Capture, Files, Session};
 use desk::convert::write;
 use desk::files::BUNDLED_SESSION;
@@ -165,4 +166,15 @@ fn a_frame_whose_depths_are_lost_is_left_out_and_told() {
         .iter()
         .any(|loss| matches!(loss, Loss::Pictures { n_frames: 1 }));
     assert!(lost, "{:?}", left.losses());
+}
+
+#[test]
+fn a_mesh_without_points_or_triangles_is_empty() {
+    let empty = [
+        PlaceMesh::new([], [[0, 1, 2]], None),
+        PlaceMesh::new([Vec3::ZERO, Vec3::X, Vec3::Z], [], None),
+    ];
+    for made in empty {
+        assert_eq!(made.err(), Some(FieldError::Empty));
+    }
 }

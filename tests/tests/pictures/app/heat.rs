@@ -1,7 +1,7 @@
 //! Masks of people and depths: when they are asked for, which heat ends, and where they go.
 
 use app_core::app::{
-    PlatformCommand, ShellCommand, ShellEvent, Show, Step, Thermal, UserAction, WorkCommand,
+    App, PlatformCommand, ShellCommand, ShellEvent, Show, Step, Thermal, UserAction, WorkCommand,
 };
 use app_core::camera_frame::Tracking;
 use app_core::depth::Depth;

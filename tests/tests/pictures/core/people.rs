@@ -1,6 +1,7 @@
 //! People in the picture, by a platform's mask: they stay as the camera saw them, and the toy goes
 //! behind those that cover it.
 
+use app_core::depth::Depth;
 use app_core::frame::FrameInput;
 use app_core::people::People;
 use app_core::preset::Preset;
@@ -63,6 +64,35 @@ fn people_stay_as_the_camera_saw_them_and_hide_the_toy_that_they_cover() {
     assert!(report.warnings.contains(&Warning::Thing(Thing::BeforeToy)));
     let report = core.frame(&with(&input, &[IN_SHADOW])).unwrap();
     assert!(report.warnings.contains(&Warning::Thing(Thing::OnReceiver)));
+}
+
+#[test]
+fn a_mask_or_depths_of_another_shape_are_refused() {
+    let input = first_input();
+    let mut core = core();
+    core.set_scene(scene(), Preset::Balanced).unwrap();
+    let [width_px, height_px] = input.image.size_px();
+    for (size_px, is_alike) in [
+        ([width_px / 4, height_px / 4], true),
+        ([height_px, width_px], false),
+        ([width_px / 4, height_px / 8], false),
+    ] {
+        let n_pixels = (size_px[0] * size_px[1]) as usize;
+        let people = People::new(size_px.into(), vec![0; n_pixels]);
+        let depth = Depth::new(size_px.into(), vec![300; n_pixels]);
+        let inputs = [
+            ("people: ", input.clone().with_people(people)),
+            ("depth: ", input.clone().with_depth(depth)),
+        ];
+        for (field, input) in inputs {
+            let refused = core.frame(&input).err().map(|error| error.to_string());
+            let is_refused = refused.as_ref().is_some_and(|refused| {
+                refused.contains(field) && refused.contains("not the shape of the picture")
+            });
+            assert_eq!(is_refused, !is_alike, "{field}{size_px:?}: {refused:?}");
+            assert_eq!(refused.is_none(), is_alike, "{refused:?}");
+        }
+    }
 }
 
 /// A platform delivers a mask with each picture.
