@@ -3,8 +3,6 @@
 usage: depth.py SESSION OUT [--of SESSION] [--noise MM] [--grain PX] [--side PX]
 """
 import argparse
-import json
-import shutil
 from pathlib import Path
 
 import mitsuba as mi
@@ -12,13 +10,11 @@ import numpy as np
 from PIL import Image
 from scipy.ndimage import gaussian_filter
 
+from folder import copied, index_of, write
+from setup import matrix
 from skin import Toy
 
 mi.set_variant("llvm_ad_rgb")
-
-
-def matrix(columns):
-    return np.array(columns).reshape(4, 4).T
 
 
 def mesh(corners, faces):
@@ -78,9 +74,7 @@ def main():
     parser.add_argument("--grain", type=float, default=0.0, help="deviation of the blur that neighbouring pixels' noise shares, pixels")
     parser.add_argument("--side", type=int, default=256, help="columns")
     args = parser.parse_args()
-    shutil.copytree(args.session, args.out, dirs_exist_ok=True)
-    index = json.loads((args.session / "capture.json").read_text())
-    of = json.loads(((args.of or args.session) / "capture.json").read_text())
+    index, of = copied(args.session, args.out), index_of(args.of or args.session)
     scene = geometry(index, of, args.session)
     size = (args.side, round(args.side * index["height"] / index["width"]))
     random = np.random.default_rng(5)
@@ -93,7 +87,7 @@ def main():
         seen = np.where(exact > 0, 1e3 * exact + args.noise * noise, 0)
         frame["depth"] = f"depth_{number:04}.png"
         Image.fromarray(np.clip(np.round(seen), 0, 65535).astype(np.uint16)).save(args.out / frame["depth"])
-    (args.out / "capture.json").write_text(json.dumps(index, indent=1) + "\n")
+    write(args.out, index)
 
 
 if __name__ == "__main__":

@@ -168,10 +168,15 @@ def write_glb(path, solids, joints, materials, clips):
 
 def binary(document, buffer):
     """Binary glTF of a document without its accessors and buffers, which are the buffer's."""
-    document = document | {"accessors": buffer.accessors, "bufferViews": buffer.views, "buffers": [{"byteLength": len(buffer.data)}]}
+    return packed(document | {"accessors": buffer.accessors, "bufferViews": buffer.views}, buffer.data)
+
+
+def packed(document, data):
+    """Binary glTF of a document whose only buffer has these bytes."""
+    document = document | {"buffers": [{"byteLength": len(data)}]}
     text = json.dumps(document, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)
-    body = bytes(buffer.data) + bytes(-len(buffer.data) % 4)
+    body = bytes(data) + bytes(-len(data) % 4)
     document_chunk = struct.pack("<II", len(text), 0x4E4F534A) + text
     binary_chunk = struct.pack("<II", len(body), 0x004E4942) + body
     header = struct.pack("<4sII", b"glTF", 2, 12 + len(document_chunk) + len(binary_chunk))

@@ -3,21 +3,17 @@
 usage: mesh.py SESSION OUT [--of SESSION] [--noise MM] [--spacing MM] [--deviation MM] [--move X Y Z] [--turn DEG] [--tilt DEG]
 """
 import argparse
-import json
-import shutil
 from pathlib import Path
 
 import numpy as np
 
+from folder import copied, index_of, write
 from glb import FLOAT, Buffer, binary
+from setup import matrix
 
 NAME = "place.glb"
 UNSIGNED_INT = 5125
 REACH = 0.4  # of the ground's mesh around its middle
-
-
-def matrix(columns):
-    return np.array(columns).reshape(4, 4).T
 
 
 def faces(listing, is_solid):
@@ -73,9 +69,7 @@ def main():
     parser.add_argument("--turn", type=float, default=0.0, help="about +Y, degrees")
     parser.add_argument("--tilt", type=float, default=0.0, help="about +X, degrees")
     args = parser.parse_args()
-    shutil.copytree(args.session, args.out, dirs_exist_ok=True)
-    index = json.loads((args.session / "capture.json").read_text())
-    of = json.loads(((args.of or args.session) / "capture.json").read_text())
+    index, of = copied(args.session, args.out), index_of(args.of or args.session)
     quads = [quad for k, listing in enumerate(of["receivers"]) for quad in faces(listing, is_solid=k > 0)]
     points, triangles, n = [], [], 0
     for quad in quads:
@@ -87,7 +81,7 @@ def main():
     points = points + np.random.default_rng(6).normal(scale=1e-3 * args.noise, size=points.shape) if args.noise else points
     (args.out / NAME).write_bytes(glb(misplaced(points, args), np.concatenate(triangles)))
     index["place_mesh"] = {"file": NAME} | ({"deviation": 1e-3 * args.deviation} if args.deviation is not None else {})
-    (args.out / "capture.json").write_text(json.dumps(index, indent=1) + "\n")
+    write(args.out, index)
 
 
 if __name__ == "__main__":

@@ -4,13 +4,12 @@ usage: poor.py SESSION OUT [--keep SHARE] [--off MM]
 """
 import argparse
 import heapq
-import json
-import shutil
-import struct
 from pathlib import Path
 
 import numpy as np
 
+from folder import copied
+from glb import packed
 from skin import DTYPES, Toy
 
 WAVE_MM = 12.0  # length of the waves of a surface that is off
@@ -127,12 +126,7 @@ class Rewriter:
             entry |= {"min": array.min(0).tolist(), "max": array.max(0).tolist()}
 
     def write(self, path):
-        self.document["buffers"] = [{"byteLength": len(self.binary)}]
-        text = json.dumps(self.document, separators=(",", ":")).encode()
-        text += b" " * (-len(text) % 4)
-        body = bytes(self.binary) + bytes(-len(self.binary) % 4)
-        chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(body), 0x004E4942) + body
-        path.write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks)
+        path.write_bytes(packed(self.document, self.binary))
 
 
 def poorer(rewriter, primitive, keep, off):
@@ -171,8 +165,7 @@ def main():
     parser.add_argument("--keep", type=float, default=1.0, help="share of the triangles to keep")
     parser.add_argument("--off", type=float, default=0.0, help="root mean square of each component of the surface's displacement, millimetres")
     args = parser.parse_args()
-    shutil.copytree(args.session, args.out, dirs_exist_ok=True)
-    index = json.loads((args.session / "capture.json").read_text())
+    index = copied(args.session, args.out)
     file = index["toy"]["file"]
     scale_mm = 1e3 * np.linalg.norm(index["toy"]["world_from_object"][:3])
     rewriter = Rewriter(args.session / file)

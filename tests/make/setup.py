@@ -193,3 +193,8 @@ def gains(count, seed):
 def columns(matrix):
     """16 numbers, column-major."""
     return [float(x) for x in matrix.T.ravel()]
+
+
+def matrix(columns):
+    """4x4 for column vectors, of 16 numbers."""
+    return np.array(columns).reshape(4, 4).T

@@ -9,7 +9,7 @@ use super::lights::Watched;
 use super::photograph::MOST_OUTLINE_PX;
 use super::view::Seen;
 use crate::no_light::NoLight;
-use crate::things::Colored;
+use crate::things::{self, Colored};
 use app_scene::scene::{Light, LightUncertainty, MAX_LIGHTS, Scene};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
@@ -223,11 +223,7 @@ impl Aligner {
             let toy = &seen.input.world_from_object;
             self.gloss = Some(looked_at.photograph.gloss(&self.scene, toy, lights.in_use())?);
         }
-        // Equal marks stay identical, so that nothing is learned again.
-        let is_same = |known: &Things| things.as_ref().is_some_and(|things| things.is_like(known));
-        if !self.things.as_ref().is_some_and(is_same) {
-            self.things = things;
-        }
+        things::adopt(&mut self.things, things);
         Ok(lights)
     }
 

@@ -111,15 +111,15 @@ impl Observer {
 }
 
 /// The conditions of a frame.
-struct Look<'a> {
-    input: &'a FrameInput,
-    plate_spread: Spread,
-    reflection: Option<&'a FoundReflection>,
+pub(super) struct Look<'a> {
+    pub(super) input: &'a FrameInput,
+    pub(super) plate_spread: Spread,
+    pub(super) reflection: Option<&'a FoundReflection>,
 }
 
 impl Look<'_> {
     /// The frame beside an equally soft plate, both as if the receiver under the toy were matt.
-    fn photograph(&self, scene: &Scene) -> Result<Photograph, AlignError> {
+    pub(super) fn photograph(&self, scene: &Scene) -> Result<Photograph, AlignError> {
         let photograph = Photograph::new(scene, self.input, None).with_plate_as_soft(self.plate_spread);
         Ok(match self.reflection {
             Some(found) => photograph.freed_of(scene, self.input, found)?,

@@ -1,5 +1,7 @@
 //! Smaller pictures, in codes.
 
+use std::sync::Arc;
+
 use app_scene::geometry::color::{linear_from_srgb, linear_of_codes};
 use app_scene::scene::Image;
 
@@ -8,9 +10,9 @@ const BLOCK_PX: usize = 16;
 
 /// A picture that is halved some times; an odd last row and column are left out. The means are of
 /// linear light.
-pub(super) fn smaller(image: &Image, n_halvings: u32) -> Image {
+pub(super) fn smaller(image: &Arc<Image>, n_halvings: u32) -> Arc<Image> {
     if n_halvings == 0 {
-        return image.clone();
+        return Arc::clone(image);
     }
     let light_of = linear_of_codes();
     // A code covers half the distance to its neighbours.
@@ -40,11 +42,11 @@ pub(super) fn smaller(image: &Image, n_halvings: u32) -> Image {
             rgba8.push(u8::MAX);
         }
     }
-    Image {
+    Arc::new(Image {
         width_px,
         height_px,
         rgba8,
-    }
+    })
 }
 
 /// Mean codes of the blocks of a picture.

@@ -4,10 +4,9 @@ use std::sync::Arc;
 
 use super::error::{self, AlignError};
 use super::lights::FoundReflection;
-use super::median::median;
-use super::photograph::Photograph;
+use super::observer::Look;
 use super::smaller::{Blocks, smaller};
-use super::things::Memory;
+use super::things::{Memory, adopt, least_change};
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Camera, Light, Plate, Scene};
 use app_scene::sharpness::Spread;
@@ -16,10 +15,6 @@ use app_scene::things::Things;
 /// Maximum number of pixels of a picture in which things are searched for; larger ones are halved.
 /// Outlines of moving things need no more, and the time is proportional to it.
 const MOST_PIXELS: u32 = 1 << 20;
-/// Smallest difference of a block's mean in codes that counts as a change, and its multiple of the
-/// median difference, which is the noise and the drift of the exposure.
-const CHANGED_CODES: f32 = 2.0;
-const OF_NOISE: f32 = 3.0;
 /// Number of changed blocks from which on a picture shows something else.
 const LEAST_CHANGED: usize = 2;
 
@@ -119,24 +114,16 @@ impl ThingWatcher {
         let input = input.clone().with_camera(halved(&input.camera, small.n_halvings));
         let input = input.with_image(image);
         let scale = 0.25_f64.powi(small.n_halvings.cast_signed());
-        let photograph = Photograph::new(&small.scene, &input, None)
-            .with_plate_as_soft(conditions.plate_spread.times(scale));
-        let photograph = match &conditions.reflection {
-            Some(found) => photograph.freed_of(&small.scene, &input, found)?,
-            None => photograph,
+        let look = Look {
+            input: &input,
+            plate_spread: conditions.plate_spread.times(scale),
+            reflection: conditions.reflection.as_ref(),
         };
+        let photograph = look.photograph(&small.scene)?;
         let before = (None, self.memory.as_ref());
         let sighted = photograph.things(&small.scene, &input, &conditions.lights, before)?;
         (self.looked, self.memory) = (Some(looked), sighted.memory);
-        let is_same = |known: &Things| {
-            sighted
-                .things
-                .as_ref()
-                .is_some_and(|things| things.is_like(known))
-        };
-        if !self.things.as_ref().is_some_and(is_same) {
-            self.things = sighted.things;
-        }
+        adopt(&mut self.things, sighted.things);
         Ok(Watched::Things(self.things.clone()))
     }
 }
@@ -150,7 +137,7 @@ impl SmallScene {
         small.height_px >>= n_halvings;
         for Plate { camera, image } in &mut small.plates {
             *camera = halved(camera, n_halvings);
-            *image = Arc::new(smaller(image, n_halvings));
+            *image = smaller(image, n_halvings);
         }
         Self {
             of: Arc::clone(scene),
@@ -166,8 +153,7 @@ impl Looked {
         let Some(apart) = self.blocks.apart(&other.blocks) else {
             return false;
         };
-        let noise = median(apart.iter().copied(), f32::total_cmp).unwrap_or(0.0);
-        let least = CHANGED_CODES.max(OF_NOISE * noise);
+        let least = least_change(apart.iter().copied());
         let n_changed = apart.into_iter().filter(|apart| *apart > least).count();
         n_changed < LEAST_CHANGED
             && self.camera == other.camera

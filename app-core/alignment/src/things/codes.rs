@@ -2,6 +2,7 @@
 
 use glam::IVec2;
 
+use crate::median::median;
 use crate::picture::{Color, Picture, index_in, places};
 use app_scene::geometry::color::srgb_from_linear;
 
@@ -32,6 +33,18 @@ impl Codes {
         let color = self.pixels[index_in(self.size_px, at)?];
         (!color[0].is_nan()).then_some(color)
     }
+}
+
+/// Smallest difference in codes that counts as a change, and its multiple of the median difference,
+/// which is the noise and the drift of the exposure.
+const CHANGED_CODES: f32 = 2.0;
+const OF_NOISE: f32 = 3.0;
+
+/// The difference in codes from which on a place of a picture has changed, by the differences of
+/// its known places.
+pub(crate) fn least_change(apart: impl Iterator<Item = f32>) -> f32 {
+    let noise = median(apart, f32::total_cmp).unwrap_or(0.0);
+    CHANGED_CODES.max(OF_NOISE * noise)
 }
 
 /// Largest difference of a channel.

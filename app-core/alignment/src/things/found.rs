@@ -7,7 +7,7 @@ use super::known::Known;
 use super::planes::FoundPlane;
 use super::shade::Brightness;
 use crate::picture::{Mask, places};
-use app_scene::things::Mark;
+use app_scene::things::{Mark, Things};
 
 /// Things in a level.
 pub(super) struct Found {
@@ -109,4 +109,13 @@ pub(super) struct InFrame {
     /// The mark of each thing: before the toy, beside it, or no mark.
     pub(super) marks: Vec<Mark>,
     pub(super) known: Vec<Known>,
+}
+
+/// Adopts the things of the next picture. Equal marks stay identical, so that nothing is learned
+/// again.
+pub(crate) fn adopt(known: &mut Option<Things>, now: Option<Things>) {
+    let is_same = |known: &Things| now.as_ref().is_some_and(|now| now.is_like(known));
+    if !known.as_ref().is_some_and(is_same) {
+        *known = now;
+    }
 }

@@ -1,11 +1,23 @@
-//! Connected pixels.
+//! Pixels with a property, and connected ones.
 
 use glam::IVec2;
 
+use crate::lights::Compared;
 use crate::picture::{index_in, square};
 
 /// Neighbours of a pixel.
 pub(super) const STEPS: [IVec2; 4] = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
+
+/// For each pixel of a level, whether it was compared and has a property.
+pub(super) fn marked(size_px: IVec2, compared: &[Compared], has: impl Fn(&Compared) -> bool) -> Vec<bool> {
+    let mut marked = vec![false; (size_px.x * size_px.y) as usize];
+    for pixel in compared {
+        if let Some(index) = index_in(size_px, pixel.at) {
+            marked[index] = has(pixel);
+        }
+    }
+    marked
+}
 
 /// Indices of connected pixels.
 pub(crate) fn groups(size_px: IVec2, is_in: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {

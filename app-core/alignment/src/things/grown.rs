@@ -35,7 +35,7 @@ const FARTHEST: f32 = 40.0;
 
 /// Minimum number of seeds of a thing that is not before the toy: fewer may come from the camera's
 /// own processing.
-const LEAST_ALONE: usize = 60;
+pub(super) const LEAST_ALONE: usize = 60;
 /// Distance in pixels at which an added group touches a thing, and its distance from the receiver.
 const TOUCH_PX: i32 = 3;
 const ABSORBED: f32 = 10.0;

@@ -3,10 +3,9 @@
 
 use glam::{DMat4, DVec3, IVec2};
 
-use super::codes::{Codes, apart};
+use super::codes::{Codes, apart, least_change};
 use super::grown::Grown;
 use super::known::{HELD, Known};
-use crate::median::median;
 use crate::picture::{Mask, index_in, places};
 use crate::receivers::{SeenReceiver, receiver_at};
 use app_scene::scene::{Intrinsics, Light};
@@ -20,10 +19,6 @@ const NEW: f32 = 2.0;
 const SAME_PLACE: f32 = 0.3;
 /// Movement in pixels of a level within which two pictures show the same view.
 const SAME_VIEW_PX: f64 = 0.5;
-/// Smallest difference in codes that counts as a change, and its multiple of the median difference,
-/// which is the noise.
-const CHANGED_CODES: f32 = 2.0;
-const OF_NOISE: f32 = 3.0;
 /// Distance in pixels of a level within which the outline of a thing in an unchanged part of the
 /// picture stays.
 const SAME_OUTLINE_PX: f64 = 3.0;
@@ -158,8 +153,7 @@ impl Codes {
             .iter()
             .zip(&self.pixels)
             .filter(|(_, pixel)| !pixel[0].is_nan());
-        let noise = median(known.map(|(apart, _)| *apart), f32::total_cmp).unwrap_or(0.0);
-        let least = CHANGED_CODES.max(OF_NOISE * noise);
+        let least = least_change(known.map(|(apart, _)| *apart));
         let mut changed = Mask::new(self.size_px);
         let unlike = places(self.size_px)
             .zip(apart)

@@ -42,6 +42,8 @@ use crate::shape::Shape;
 use app_scene::geometry::color::srgb_from_linear;
 use app_scene::scene::{Light, MAX_RECEIVERS};
 use app_scene::things::Mark;
+pub(crate) use codes::least_change;
+pub(crate) use found::adopt;
 pub(crate) use memory::Memory;
 
 use codes::{Codes, UNLIKE_CODES, apart, from_shaded};
@@ -188,39 +190,16 @@ impl Sight<'_> {
             toy.before(grown, (frame, &plate), needed)
         });
         let alone = evidence.map_or(Vec::new(), |(grown, needed)| grown.alone(&needed));
-        let measured: Vec<_> = self
-            .points
-            .iter()
-            .map(|points| toy.beside(points, level))
-            .collect();
-        let shape = self.shape.merged_in_px(planes::CELL_PX, level);
-        let planes_on = |grown: Option<&Grown>, colored, are_things_of_points| {
-            let place = planes::Place {
-                shape: &shape,
-                receivers: self.receivers,
-                points: &measured,
-                are_things_of_points,
+        let planes = self.planes_of.map_or(Vec::new(), |colored| {
+            let alike = (grown.is_none() && colored == Colored::Alike)
+                .then(|| Grown::from(&seeds_of(colored), Seed::Thing, &plate))
+                .flatten();
+            let things = match &alike {
+                Some(alike) => (Some(alike), Colored::Alike),
+                None => (grown.as_ref(), Colored::Otherwise),
             };
-            sides::with_sides(&place, (level, grown, colored), &compared)
-        };
-        let of_picture = |colored| match &grown {
-            None if colored == Colored::Alike => {
-                let alike = Grown::from(&seeds_of(colored), Seed::Thing, &plate);
-                planes_on(alike.as_ref(), colored, false)
-            }
-            grown => planes_on(grown.as_ref(), Colored::Otherwise, false),
-        };
-        let of_points = || {
-            let points = (&*measured, self.receivers);
-            let things = standing(grown.as_ref(), points, level, &compared.pixels);
-            things.map_or(Vec::new(), |things| {
-                planes_on(Some(&things), Colored::Otherwise, true)
-            })
-        };
-        // Points may be of a world that is a little off.
-        let planes = self
-            .planes_of
-            .map_or(Vec::new(), |colored| clearer([of_points(), of_picture(colored)]));
+            self.planes(things, grown.as_ref(), (level, toy), &compared)
+        });
         let grown = grown.map(|mut grown| {
             let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, &plate);
             grown.absorb(&shadows);
@@ -244,6 +223,36 @@ impl Sight<'_> {
             on_things,
             in_frame,
         }
+    }
+
+    /// Planes by measured points, or those of `things` if they end at clearer edges or there are no
+    /// others. `shown` are the things that the pictures show.
+    fn planes(
+        &self,
+        (things, colored): (Option<&Grown>, Colored),
+        shown: Option<&Grown>,
+        (level, toy): (&Level, &Toy),
+        compared: &Comparison,
+    ) -> Vec<FoundPlane> {
+        let points: Vec<_> = self
+            .points
+            .iter()
+            .map(|points| toy.beside(points, level))
+            .collect();
+        let shape = self.shape.merged_in_px(planes::CELL_PX, level);
+        let of = |things: Option<&Grown>, colored, are_things_of_points| {
+            let place = planes::Place {
+                shape: &shape,
+                receivers: self.receivers,
+                points: &points,
+                are_things_of_points,
+            };
+            sides::with_sides(&place, (level, things, colored), compared)
+        };
+        let standing = standing(shown, (&points, self.receivers), level, &compared.pixels);
+        let of_points = standing.map_or(Vec::new(), |things| of(Some(&things), Colored::Otherwise, true));
+        // Points may be of a world that is a little off.
+        clearer([of_points, of(things, colored, false)])
     }
 
     /// The evidence that each thing needs, over that of a picture by itself.

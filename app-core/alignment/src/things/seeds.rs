@@ -88,10 +88,9 @@ impl Seeds {
             let Some(index) = index_in(size_px, pixel.at) else {
                 continue;
             };
-            let noise = OF_NOISE * pixel.noise;
-            if pixel.away() > UNEXPLAINED.max(noise) {
+            if is_unexplained(pixel) {
                 seeds[index] = Seed::Thing;
-            } else if pixel.away() < EXPLAINED.max(0.5 * noise) && pixel.taken() > SHADOWED {
+            } else if pixel.away() < EXPLAINED.max(0.5 * OF_NOISE * pixel.noise) && pixel.taken() > SHADOWED {
                 seeds[index] = Seed::Receiver;
             }
         }
@@ -237,6 +236,11 @@ impl Seeds {
             .map(|(index, _)| index)
             .collect()
     }
+}
+
+/// Whether no light on a receiver explains a pixel.
+pub(super) fn is_unexplained(pixel: &Compared) -> bool {
+    pixel.away() > UNEXPLAINED.max(OF_NOISE * pixel.noise)
 }
 
 /// The frame without the toy's shadow, if it shows a receiver.

@@ -7,9 +7,10 @@
 use glam::{DVec3, IVec2};
 
 use super::extent::is_exact;
-use super::groups::groups;
-use super::grown::Grown;
+use super::groups::{groups, marked};
+use super::grown::{Grown, LEAST_ALONE};
 use super::measured::{above_m, of_table};
+use super::seeds::is_unexplained;
 use crate::lights::Compared;
 use crate::measured_points::MeasuredPoints;
 use crate::picture::{Level, index_in, places};
@@ -21,12 +22,6 @@ const ON_TABLE_M: f64 = 0.025;
 const LEAST_M: f64 = 0.003;
 /// Least points on the receiver.
 const LEAST_POINTS: usize = 1000;
-/// Least pixels of a thing that no light on the receivers explains, as for one that pictures alone
-/// show, and the least difference of each from the model, in plates. A ramp of the table's own wood
-/// has 803, and once its plane is known none.
-const LEAST_UNEXPLAINED: usize = 60;
-const UNEXPLAINED: f32 = 0.15;
-const OF_NOISE: f32 = 4.0;
 
 /// The things that exact points show, of which the pictures contradict the receivers; `None` without
 /// any. `grown` are those that the pictures show.
@@ -39,12 +34,7 @@ pub(super) fn standing(
     let exact = measured.iter().find(|measured| is_exact(measured))?;
     let stands = places_above(grown, exact, receivers.first()?, level)?;
     let size_px = level.frame.size_px;
-    let mut is_unexplained = vec![false; stands.len()];
-    for pixel in compared {
-        if let Some(index) = index_in(size_px, pixel.at) {
-            is_unexplained[index] = pixel.away() > UNEXPLAINED.max(OF_NOISE * pixel.noise);
-        }
-    }
+    let is_unexplained = marked(size_px, compared, is_unexplained);
     let groups = groups(size_px, |index| stands[index]).into_iter();
     let counted = groups.map(|group| {
         (
@@ -52,7 +42,9 @@ pub(super) fn standing(
             group,
         )
     });
-    let things: Vec<_> = counted.filter(|(n, _)| *n >= LEAST_UNEXPLAINED).collect();
+    // As many as one that pictures alone show. A ramp of the table's own wood has 803, and once its
+    // plane is known none.
+    let things: Vec<_> = counted.filter(|(n, _)| *n >= LEAST_ALONE).collect();
     (!things.is_empty()).then(|| Grown::of_groups(size_px, &things))
 }
 

@@ -3,7 +3,7 @@
 use glam::IVec2;
 
 use super::Toy;
-use super::groups::{groups, place_of};
+use super::groups::{groups, marked, place_of};
 use super::grown::Grown;
 use crate::lights::Compared;
 use crate::picture::{Mask, index_in, places};
@@ -16,12 +16,9 @@ const WRONG_PX: i32 = 2;
 /// Wrong part of a level's plate: everything that is connected with seeds and differs from the
 /// model; behind the toy, the area that it grew to.
 pub(super) fn wrong_plate(grown: &Grown, toy: &Toy, size_px: IVec2, compared: &[Compared]) -> Mask {
-    let mut differs = vec![false; (size_px.x * size_px.y) as usize];
-    for pixel in compared {
-        if let Some(index) = index_in(size_px, pixel.at) {
-            differs[index] = pixel.away() > DIFFERS.max(2.0 * pixel.noise);
-        }
-    }
+    let differs = marked(size_px, compared, |pixel| {
+        pixel.away() > DIFFERS.max(2.0 * pixel.noise)
+    });
     let mut wrong = Mask::new(size_px);
     for at in places(size_px) {
         let near_toy = toy.coverage.is_near(at, WRONG_PX);

@@ -23,11 +23,7 @@ fn depths_are_measured_from_the_plate_on_and_not_by_a_warm_phone() {
         })
     };
     let mut app = world::app();
-    let begun: Vec<ShellCommand> = world::opening()
-        .into_iter()
-        .flat_map(|event| app.event(event))
-        .collect();
-    assert_eq!(measures(&begun), Some(false));
+    assert_eq!(measures(&world::begun(&mut app)), Some(false));
     let mut app = world::at_ghost();
     // It was asked for before, with the end of the search for a table.
     assert_eq!(

@@ -168,11 +168,7 @@ fn the_card_is_looked_for_where_a_person_has_one() {
         })
     };
     let mut app = world::app();
-    let begun: Vec<ShellCommand> = world::opening()
-        .into_iter()
-        .flat_map(|event| app.event(event))
-        .collect();
-    assert_eq!(finds_card(&begun), Some(false));
+    assert_eq!(finds_card(&world::begun(&mut app)), Some(false));
     let _ = frame_at(&mut app, 1, 0, Tracking::Normal);
     assert!(buttons(&app).contains(&"I have the card".to_owned()));
     assert_eq!(

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use app_core::alignment::NoLight;
 use app_core::alignment::{Alignment, PoseAlignment, PoseDeviation};
-use app_core::app::{App, GraphicsState, Permission, Recorded, ShellEvent, UserAction};
+use app_core::app::{App, GraphicsState, Permission, Recorded, ShellCommand, ShellEvent, UserAction};
 use app_core::camera_frame::{CameraFrame, Display, FoundPlane, Stamp, Tracking};
 use app_core::frame::FrameInput;
 use app_core::interface::{Insets, Screen};
@@ -54,6 +54,11 @@ pub(crate) fn opening() -> [ShellEvent; 4] {
         ShellEvent::Permission(Permission::Granted),
         ShellEvent::User(UserAction::Begin),
     ]
+}
+
+/// The commands of an app that begins with [`opening`].
+pub(crate) fn begun(app: &mut App) -> Vec<ShellCommand> {
+    opening().into_iter().flat_map(|event| app.event(event)).collect()
 }
 
 /// An app whose ghost stands on the table, without a plate.

@@ -80,13 +80,13 @@ struct Draws {
     format: TextureFormat,
     /// Outside the toy in either pose and its shadows: only the plate is drawn there.
     open: ByForm<Draw>,
-    plain: Shadowed,
-    /// The other variants by their number; compiled when the first such frame comes.
-    others: [OnceLock<Shadowed>; N_VARIANTS],
+    /// By the number of their variant; all but the plain ones are compiled when the first such frame
+    /// comes.
+    shadowed: [OnceLock<Shadowed>; N_VARIANTS],
 }
 
 /// Properties in which a frame differs from most.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 struct Variant {
     has_grain: bool,
     /// Whether the shadow's strength is not the true one.
@@ -240,19 +240,17 @@ impl Pass {
 
 impl Draws {
     fn new(gpu: &Gpu, format: TextureFormat) -> Self {
-        Self {
+        let draws = Self {
             format,
             open: draw(gpu, "fs_open", [&[], &[]], (Variant::PLAIN, &[format])),
-            plain: Shadowed::new(gpu, Variant::PLAIN, format),
-            others: Default::default(),
-        }
+            shadowed: Default::default(),
+        };
+        draws.shadowed(gpu, Variant::PLAIN);
+        draws
     }
 
     fn shadowed(&self, gpu: &Gpu, variant: Variant) -> &Shadowed {
-        if variant == Variant::PLAIN {
-            return &self.plain;
-        }
-        self.others[variant.number()].get_or_init(|| Shadowed::new(gpu, variant, self.format))
+        self.shadowed[variant.number()].get_or_init(|| Shadowed::new(gpu, variant, self.format))
     }
 
     fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, target: &TextureView) {
