@@ -14,40 +14,14 @@
 
 //#import common/fullscreen
 //#import common/marks
+//#import common/thing_marks
 
-struct ThingsView {
-  // Homography to the marks' pixels: (u, v, w) for a pixel of the region, with w > 0 in front of
-  // their camera.
-  marks_px_from_region_px: mat3x3f,
-}
-
-@group(1) @binding(0) var<uniform> things: ThingsView;
-// Codes of marks, and light as a share of what is usual.
-@group(1) @binding(1) var codes: texture_2d<f32>;
 @group(1) @binding(2) var validity: texture_2d<f32>;
 
-const CODE_THING: u32 = 1u;
-const CODE_BEFORE_TOY: u32 = 2u;
-const CODE_WRONG_PLATE: u32 = 3u;
-const CODE_SHADED_PLATE: u32 = 4u;
-const CODE_HIDDEN_THING: u32 = 5u;
 // Distance from a thing before the toy up to which a pixel of the toy mixes with it.
 const MIXED_PX: f32 = 2.0;
 // Smallest light in a plate: that of code 1.
 const LEAST_LEFT: f32 = 0.00392;
-
-// The mark at a place: its code, and light; 0 outside their picture.
-fn mark_at(region_px: vec2f) -> vec4f {
-  let at = things.marks_px_from_region_px * vec3f(region_px, 1.0);
-  if at.z <= 0.0 { return vec4f(0.0); }
-  let texel = vec2i(floor(at.xy / at.z));
-  if any(texel < vec2i(0)) || any(texel >= vec2i(textureDimensions(codes))) { return vec4f(0.0); }
-  return textureLoad(codes, texel, 0);
-}
-
-fn code_of(mark: vec4f) -> u32 {
-  return u32(round(255.0 * mark.r));
-}
 
 fn code_at(region_px: vec2f) -> u32 {
   return code_of(mark_at(region_px));

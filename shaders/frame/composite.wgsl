@@ -23,6 +23,7 @@
 //#import common/made_grain
 //#import common/marks
 //#import common/reflection
+//#import common/relit
 //#import common/two_receivers
 //#import common/unknown
 
@@ -133,11 +134,14 @@ fn receiver(
   if b.a == 0.0 { return f; }
   let lit = fit.gain.rgb * b.rgb;
   let point = receiver_point(at);
-  // A thing stays as photographed; where the real toy hides it, the plate has its light.
+  // A thing stays as photographed; where the real toy hides it, the plate has its light, and in the
+  // toy's shadow all that is shown.
   if is_thing(evident) {
     *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.b);
-    let color = mix(lit, f, evident.b);
-    if HAS_GRAIN { missing = missing_beside(color, evident.b, f, b, fit.gain.rgb); }
+    let own = select(evident.b, 0.0, is_relit(b));
+    let color = mix(lit, f, own);
+    let noisy = vec4f(b.rgb, select(b.a, 1.0, is_relit(b)));
+    if HAS_GRAIN { missing = missing_beside(color, own, f, noisy, fit.gain.rgb); }
     return color;
   }
   // Beyond the receivers only the real toy is removed.
@@ -187,6 +191,12 @@ fn receiver(
   return color;
 }
 
+// A thing before the toy, in the toy's shadow or not.
+fn before_toy(texel: vec2i, f: vec3f) -> vec3f {
+  let b = textureLoad(plate, texel, 0);
+  return select(f, fit.gain.rgb * b.rgb, is_relit(b));
+}
+
 // Difference of a texel of the toy box from the camera's picture, 0 to 1.
 fn change_at(texel: vec2i) -> f32 {
   let clamped = clamped_to_box(texel);
@@ -206,7 +216,7 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let texel = vec2u(position.xy);
   let frame_color = frame_at(vec2i(texel));
   let evident = marks_at(vec2i(texel));
-  if is_before_toy(evident) { return vec4f(frame_color, 1.0); }
+  if is_before_toy(evident) { return vec4f(before_toy(vec2i(texel), frame_color), 1.0); }
   let in_box = box_texel(vec2i(texel));
   let toy = toy_layer(in_box, n_draws);
   if toy.a == 1.0 {

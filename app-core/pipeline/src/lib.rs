@@ -38,6 +38,7 @@ const SHARED: &[&Mirrors] = &[
     &model::state::tints::TINT_GRID,
     &passes::globals::GLOBALS,
     &passes::pictures::PLANES,
+    &passes::thing_marks::THING_MARKS,
 ];
 
 /// Host declarations of a shader: those of the parts that it imports, and those of its own file.

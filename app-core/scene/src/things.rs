@@ -31,6 +31,48 @@ pub enum Mark {
     },
 }
 
+/// Step of the heights of raised points, in metres.
+pub const HEIGHT_STEP_M: f32 = 1e-5;
+
+/// A point of a thing above the first receiver, on which the toy's shadow may fall.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RaisedPoint {
+    /// In steps; 0 for no such point.
+    height: u16,
+    /// Of 255.
+    of_lights: u8,
+}
+
+impl RaisedPoint {
+    /// A point at a height in metres, up to .65, and the lights' share of its light in the plate,
+    /// from 0 to 1.
+    #[must_use]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped to the codes; 0 for NaN"
+    )]
+    pub fn new(height_m: f64, of_lights: f32) -> Self {
+        let height = (height_m / f64::from(HEIGHT_STEP_M)).round();
+        Self {
+            height: height.clamp(0.0, f64::from(u16::MAX)) as u16,
+            of_lights: (255.0 * of_lights).round().clamp(0.0, 255.0) as u8,
+        }
+    }
+
+    /// Height in steps of [`HEIGHT_STEP_M`]; 0 for no such point.
+    #[must_use]
+    pub fn height(self) -> u16 {
+        self.height
+    }
+
+    /// The lights' share of its light in the plate, of 255.
+    #[must_use]
+    pub fn of_lights(self) -> u8 {
+        self.of_lights
+    }
+}
+
 impl Mark {
     /// A receiver whose plate has this share of its light, for each channel.
     #[must_use]
@@ -79,6 +121,8 @@ pub struct Things {
     counts: [u32; 4],
     /// The camera that took the picture.
     camera: Camera,
+    /// The point of a thing at each pixel; empty if none is known.
+    raised: Arc<[RaisedPoint]>,
 }
 
 impl Things {
@@ -93,7 +137,28 @@ impl Things {
             marks,
             counts,
             camera,
+            raised: Arc::default(),
         })
+    }
+
+    /// With the points of things at the picture's pixels, rows from the top: new shadows fall on
+    /// them; `None` if their number is wrong.
+    #[must_use]
+    pub fn with_raised(self, raised: impl Into<Arc<[RaisedPoint]>>) -> Option<Self> {
+        let raised = raised.into();
+        (raised.len() == self.marks.len()).then_some(Self { raised, ..self })
+    }
+
+    /// The point of a thing at a pixel of this index; none without any.
+    #[must_use]
+    pub fn raised(&self, index: usize) -> RaisedPoint {
+        self.raised.get(index).copied().unwrap_or_default()
+    }
+
+    /// Whether the points of things are known.
+    #[must_use]
+    pub fn has_raised(&self) -> bool {
+        !self.raised.is_empty()
     }
 
     /// Width and height of the picture in pixels.
@@ -108,7 +173,7 @@ impl Things {
         &self.marks
     }
 
-    /// Some of the marks alone.
+    /// Some of the marks alone, without points.
     #[must_use]
     pub fn only(&self, is_kept: impl Fn(Mark) -> bool) -> Self {
         let kept = |mark: &Mark| if is_kept(*mark) { *mark } else { Mark::None };
@@ -116,6 +181,7 @@ impl Things {
         Self {
             counts: counts(&marks),
             marks: marks.into(),
+            raised: Arc::default(),
             ..*self
         }
     }
@@ -135,7 +201,7 @@ impl Things {
     /// Whether both have equal contents.
     #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
-        self.camera == other.camera && self.marks == other.marks
+        self.camera == other.camera && self.marks == other.marks && self.raised == other.raised
     }
 
     /// Whether there is any mark.

@@ -149,7 +149,13 @@ impl Photograph {
         Ok(Sighted {
             planes: planes.collect(),
             memory,
-            things: Things::new(found.size_px.as_uvec2(), found.marks, camera),
+            things: Things::new(found.size_px.as_uvec2(), found.marks, camera).and_then(|things| {
+                if found.raised.is_empty() {
+                    Some(things)
+                } else {
+                    things.with_raised(found.raised)
+                }
+            }),
         })
     }
 

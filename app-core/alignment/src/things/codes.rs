@@ -18,11 +18,7 @@ pub(super) struct Codes {
 
 impl Codes {
     pub(super) fn of(picture: &Picture) -> Self {
-        let code = |at| {
-            picture.get(at).map_or([f32::NAN; 3], |color| {
-                color.map(|linear| 255.0 * srgb_from_linear(linear))
-            })
-        };
+        let code = |at| picture.get(at).map_or([f32::NAN; 3], codes_of);
         Self {
             size_px: picture.size_px,
             pixels: places(picture.size_px).map(code).collect(),
@@ -33,6 +29,11 @@ impl Codes {
         let color = self.pixels[index_in(self.size_px, at)?];
         (!color[0].is_nan()).then_some(color)
     }
+}
+
+/// A colour of linear light in codes.
+pub(super) fn codes_of(color: Color) -> Color {
+    color.map(|linear| 255.0 * srgb_from_linear(linear))
 }
 
 /// Smallest difference in codes that counts as a change, and its multiple of the median difference,

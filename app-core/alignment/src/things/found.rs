@@ -6,7 +6,8 @@ use super::grown::Grown;
 use super::known::Known;
 use super::planes::FoundPlane;
 use super::shade::Brightness;
-use crate::picture::{Mask, places};
+use crate::lights::Compared;
+use crate::picture::{Color, Mask, places};
 use app_scene::things::{Mark, Things};
 
 /// Things in a level.
@@ -29,6 +30,8 @@ pub(super) struct Found {
     pub(super) on_things: Option<Brightness>,
     /// Things that the frame alone shows, such as a hand.
     pub(super) in_frame: Option<InFrame>,
+    /// The comparison of the level's pixels.
+    pub(super) compared: Vec<Compared>,
 }
 
 impl Found {
@@ -77,6 +80,19 @@ impl Found {
             }
             _ => self.in_plate_at(place),
         }
+    }
+
+    /// The thing that plate and frame show at a place in pixels of the level, without its shadow.
+    pub(super) fn body_at(&self, place: DVec2) -> Option<usize> {
+        let grown = self.grown.as_ref()?;
+        grown
+            .at(place)
+            .filter(|_| !grown.is_like_place(place) && !grown.is_shadow(place))
+    }
+
+    /// Whether a colour in codes is that of things in the plate.
+    pub(super) fn is_own_color(&self, color: Color) -> bool {
+        self.grown.as_ref().is_some_and(|grown| grown.is_own_color(color))
     }
 
     /// The same for a part of a thing that the toy hides; `None` if it does not, or if the light

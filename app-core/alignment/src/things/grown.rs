@@ -13,7 +13,7 @@ use super::colors::Colors;
 use super::groups::{STEPS, groups, place_of};
 use super::known::Known;
 use super::seeds::{Seed, Seeds};
-use crate::picture::{bilinear, index_in, places, square};
+use crate::picture::{Color, bilinear, index_in, places, square};
 
 /// Cost of a step: a constant, a factor for each code of change in the plate, and one for the log
 /// likelihood against it.
@@ -50,6 +50,9 @@ pub(super) struct Grown {
     n_seeds: Vec<usize>,
     /// Whether most pixels around each one have the place's colours in the plate.
     is_like_place: Vec<bool>,
+    /// Whether each pixel is of a thing's shadow.
+    is_shadow: Vec<bool>,
+    colors: Colors,
 }
 
 impl Grown {
@@ -79,6 +82,8 @@ impl Grown {
             thing,
             n_seeds,
             is_like_place: like_place(seeds.size_px, plate, colors),
+            is_shadow: vec![false; plate.pixels.len()],
+            colors: colors.clone(),
         })
     }
 
@@ -98,6 +103,8 @@ impl Grown {
             thing,
             n_seeds: groups.iter().map(|(n_seeds, _)| *n_seeds).collect(),
             is_like_place: vec![false; n_pixels],
+            is_shadow: vec![false; n_pixels],
+            colors: Colors::default(),
         }
     }
 
@@ -115,6 +122,7 @@ impl Grown {
                 continue;
             };
             for index in group {
+                self.is_shadow[*index] = true;
                 self.thing[*index] = self.thing[*index].or(Some(thing));
                 self.nearer[*index] = self.nearer[*index].max(ABSORBED);
             }
@@ -125,6 +133,16 @@ impl Grown {
     /// shadow.
     pub(super) fn is_like_place(&self, place: DVec2) -> bool {
         index_in(self.size_px, place.floor().as_ivec2()).is_some_and(|index| self.is_like_place[index])
+    }
+
+    /// Whether a colour in codes is a thing's own.
+    pub(super) fn is_own_color(&self, color: Color) -> bool {
+        self.colors.likelier(color).is_some_and(|likelier| likelier > OWN)
+    }
+
+    /// Whether a place in pixels is in a thing's shadow.
+    pub(super) fn is_shadow(&self, place: DVec2) -> bool {
+        self.index(place).is_some_and(|index| self.is_shadow[index])
     }
 
     /// Index of the pixel at a place in pixels.

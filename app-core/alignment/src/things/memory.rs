@@ -9,7 +9,7 @@ use super::known::{HELD, Known};
 use crate::picture::{Mask, index_in, places};
 use crate::receivers::{SeenReceiver, receiver_at};
 use app_scene::scene::{Intrinsics, Light};
-use app_scene::things::Mark;
+use app_scene::things::{Mark, RaisedPoint};
 
 /// Evidence that a thing needs, over that of a single picture: one that had half of that evidence in
 /// the previous picture, and one that comes. One that was marked there needs [`HELD`].
@@ -42,6 +42,8 @@ pub(crate) struct Memory {
     known: Vec<Known>,
     /// Marks of the largest level, rows from the top, and its size; empty if there are none.
     marks: (IVec2, Vec<Mark>),
+    /// The points of things at these pixels; empty if there are none.
+    raised: Vec<RaisedPoint>,
 }
 
 impl Memory {
@@ -52,6 +54,7 @@ impl Memory {
             frame,
             known,
             marks: (IVec2::ZERO, Vec::new()),
+            raised: Vec::new(),
         }
     }
 
@@ -129,10 +132,16 @@ impl Memory {
         steadied.collect()
     }
 
-    /// With the marks of its picture's largest level.
-    pub(crate) fn with_marks(self, size_px: IVec2, marks: &[Mark]) -> Self {
+    /// The points of things, if the marks have not changed.
+    pub(super) fn raised(&self, marks: &[Mark]) -> Option<&[RaisedPoint]> {
+        (self.marks.1 == marks).then_some(&self.raised)
+    }
+
+    /// With the marks of its picture's largest level, and the points of things.
+    pub(crate) fn with_marks(self, size_px: IVec2, marks: &[Mark], raised: &[RaisedPoint]) -> Self {
         Self {
             marks: (size_px, marks.to_vec()),
+            raised: raised.to_vec(),
             ..self
         }
     }

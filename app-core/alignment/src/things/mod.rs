@@ -26,6 +26,8 @@ mod shade;
 mod sides;
 mod simplex;
 mod standing;
+mod toy;
+mod upright;
 mod wrong_plate;
 
 use std::borrow::Cow;
@@ -34,21 +36,18 @@ use glam::{DMat4, IVec2};
 
 use crate::lights::Comparison;
 use crate::measured_points::MeasuredPoints;
-use crate::picture::{Color, Level, Pyramid, index_in, places};
+use crate::picture::{Level, Pyramid, places};
 use crate::pose::Paint;
-use crate::raster::{Coverage, Rasterizer, project};
 use crate::receivers::{SeenReceiver, receiver_at};
 use crate::shape::Shape;
-use app_scene::geometry::color::srgb_from_linear;
 use app_scene::scene::{Light, MAX_RECEIVERS};
-use app_scene::things::Mark;
+use app_scene::things::{Mark, RaisedPoint};
 pub(crate) use codes::least_change;
 pub(crate) use found::adopt;
 pub(crate) use memory::Memory;
 
-use codes::{Codes, UNLIKE_CODES, apart, from_shaded};
-use found::{Found, InFrame};
-use groups::{cross, most_around};
+use codes::Codes;
+use found::Found;
 use grown::Grown;
 use known::Known;
 use memory::Place;
@@ -57,28 +56,11 @@ pub(crate) use seeds::Colored;
 use seeds::{Seed, Seeds};
 use shade::Brightness;
 use standing::standing;
+use toy::{Toy, is_shade};
 use wrong_plate::wrong_plate;
 
 /// Maximum number of pixels of the level for the search: more take longer and find no more.
 const MOST_PIXELS: i32 = 150_000;
-/// Distance in pixels of a level from the toy's outline within which something before it is
-/// detected.
-const WITHIN_PX: i32 = 2;
-/// Least distance in pixels of a level between the toy and a depth sensor's points of other things.
-const BESIDE_PX: i32 = 4;
-/// Largest difference in codes at which frame and plate count as equal.
-const ALIKE_CODES: f32 = 5.0;
-/// Minimum number of pixels of the level that show a thing before the toy: in the toy's place, and
-/// beside the toy.
-const LEAST_BEFORE: usize = 5;
-const LEAST_BESIDE: usize = 20;
-/// The same for a thing that the frame alone shows.
-const LEAST_IN_FRAME: usize = 12;
-/// Minimum number of seeds of a thing in the frame alone that is not before the toy: shadows and
-/// highlights that the model does not have look like small things.
-const LEAST_IN_FRAME_ALONE: usize = 400;
-/// Share of its possible pixels before the toy that must show it.
-const PART_BEFORE: f32 = 0.04;
 /// Share of seeds among a thing's pixels that show a receiver, below which these belong to the
 /// receiver itself.
 const OF_PLANE: f32 = 0.1;
@@ -104,6 +86,8 @@ pub(crate) struct Sighting {
     /// Size of the largest level in pixels.
     pub(crate) size_px: IVec2,
     pub(crate) marks: Vec<Mark>,
+    /// The points of things on which the toy's shadow falls; empty if there are none.
+    pub(crate) raised: Vec<RaisedPoint>,
     /// Planes of things, if they are wanted.
     pub(crate) planes: Vec<FoundPlane>,
 }
@@ -137,10 +121,12 @@ pub(crate) fn find(sight: &Sight<'_>) -> (Option<Sighting>, Option<Memory>) {
         }
         None => marks,
     };
-    let memory = memory.with_marks(size_px, &marks);
+    let raised = sight.raised(level, &found, (size_px, &marks));
+    let memory = memory.with_marks(size_px, &marks, &raised);
     let sighting = Sighting {
         size_px,
         marks,
+        raised,
         planes: found.planes,
     };
     (Some(sighting), Some(memory))
@@ -222,6 +208,7 @@ impl Sight<'_> {
             in_plate,
             on_things,
             in_frame,
+            compared: compared.pixels,
         }
     }
 
@@ -345,149 +332,4 @@ impl Sight<'_> {
         };
         (size_px, places(size_px).map(mark).collect())
     }
-}
-
-/// The toy in a level.
-struct Toy {
-    coverage: Coverage,
-    /// Expected colours in codes; `None` if they are not known.
-    shown: Option<Vec<Option<Color>>>,
-}
-
-impl Toy {
-    fn of(sight: &Sight<'_>, level: &Level) -> Self {
-        let corners = project(sight.shape.points.iter().copied(), &level.intrinsics);
-        let coverage = Rasterizer::default().coverage(&corners, &sight.shape.faces, level.frame.size_px);
-        let shown = sight.paint.shown(level, &coverage);
-        let codes = |color: Color| color.map(|linear| 255.0 * srgb_from_linear(linear.clamp(0.0, 1.0)));
-        let shown = shown.map(|shown| shown.into_iter().map(|color| color.map(codes)).collect());
-        Self { coverage, shown }
-    }
-
-    /// The points that are seen beside the toy.
-    fn beside(&self, measured: &MeasuredPoints, level: &Level) -> MeasuredPoints {
-        measured.filtered(|point| {
-            let at = level.intrinsics.pixel_of(*point);
-            at.is_some_and(|at| !self.coverage.is_near(at.floor().as_ivec2(), BESIDE_PX))
-        })
-    }
-
-    fn expected(&self, at: IVec2) -> Option<Color> {
-        let shown = self.shown.as_ref()?;
-        shown[index_in(self.coverage.size_px, at - self.coverage.origin_px)?]
-    }
-
-    fn is_within(&self, at: IVec2) -> bool {
-        cross(at, WITHIN_PX).all(|at| self.coverage.at(at) >= 1.0)
-    }
-
-    /// Whether a pixel in the toy's place shows the plate, although the toy should look different.
-    fn is_hidden(&self, at: IVec2, frame: &Codes, plate: &Codes) -> bool {
-        let [Some(frame), Some(plate)] = [frame.get(at), plate.get(at)] else {
-            return false;
-        };
-        let is_unlike = self
-            .expected(at)
-            .is_none_or(|expected| apart(expected, plate) > UNLIKE_CODES);
-        apart(frame, plate) < ALIKE_CODES && is_unlike
-    }
-
-    /// Pixels at which a level shows the plate in place of the toy.
-    fn hidden<'a>(&'a self, frame: &'a Codes, plate: &'a Codes) -> impl Iterator<Item = IVec2> + 'a {
-        let covered = self.coverage.pixels().filter(|at| self.coverage.at(*at) >= 1.0);
-        covered.filter(|at| self.is_hidden(*at, frame, plate))
-    }
-
-    /// Whether a pixel of the toy has its expected colour.
-    fn is_as_expected(&self, at: IVec2, frame: &Codes) -> bool {
-        let colors = frame.get(at).zip(self.expected(at));
-        colors.is_some_and(|(frame, expected)| from_shaded(frame, expected) < UNLIKE_CODES)
-    }
-
-    /// Whether most pixels around one of the toy have their expected colours.
-    fn is_shown(&self, at: IVec2, frame: &Codes) -> bool {
-        self.coverage.at(at) > 0.0 && most_around(at, |at| self.is_as_expected(at, frame))
-    }
-
-    /// Things in a level's frame alone. They are before the toy if they are visible beside it and
-    /// the toy does not look as expected, and beside it if they are large. `None` without any
-    /// seeds. `seeds` are those of the plate.
-    /// `needed` gives the evidence that each thing needs.
-    fn in_frame(&self, seeds: &Seeds, frame: &Codes, needed: impl Fn(&Grown) -> Vec<f32>) -> Option<InFrame> {
-        let within: Vec<IVec2> = self.coverage.pixels().filter(|at| self.is_within(*at)).collect();
-        let as_expected = within
-            .iter()
-            .copied()
-            .filter(|at| self.is_as_expected(*at, frame));
-        let of_toy = as_expected.filter_map(|at| index_in(seeds.size_px, at));
-        let seeds = seeds.in_frame(frame, of_toy);
-        let grown = Grown::from(&seeds, Seed::InFrame, frame)?;
-        let mut hidden = vec![0; grown.n_things()];
-        for at in within.into_iter().filter(|at| !self.is_as_expected(*at, frame)) {
-            if let Some(thing) = grown.of_pixel(at) {
-                hidden[thing] += 1;
-            }
-        }
-        let needed = needed(&grown);
-        let judged = |thing: usize| {
-            let n_seeds = grown.n_seeds(thing);
-            let before = Known::of(needed[thing], |part| {
-                has(hidden[thing], LEAST_IN_FRAME, part) && has(n_seeds, LEAST_BESIDE, part)
-            });
-            let alone = Known::of(needed[thing], |part| has(n_seeds, LEAST_IN_FRAME_ALONE, part));
-            let mark = match (before, alone) {
-                (Known::Marked, _) => Mark::BeforeToy,
-                (_, Known::Marked) => Mark::Thing,
-                _ => Mark::None,
-            };
-            (mark, before.max(alone))
-        };
-        let (marks, known): (Vec<Mark>, Vec<Known>) = (0..grown.n_things()).map(judged).unzip();
-        Some(InFrame { grown, marks, known })
-    }
-
-    /// For each thing of a level, whether it is before the toy.
-    /// `needed` is the evidence that each needs.
-    fn before(&self, grown: &Grown, (frame, plate): (&Codes, &Codes), needed: &[f32]) -> Vec<Known> {
-        let mut hidden = vec![0; grown.n_things()];
-        let mut n_within = vec![0; grown.n_things()];
-        for at in self.coverage.pixels().filter(|at| self.is_within(*at)) {
-            if let Some(thing) = grown.of_pixel(at) {
-                n_within[thing] += 1;
-                hidden[thing] += usize::from(self.is_hidden(at, frame, plate));
-            }
-        }
-        let known = |thing: usize| {
-            let is_of_toy = hidden[thing] as f32 >= PART_BEFORE * n_within[thing] as f32;
-            Known::of(needed[thing], |part| {
-                is_of_toy
-                    && has(hidden[thing], LEAST_BEFORE, part)
-                    && has(grown.n_seeds(thing), LEAST_BESIDE, part)
-            })
-        };
-        (0..grown.n_things()).map(known).collect()
-    }
-
-    /// Whether a pixel shows the toy, and not a thing in the toy's shadow: the picture around it is
-    /// nearer to the toy's expected colours than to the plate in any light.
-    fn shows(&self, at: IVec2, frame: &Codes, plate: &Codes) -> bool {
-        let is_toy = |at: IVec2| match (frame.get(at), plate.get(at), self.expected(at)) {
-            (Some(frame), Some(plate), Some(toy)) => apart(frame, toy) < from_shaded(frame, plate),
-            _ => false,
-        };
-        self.coverage.at(at) > 0.0 && most_around(at, is_toy)
-    }
-}
-
-/// Whether a number of pixels is a part of the least one, or more.
-fn has(n: usize, least: usize, part: f32) -> bool {
-    n as f32 >= part * least as f32
-}
-
-/// Whether most pixels around one agree with the plate in less light, as in a thing's shadow.
-fn is_shade(at: IVec2, frame: &Codes, plate: &Codes) -> bool {
-    most_around(at, |at| {
-        let colors = frame.get(at).zip(plate.get(at));
-        colors.is_some_and(|(frame, plate)| from_shaded(frame, plate) < 0.5 * UNLIKE_CODES)
-    })
 }

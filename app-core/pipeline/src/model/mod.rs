@@ -204,7 +204,10 @@ impl Model {
         recorder.group = capture_path(delta.change);
         capture.encode(recorder, delta);
         recorder.group = PassGroup::Frame;
-        let frame = self.frame_path(toy, pictures.frame, pictures.grain);
+        let frame = FramePath {
+            things: pictures.things,
+            ..self.frame_path(toy, pictures.frame, pictures.grain)
+        };
         frame.encode(recorder, delta);
     }
 
@@ -226,6 +229,7 @@ impl Model {
             toy,
             frame,
             grain,
+            things: None,
             shadow_strength: self.shadow_strength,
         }
     }

@@ -115,6 +115,8 @@ pub struct Plan {
     pub is_shadow_withheld: bool,
     /// Whether things beside the toy are marked.
     pub has_things: bool,
+    /// Whether shadows fall on these.
+    pub has_raised_things: bool,
     /// The toy's shadow on itself.
     pub self_shadow: ShadowAtlas,
     /// Meshes that cast shadows.
@@ -167,6 +169,7 @@ impl Plan {
             is_noise_removed: settings.is_noise_removed,
             is_shadow_withheld: settings.is_shadow_withheld,
             has_things: facts.has_things,
+            has_raised_things: facts.has_raised_things,
             self_shadow: self_shadow(n_lights, settings),
             casters: Casters::new(facts, settings),
             sharpness: facts.sharpness,
@@ -205,7 +208,7 @@ impl Plan {
                 boxes_px,
                 plan.ambient_px,
                 counts,
-                plan.has_things,
+                [plan.has_things, plan.has_raised_things],
             )
         };
         sizes(self) == sizes(other) && self.self_shadow == other.self_shadow

@@ -1,14 +1,24 @@
 //! Marks of objects on the device: codes of the picture in which they were detected, and the
 //! positions of that picture's pixels in a view.
 
-use app_scene::things::{Mark, Things as GivenThings};
+use app_scene::things::{HEIGHT_STEP_M, Mark, RaisedPoint, Things as GivenThings};
 use bytemuck::Zeroable;
 use glam::{DMat3, DMat4};
 use wgpu::TextureFormat;
 
 use crate::geometry::rect::PixelRect;
 use crate::geometry::view::View;
-use crate::gpu::{Buffer, Gpu, Mat3Columns, Resource, Texture, shared_struct};
+use crate::gpu::{Buffer, Gpu, Mat3Columns, Mirrors, Resource, Texture, mirrors, shared_struct};
+
+/// The marks, as shaders read them.
+pub(crate) const THING_MARKS: Mirrors = mirrors!(
+    "common/thing_marks",
+    structs: [ThingsView],
+    constants: [
+        CODE_THING, CODE_BEFORE_TOY, CODE_WRONG_PLATE, CODE_SHADED_PLATE, CODE_HIDDEN_THING,
+        HEIGHT_STEP_M,
+    ]
+);
 
 pub(crate) const CODE_THING: u32 = 1;
 pub(crate) const CODE_BEFORE_TOY: u32 = 2;
@@ -33,17 +43,16 @@ pub(crate) struct Things {
 
 impl Things {
     pub(crate) fn new(gpu: &Gpu, given: &GivenThings) -> Self {
-        // The light is needed for some marks alone.
-        let (format, n_channels) = if given.has_light() {
+        // Light and height are needed for some marks alone.
+        let (format, n_channels) = if given.has_light() || given.has_raised() {
             (TextureFormat::Rgba8Unorm, 4)
         } else {
             (TextureFormat::R8Unorm, 1)
         };
         let codes = Texture::plane(gpu, "things", given.size_px(), format);
-        let texels: Vec<u8> = given
-            .marks()
-            .iter()
-            .flat_map(|mark| texel(*mark).into_iter().take(n_channels))
+        let marks = given.marks().iter().enumerate();
+        let texels: Vec<u8> = marks
+            .flat_map(|(index, mark)| texel(*mark, given.raised(index)).into_iter().take(n_channels))
             .collect();
         codes.write(gpu, &texels);
         Self {
@@ -62,6 +71,11 @@ impl Things {
     /// Whether a part of the plate is wrong, or in another light than it should be.
     pub(crate) fn is_plate_wrong(&self) -> bool {
         self.is_plate_wrong
+    }
+
+    /// Whether shadows fall on them.
+    pub(crate) fn has_raised(&self) -> bool {
+        self.given.has_raised()
     }
 
     /// Adapts to a camera's view and a region of it. The objects are assumed to lie in the plane of
@@ -89,13 +103,15 @@ impl Things {
     }
 }
 
-/// A mark's code and light.
+/// A mark's code and light, or the height of a thing's point and the lights' share there.
 #[allow(clippy::cast_possible_truncation, reason = "codes below 6")]
-fn texel(mark: Mark) -> [u8; 4] {
+fn texel(mark: Mark, raised: RaisedPoint) -> [u8; 4] {
+    let [high, low] = raised.height().to_be_bytes();
+    let of_thing = [high, low, raised.of_lights()];
     let (code, [red, green, blue]) = match mark {
         Mark::None => (0, [0; 3]),
-        Mark::Thing => (CODE_THING, [0; 3]),
-        Mark::BeforeToy => (CODE_BEFORE_TOY, [0; 3]),
+        Mark::Thing => (CODE_THING, of_thing),
+        Mark::BeforeToy => (CODE_BEFORE_TOY, of_thing),
         Mark::WrongPlate => (CODE_WRONG_PLATE, [0; 3]),
         Mark::ShadedPlate { left } => (CODE_SHADED_PLATE, left),
         Mark::HiddenThing { light } => (CODE_HIDDEN_THING, light),

@@ -36,6 +36,8 @@ pub struct SceneFacts {
     pub are_plates_scaled: bool,
     /// Whether there are things beside the toy in the picture, or wrong parts of the plate.
     pub has_things: bool,
+    /// Whether shadows fall on these.
+    pub has_raised_things: bool,
     /// Estimated sharpness of the picture.
     pub sharpness: Sharpness,
     /// Whether this picture or an earlier one is softer than the content that is drawn into it.

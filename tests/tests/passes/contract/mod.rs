@@ -151,6 +151,7 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
     Plan::new(
         &SceneFacts {
             has_things: false,
+            has_raised_things: false,
             sharpness: Sharpness::SHARP,
             is_softened: false,
             gloss: Gloss::NONE,

@@ -13,15 +13,9 @@ use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::validity;
 use crate::model::plan::Plan;
 use crate::passes::plate::FINE_FORMAT;
-use crate::passes::thing_marks::{
-    CODE_BEFORE_TOY, CODE_HIDDEN_THING, CODE_SHADED_PLATE, CODE_THING, CODE_WRONG_PLATE, Things, ThingsView,
-};
+use crate::passes::thing_marks::{Things, ThingsView};
 
-pub(crate) const SHADER: Shader = shader!(
-    "capture/things",
-    structs: [ThingsView],
-    constants: [CODE_THING, CODE_BEFORE_TOY, CODE_WRONG_PLATE, CODE_SHADED_PLATE, CODE_HIDDEN_THING]
-);
+pub(crate) const SHADER: Shader = shader!("capture/things");
 const SLOTS: &[Slot] = &[Slot::uniform::<ThingsView>(), Slot::Texture];
 /// The same, and the mask that is marked.
 const MASK_SLOTS: &[Slot] = &[Slot::uniform::<ThingsView>(), Slot::Texture, Slot::Texture];

@@ -16,10 +16,11 @@ use crate::model::state::SceneState;
 use crate::model::state::solution::{Scene, SeenScene};
 use crate::passes::list::passes;
 use crate::passes::pictures::{Frame, PictureGrain};
+use crate::passes::thing_marks::Things;
 use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::FrameDelta;
 
-passes!(Plan: moved_mask, toy, coverage, composite);
+passes!(Plan: moved_mask, toy, coverage, on_things, composite);
 
 /// Targets of the frame path for one region.
 pub(crate) struct FrameTargets {
@@ -59,6 +60,8 @@ pub(crate) struct FramePath<'a> {
     pub(crate) toy: &'a ToyMesh,
     pub(crate) frame: Frame<'a>,
     pub(crate) grain: Option<PictureGrain>,
+    /// Things in the picture, if any are known.
+    pub(crate) things: Option<&'a Things>,
     pub(crate) shadow_strength: f32,
 }
 
@@ -81,6 +84,10 @@ impl FramePath<'_> {
         if is_shape_new {
             let inputs = self.coverage_inputs();
             passes.coverage.encode(recorder, &inputs, &of.coverage);
+        }
+        if let Some(things) = self.things.filter(|_| on_things::is_needed(&self.region.plan)) {
+            let inputs = self.on_things_inputs(things);
+            passes.on_things.encode(recorder, &inputs, &of.on_things);
         }
         let inputs = self.composite_inputs();
         passes.composite.encode(recorder, &inputs, &of.composite);
@@ -138,6 +145,16 @@ impl FramePath<'_> {
         }
     }
 
+    fn on_things_inputs<'a>(&'a self, things: &'a Things) -> on_things::Inputs<'a> {
+        on_things::Inputs {
+            seen: self.seen(),
+            things,
+            plate: &self.captured.plate.view,
+            physical_visibility: &self.captured.light.visibility.lights.view,
+            visibility: &self.drawn.light.visibility.lights.view,
+        }
+    }
+
     fn composite_inputs(&self) -> composite::Inputs<'_> {
         let (captured, drawn) = (self.captured, self.drawn);
         composite::Inputs {
@@ -145,7 +162,12 @@ impl FramePath<'_> {
             seen: self.seen(),
             grids: &self.state.grids,
             cells: &self.state.residual.cells,
-            plate: &captured.plate.view,
+            plate: drawn
+                .by_pass
+                .on_things
+                .plate
+                .as_ref()
+                .map_or(&captured.plate.view, |plate| &plate.view),
             validity: &captured.by_pass.validity.marks.view,
             physical: &captured.light,
             shown: &drawn.light,

@@ -1,0 +1,325 @@
+//! Points of things that stand on the first receiver, on which the toy's shadow falls: as if each
+//! thing were upright, so that a pixel shows a point above the thing's foot below it.
+//!
+//! The lights' share of a point's light follows from a thing's shaded parts, as if it had one
+//! colour: what is no brighter than these gets no darker. A thing whose shadow in the picture
+//! contradicts its points has none.
+//!
+//! Source: Badino et al. 2009 (stixels), with the receiver in place of measured depths.
+
+use glam::{DVec2, DVec3, IVec2, Vec3Swizzles};
+
+use super::Sight;
+use super::codes::codes_of;
+use super::found::Found;
+use super::groups::cross;
+use crate::lights::Compared;
+use crate::median::median;
+use crate::picture::{Color, Level, Picture, index_in, places};
+use crate::receivers::SeenReceiver;
+use app_scene::scene::Light;
+use app_scene::things::{Mark, RaisedPoint};
+
+/// Number of steps of a picture's width in which feet are looked for.
+const STEPS_A_WIDTH: i32 = 640;
+/// Steps between a thing's pixel and the next one of it below.
+const LARGEST_GAP: u32 = 3;
+/// Part of a thing's pixels that are in shadow, or on sides that no light reaches.
+const SHADED: f64 = 0.25;
+/// Least part of the light that a shadowed pixel of a thing loses, and the least number of such
+/// pixels of the level.
+const SHADOWED: f32 = 0.1;
+const LEAST_SHADOWED: usize = 12;
+/// Distance in pixels from a thing's outline within which its pixels may show something else.
+const WITHIN_PX: i32 = 2;
+/// Largest loss of a thing's points, over that without shadows on them.
+const OF_NONE: f32 = 0.6;
+/// Largest loss of a pixel: a squared difference in plates.
+const MOST_LOSS: f32 = 0.2;
+/// Part of the largest loss of light that is lost in the umbra, at least.
+const UMBRA: f32 = 0.5;
+
+impl Sight<'_> {
+    /// The points of things at the pixels of the largest level, which have these marks; empty if
+    /// there are none.
+    pub(super) fn raised(
+        &self,
+        level: &Level,
+        found: &Found,
+        (size_px, marks): (IVec2, &[Mark]),
+    ) -> Vec<RaisedPoint> {
+        if let Some(known) = self.memory.and_then(|memory| memory.raised(marks)) {
+            return known.to_vec();
+        }
+        // Shadows of several lights are at several places of a thing.
+        let ([light], Some(table)) = (self.lights, self.receivers.first()) else {
+            return Vec::new();
+        };
+        let largest = self.pyramid.level(0);
+        let per_px = level.intrinsics.fx_px / largest.intrinsics.fx_px;
+        let body = |(at, mark): (IVec2, &Mark)| match mark {
+            Mark::Thing | Mark::BeforeToy | Mark::HiddenThing { .. } => {
+                found.body_at((at.as_dvec2() + 0.5) * per_px)
+            }
+            _ => None,
+        };
+        let bodies = Bodies {
+            size_px,
+            thing: places(size_px).zip(marks).map(body).collect(),
+            per_px,
+        };
+        let bodies = bodies.without_rims(|at| {
+            let color = largest.plate.as_ref().and_then(|plate| plate.get(at));
+            color.is_some_and(|color| found.is_own_color(codes_of(color)))
+        });
+        let upright = Upright {
+            bodies: &bodies,
+            largest,
+            level,
+            compared: &found.compared,
+            table,
+            light: light.moved(&(table.plane_from_camera * self.world_from_camera.inverse())),
+        };
+        upright.raised().unwrap_or_default()
+    }
+}
+
+impl Bodies {
+    /// Without pixels near the outlines that do not have a thing's own colours: they show the place.
+    fn without_rims(self, is_own: impl Fn(IVec2) -> bool) -> Self {
+        let kept = |(at, thing): (IVec2, &Option<usize>)| {
+            thing.filter(|_| cross(at, WITHIN_PX).all(|at| self.of(at) == *thing) || is_own(at))
+        };
+        let thing = places(self.size_px).zip(&self.thing).map(kept).collect();
+        Self { thing, ..self }
+    }
+
+    fn of(&self, at: IVec2) -> Option<usize> {
+        self.thing[index_in(self.size_px, at)?]
+    }
+}
+
+/// What the largest level shows of things.
+pub(super) struct Bodies {
+    pub(super) size_px: IVec2,
+    /// The thing of each pixel, without its shadow.
+    pub(super) thing: Vec<Option<usize>>,
+    /// Its pixels per pixel of the level of the search.
+    pub(super) per_px: f64,
+}
+
+/// A point of a thing: in the space of the receiver, and the lights' share.
+#[derive(Clone, Copy)]
+struct Point {
+    at: DVec3,
+    of_lights: f32,
+}
+
+/// Inputs of the search.
+pub(super) struct Upright<'a> {
+    pub(super) bodies: &'a Bodies,
+    /// The largest level, and that of the search.
+    pub(super) largest: &'a Level,
+    pub(super) level: &'a Level,
+    pub(super) compared: &'a [Compared],
+    pub(super) table: &'a SeenReceiver,
+    /// The light in the space of the receiver.
+    pub(super) light: Light,
+}
+
+impl Upright<'_> {
+    /// The point of each pixel of the largest level; `None` if no thing has any.
+    pub(super) fn raised(&self) -> Option<Vec<RaisedPoint>> {
+        let n_things = self.bodies.thing.iter().flatten().max()? + 1;
+        let gain = self.gain()?;
+        let shaded: Vec<f32> = (0..n_things).map(|thing| self.shaded(thing, gain)).collect();
+        let feet = Feet::of(self);
+        let points: Vec<Option<Point>> = places(self.bodies.size_px)
+            .zip(&self.bodies.thing)
+            .map(|(at, thing)| {
+                let plate = brightness(self.largest.plate.as_ref()?.get(at)?);
+                Some(Point {
+                    at: feet.point_above(at)?,
+                    of_lights: (1.0 - shaded[(*thing)?] / plate).clamp(0.0, 1.0),
+                })
+            })
+            .collect();
+        let agrees = self.agreeing(&points, (n_things, gain));
+        let raised = points.iter().zip(&self.bodies.thing).map(|(point, thing)| {
+            let point = point.filter(|_| thing.is_some_and(|thing| agrees[thing]));
+            point.map_or(RaisedPoint::default(), |point| {
+                RaisedPoint::new(point.at.y, point.of_lights)
+            })
+        });
+        agrees.contains(&true).then(|| raised.collect())
+    }
+
+    /// Exposure of the frame over that of the plate.
+    fn gain(&self) -> Option<f32> {
+        let of = |pixel: &Compared| {
+            let frame = brightness(self.level.frame.get(pixel.at)?);
+            let plate = brightness(self.level.plate.as_ref()?.get(pixel.at)?);
+            let gain = frame / (plate * brightness(pixel.ratio));
+            gain.is_finite().then_some(gain)
+        };
+        median(self.compared.iter().filter_map(of), f32::total_cmp)
+    }
+
+    /// Brightness in the plate of a thing's parts without light of the lights.
+    fn shaded(&self, thing: usize, gain: f32) -> f32 {
+        let of_thing = places(self.bodies.size_px).zip(&self.bodies.thing);
+        let of_thing = of_thing.filter(|(_, of)| **of == Some(thing));
+        let mut darker: Vec<f32> = of_thing
+            .filter_map(|(at, _)| {
+                let [frame, plate] = [&self.largest.frame, self.largest.plate.as_ref()?]
+                    .map(|picture: &Picture| picture.get(at).map(brightness));
+                Some((frame? / gain).min(plate?))
+            })
+            .collect();
+        darker.sort_unstable_by(f32::total_cmp);
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a part of a count"
+        )]
+        let rank = (SHADED * darker.len() as f64) as usize;
+        darker.get(rank).copied().unwrap_or(0.0)
+    }
+
+    /// For each thing, whether the toy's shadow in the picture is where its points have it.
+    fn agreeing(&self, points: &[Option<Point>], (n_things, gain): (usize, f32)) -> Vec<bool> {
+        let size_px = self.level.frame.size_px;
+        let most = self.compared.iter().map(Compared::taken).fold(0.0, f32::max);
+        let umbra = self
+            .compared
+            .iter()
+            .map(Compared::taken)
+            .filter(|taken| *taken > UMBRA * most);
+        let umbra = median(umbra, f32::total_cmp).unwrap_or(f32::NAN);
+        let mut hidden = vec![f32::NAN; (size_px.x * size_px.y) as usize];
+        for pixel in self.compared {
+            if let Some(index) = index_in(size_px, pixel.at) {
+                hidden[index] = (pixel.taken() / umbra).min(1.0);
+            }
+        }
+        let mut losses = vec![[0.0; 2]; n_things];
+        let mut n_shadowed = vec![0; n_things];
+        for at in places(size_px) {
+            let Some((thing, point)) = self.shown(at, points) else {
+                continue;
+            };
+            let colors = self
+                .level
+                .frame
+                .get(at)
+                .zip(self.level.plate.as_ref().and_then(|plate| plate.get(at)));
+            let below = self
+                .shadow_px(point.at)
+                .and_then(|below| index_in(size_px, below));
+            let (Some((frame, plate)), Some(hidden)) = (colors, below.map(|below| hidden[below])) else {
+                continue;
+            };
+            let lost = point.of_lights * hidden;
+            let ratio = brightness(frame) / (gain * brightness(plate));
+            if lost.is_finite() && ratio.is_finite() {
+                let loss = |expected: f32| (ratio - expected).powi(2).min(MOST_LOSS);
+                losses[thing][0] += loss(1.0 - lost);
+                losses[thing][1] += loss(1.0);
+                n_shadowed[thing] += usize::from(lost > SHADOWED);
+            }
+        }
+        let agrees = losses.into_iter().zip(n_shadowed);
+        let agrees = agrees.map(|([with, without], n)| n >= LEAST_SHADOWED && with < OF_NONE * without);
+        agrees.collect()
+    }
+
+    /// The point that a pixel of the level shows, and its thing.
+    fn shown(&self, at: IVec2, points: &[Option<Point>]) -> Option<(usize, Point)> {
+        let there = ((at.as_dvec2() + 0.5) / self.bodies.per_px).floor().as_ivec2();
+        let index = index_in(self.bodies.size_px, there)?;
+        let thing = self.bodies.thing[index]?;
+        let is_within = cross(there, WITHIN_PX).all(|at| self.bodies.of(at) == Some(thing));
+        is_within.then_some((thing, points[index]?))
+    }
+
+    /// The pixel of the level at which the receiver has the shadow that falls on a point.
+    fn shadow_px(&self, point: DVec3) -> Option<IVec2> {
+        let to_light = self.light.vector_from(point);
+        if to_light.y <= 0.0 {
+            return None;
+        }
+        let below = point - point.y / to_light.y * to_light;
+        let below = self.table.plane_from_camera.inverse().transform_point3(below);
+        Some(self.level.intrinsics.pixel_of(below)?.floor().as_ivec2())
+    }
+}
+
+/// The feet of things in the largest level.
+struct Feet<'a> {
+    bodies: &'a Bodies,
+    level: &'a Level,
+    /// The receiver without bounds.
+    ground: SeenReceiver,
+    /// The pixel to which upright lines lead downward, times its weight, and the weight: 0 if they are parallel.
+    down: DVec3,
+    step_px: f64,
+}
+
+impl<'a> Feet<'a> {
+    fn of(upright: &'a Upright<'_>) -> Self {
+        let plane_from_camera = upright.table.plane_from_camera;
+        let camera_from_plane = plane_from_camera.inverse();
+        let k = &upright.largest.intrinsics;
+        let down = -camera_from_plane.y_axis.truncate();
+        Self {
+            bodies: upright.bodies,
+            level: upright.largest,
+            ground: SeenReceiver::of_size(plane_from_camera, DVec2::INFINITY),
+            down: DVec3::new(
+                k.fx_px * down.x - k.cx_px * down.z,
+                -k.fy_px * down.y - k.cy_px * down.z,
+                -down.z,
+            ),
+            step_px: f64::from(upright.bodies.size_px.x.max(STEPS_A_WIDTH)) / f64::from(STEPS_A_WIDTH),
+        }
+    }
+
+    /// The point that a pixel of a thing shows, above the thing's foot, in the space of the receiver.
+    fn point_above(&self, at: IVec2) -> Option<DVec3> {
+        let thing = self.thing_at(at.as_dvec2())?;
+        let from = at.as_dvec2() + 0.5;
+        let to = self.down.xy() - self.down.z * from;
+        let step = self.step_px * to / to.abs().max_element();
+        let (mut foot, mut gap) = (from, 0);
+        let mut next = from;
+        while gap <= LARGEST_GAP && step.is_finite() {
+            next += step;
+            if self.thing_at(next) == Some(thing) {
+                (foot, gap) = (next, 0);
+            } else {
+                gap += 1;
+            }
+        }
+        let plane_from_camera = self.ground.plane_from_camera;
+        let eye = plane_from_camera.w_axis.truncate();
+        let ray = |px: DVec2| plane_from_camera.transform_vector3(self.level.intrinsics.ray(px));
+        let to_foot = ray(foot + 0.5 * step);
+        if to_foot.y >= 0.0 {
+            return None;
+        }
+        let foot = eye - eye.y / to_foot.y * to_foot;
+        let along = ray(from);
+        let times = (foot - eye).xz().length() / along.xz().length();
+        let height_m = eye.y + times * along.y;
+        (height_m.is_finite() && height_m > 0.0).then(|| DVec3::new(foot.x, height_m, foot.z))
+    }
+
+    fn thing_at(&self, px: DVec2) -> Option<usize> {
+        self.bodies.of(px.floor().as_ivec2())
+    }
+}
+
+/// Mean of the channels.
+fn brightness(color: Color) -> f32 {
+    color.iter().sum::<f32>() / 3.0
+}
