@@ -5,6 +5,7 @@ use glam::{DVec2, IVec2};
 use super::grown::Grown;
 use super::known::Known;
 use super::planes::FoundPlane;
+use super::seeds::Colored;
 use super::shade::Brightness;
 use crate::lights::Compared;
 use crate::picture::{Color, Mask, places};
@@ -32,6 +33,8 @@ pub(super) struct Found {
     pub(super) in_frame: Option<InFrame>,
     /// The comparison of the level's pixels.
     pub(super) compared: Vec<Compared>,
+    /// The colours of the things that plate and frame show.
+    pub(super) colored: Colored,
 }
 
 impl Found {
@@ -85,9 +88,8 @@ impl Found {
     /// The thing that plate and frame show at a place in pixels of the level, without its shadow.
     pub(super) fn body_at(&self, place: DVec2) -> Option<usize> {
         let grown = self.grown.as_ref()?;
-        grown
-            .at(place)
-            .filter(|_| !grown.is_like_place(place) && !grown.is_shadow(place))
+        let is_place = self.colored == Colored::Otherwise && grown.is_like_place(place);
+        grown.at(place).filter(|_| !is_place && !grown.is_shadow(place))
     }
 
     /// Whether a colour in codes is that of things in the plate.

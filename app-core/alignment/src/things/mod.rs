@@ -101,35 +101,16 @@ pub(crate) fn find(sight: &Sight<'_>) -> (Option<Sighting>, Option<Memory>) {
     let Some(restored) = sight.restored((level, &frame), &toy) else {
         return (None, None);
     };
-    let found = sight.found((restored, &frame), &toy);
-    let known = found.known(frame.size_px);
-    let place = Place {
-        intrinsics: level.intrinsics,
-        world_from_camera: *sight.world_from_camera,
-        middle: sight.shape.centre,
-        lights: sight.lights.to_vec(),
-    };
-    let memory = Memory::new(place, frame, known);
-    if found.is_empty() {
-        return (None, Some(memory));
-    }
-    let (size_px, marks) = sight.marks(level, &found);
-    let marks = match sight.memory {
-        Some(before) => {
-            let per_px = level.intrinsics.fx_px / sight.pyramid.level(0).intrinsics.fx_px;
-            before.steadied(&memory, (size_px, per_px), marks)
+    let found = |things| sight.found((&restored, &frame), &toy, things);
+    let (sighting, memory) = sight.sighted(level, &frame, found(Colored::Otherwise));
+    // A thing in the place's own colours counts if the toy's shadow on it shows that it stands up.
+    if sighting.is_none() && seeds::may_be_alike(&restored.compared.pixels) {
+        let (alike, memory) = sight.sighted(level, &frame, found(Colored::Alike));
+        if alike.as_ref().is_some_and(|alike| !alike.raised.is_empty()) {
+            return (alike, Some(memory));
         }
-        None => marks,
-    };
-    let raised = sight.raised(level, &found, (size_px, &marks));
-    let memory = memory.with_marks(size_px, &marks, &raised);
-    let sighting = Sighting {
-        size_px,
-        marks,
-        raised,
-        planes: found.planes,
-    };
-    (Some(sighting), Some(memory))
+    }
+    (sighting, Some(memory))
 }
 
 /// A level whose plate has all of its light.
@@ -153,41 +134,72 @@ impl Sight<'_> {
         crate::lights::compare(self.lights, seen, level, self.world_from_camera)
     }
 
-    /// The things of a level.
-    fn found(&self, (restored, frame): (Restored<'_>, &Codes), toy: &Toy) -> Found {
+    /// The marks of a level's things; `None` if nothing is marked. And the memory for the next picture.
+    fn sighted(&self, level: &Level, frame: &Codes, found: Found) -> (Option<Sighting>, Memory) {
+        let place = Place {
+            intrinsics: level.intrinsics,
+            world_from_camera: *self.world_from_camera,
+            middle: self.shape.centre,
+            lights: self.lights.to_vec(),
+        };
+        let memory = Memory::new(place, frame.clone(), found.known(frame.size_px));
+        if found.is_empty() {
+            return (None, memory);
+        }
+        let (size_px, marks) = self.marks(level, &found);
+        let marks = match self.memory {
+            Some(before) => {
+                let per_px = level.intrinsics.fx_px / self.pyramid.level(0).intrinsics.fx_px;
+                before.steadied(&memory, (size_px, per_px), marks)
+            }
+            None => marks,
+        };
+        let raised = self.raised(level, &found, (size_px, &marks));
+        let memory = memory.with_marks(size_px, &marks, &raised);
+        let sighting = Sighting {
+            size_px,
+            marks,
+            raised,
+            planes: found.planes,
+        };
+        (Some(sighting), memory)
+    }
+
+    /// The things of a level, in these colours.
+    fn found(&self, (restored, frame): (&Restored<'_>, &Codes), toy: &Toy, things: Colored) -> Found {
         let Restored {
             level,
             plate,
             compared,
             in_plate,
         } = restored;
-        let level = &*level;
+        let level = &**level;
         let seeds_of = |colored| {
-            let hidden = toy.hidden(frame, &plate);
-            Seeds::found(&compared.pixels, hidden, (frame, &plate), colored)
+            let hidden = toy.hidden(frame, plate);
+            Seeds::found(&compared.pixels, hidden, (frame, plate), colored)
         };
-        let seeds = seeds_of(Colored::Otherwise);
-        let grown = Grown::from(&seeds, Seed::Thing, &plate);
-        let wrong = Grown::from(&seeds, Seed::WrongPlate, &plate);
+        let seeds = seeds_of(things);
+        let grown = Grown::from(&seeds, Seed::Thing, plate);
+        let wrong = Grown::from(&seeds, Seed::WrongPlate, plate);
         let needed = |grown: &Grown| self.needed(grown, level);
         let in_frame = toy.in_frame(&seeds, frame, needed);
         let evidence = grown.as_ref().map(|grown| (grown, self.needed(grown, level)));
         let before = evidence.as_ref().map_or(Vec::new(), |(grown, needed)| {
-            toy.before(grown, (frame, &plate), needed)
+            toy.before(grown, (frame, plate), needed)
         });
         let alone = evidence.map_or(Vec::new(), |(grown, needed)| grown.alone(&needed));
         let planes = self.planes_of.map_or(Vec::new(), |colored| {
             let alike = (grown.is_none() && colored == Colored::Alike)
-                .then(|| Grown::from(&seeds_of(colored), Seed::Thing, &plate))
+                .then(|| Grown::from(&seeds_of(colored), Seed::Thing, plate))
                 .flatten();
             let things = match &alike {
                 Some(alike) => (Some(alike), Colored::Alike),
                 None => (grown.as_ref(), Colored::Otherwise),
             };
-            self.planes(things, grown.as_ref(), (level, toy), &compared)
+            self.planes(things, grown.as_ref(), (level, toy), compared)
         });
         let grown = grown.map(|mut grown| {
-            let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, &plate);
+            let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, plate);
             grown.absorb(&shadows);
             grown
         });
@@ -205,10 +217,11 @@ impl Sight<'_> {
             before,
             alone,
             wrong: wrong.map(|wrong| wrong_plate(&wrong, toy, size_px, &compared.pixels)),
-            in_plate,
+            in_plate: in_plate.clone(),
             on_things,
             in_frame,
-            compared: compared.pixels,
+            compared: compared.pixels.clone(),
+            colored: things,
         }
     }
 

@@ -243,6 +243,11 @@ pub(super) fn is_unexplained(pixel: &Compared) -> bool {
     pixel.away() > UNEXPLAINED.max(OF_NOISE * pixel.noise)
 }
 
+/// Whether there may be a thing in the place's own colours.
+pub(super) fn may_be_alike(compared: &[Compared]) -> bool {
+    compared.iter().filter(|pixel| is_unexplained(pixel)).count() >= LEAST_ALIKE
+}
+
 /// The frame without the toy's shadow, if it shows a receiver.
 fn lit(compared: &[Compared], (frame, plate): (&Codes, &Codes)) -> Codes {
     let mut lit = frame.pixels.clone();

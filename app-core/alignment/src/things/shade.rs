@@ -49,6 +49,7 @@ const N_ROUNDS: usize = 300;
 const RELAXATION: f32 = 1.9;
 
 /// Light at the pixels of a level, as a share of its usual amount.
+#[derive(Clone)]
 pub(super) struct Brightness {
     size_px: IVec2,
     /// Logarithms; unknown where it cannot be measured.
