@@ -21,15 +21,16 @@
 //#import common/relit
 //#import common/thing_marks
 
-@group(2) @binding(0) var plate: texture_2d<f32>;
-@group(2) @binding(1) var physical_visibility: texture_2d<f32>;
-@group(2) @binding(2) var visibility: texture_2d<f32>;
+@group(1) @binding(2) var plate: texture_2d<f32>;
+@group(1) @binding(3) var physical_visibility: texture_2d<f32>;
+@group(1) @binding(4) var visibility: texture_2d<f32>;
 
 // Change of the model, in plates, up to which a pixel stays, and from which it is made.
 const KEEP_ALL: f32 = 0.02;
 const KEEP_NONE: f32 = 0.15;
 // Distance in pixels at which a change of the visibility counts, too: heights are inexact.
 const NEARBY_PX: f32 = 3.0;
+const FAR_PX: f32 = 100.0;
 
 // Height above the receiver, in metres, and the lights' share of the light.
 fn raised(mark: vec4f) -> vec2f {
@@ -46,21 +47,30 @@ fn seen_below(region_px: vec2f) -> vec3f {
 }
 
 // Pixel at which the receiver has the shadow that light `i` casts at a point in anchor space;
-// outside the region if there is none.
+// far outside the region if there is none.
 fn shadow_px(i: u32, point: vec3f) -> vec2f {
   let light = globals.lights[i];
   let to_light = light.xyz - light.w * point;
-  if to_light.y <= 0.0 { return vec2f(-1.0); }
+  if to_light.y <= 0.0 { return vec2f(-FAR_PX); }
   let below = point - point.y / to_light.y * to_light;
   return region_px_of(point_on(0u, below.xz));
 }
 
-// Visibilities of light `i` before and after at a pixel that shows the first receiver; 1 elsewhere.
-fn visible_at(i: u32, region_px: vec2f) -> vec2f {
-  if any(region_px < vec2f(0.0)) || any(region_px >= globals.region_size_px) { return vec2f(1.0); }
-  if receiver_of(receiver_point(region_px)) != 0u { return vec2f(1.0); }
-  let texel = vec2u(region_px);
+// Visibilities of light `i` before and after at a texel that shows the first receiver; 1 elsewhere.
+fn visible_texel(i: u32, texel: vec2i) -> vec2f {
+  if any(texel < vec2i(0)) || any(texel >= vec2i(globals.region_size_px)) { return vec2f(1.0); }
+  if receiver_of(receiver_point(vec2f(texel) + 0.5)) != 0u { return vec2f(1.0); }
   return vec2f(textureLoad(physical_visibility, texel, 0)[i], textureLoad(visibility, texel, 0)[i]);
+}
+
+// The same at a place between texels.
+fn visible_at(i: u32, region_px: vec2f) -> vec2f {
+  let corner = floor(region_px - 0.5);
+  let part = region_px - 0.5 - corner;
+  let texel = vec2i(corner);
+  let above = mix(visible_texel(i, texel), visible_texel(i, texel + vec2i(1, 0)), part.x);
+  let below = mix(visible_texel(i, texel + vec2i(0, 1)), visible_texel(i, texel + vec2i(1, 1)), part.x);
+  return mix(above, below, part.y);
 }
 
 // The same for the point itself, and the largest difference of both around it.
@@ -84,8 +94,8 @@ fn fs_shade(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let of_thing = raised(mark);
   let is_raised = (code == CODE_THING || code == CODE_BEFORE_TOY) && of_thing.x > 0.0;
   let below = seen_below(position.xy);
-  if !is_raised || b.a < 1.0 || below.z == 0.0 { return b; }
   let eye = globals.camera_in_anchor;
+  if !is_raised || b.a < 1.0 || below.z == 0.0 || of_thing.x >= eye.y { return b; }
   let point = mix(vec3f(below.x, 0.0, below.y), eye, of_thing.x / eye.y);
   var total = vec3f(0.0);
   for (var i = 0u; i < globals.n_lights; i++) { total += fit.receivers[0].direct_fraction[i].rgb; }

@@ -61,7 +61,7 @@ pub fn task(name: &str) -> Option<&'static str> {
         "box_filter" => 5,
         "pcss" => 6,
         "plate" | "soften" | "estimate" => 7,
-        "camera_planes" | "retarget" | "composite" | "present" | "screen" => 8,
+        "camera_planes" | "retarget" | "on_things" | "composite" | "present" | "screen" => 8,
         _ => return None,
     };
     Some(TASKS[index].0)

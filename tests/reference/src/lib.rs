@@ -25,6 +25,7 @@ pub mod least_squares;
 pub mod lit;
 pub mod model;
 pub mod occlusion;
+pub mod on_things;
 pub mod pcss;
 pub mod plate;
 pub mod raster;

@@ -38,7 +38,7 @@ impl Things {
         self.with_light(region_px)[0]
     }
 
-    fn with_light(&self, region_px: DVec2) -> [u8; 4] {
+    pub(super) fn with_light(&self, region_px: DVec2) -> [u8; 4] {
         let at = self.codes_px_from_region_px * region_px.extend(1.0);
         if at.z <= 0.0 {
             return [0; 4];

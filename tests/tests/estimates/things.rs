@@ -67,6 +67,7 @@ impl Found {
         let things = observer.observed(&scene, &input).unwrap().things;
         // No shadow lies on what is painted.
         assert!(observer.planes().is_empty());
+        assert!(!things.as_ref().is_some_and(Things::has_raised));
         Self { things, rect }
     }
 

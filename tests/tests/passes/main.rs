@@ -33,6 +33,7 @@ mod many_plates;
 mod moving;
 mod numbers;
 mod occlusion;
+mod on_things;
 mod outliers;
 mod overlap;
 mod photo;

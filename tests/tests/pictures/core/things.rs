@@ -4,7 +4,7 @@
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
-use app_core::things::{Mark, Things};
+use app_core::things::{Mark, RaisedPoint, Things};
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::frame::{Thing, Warning};
 use app_pipeline::readback::Map;
@@ -68,6 +68,25 @@ fn things_stay_as_the_camera_saw_them() {
     // The toy is drawn over an object that is not in front of it.
     let behind = picture_of(&mut core, &with(&input, &[(Mark::Thing, OVER_TOY)]));
     assert!(apart(&behind, &input, OVER_TOY) > 10);
+}
+
+#[test]
+fn a_shadow_moves_on_a_thing_whose_points_are_known() {
+    let (scene, input) = staged();
+    let mut core = core();
+    core.set_scene(scene, Preset::Balanced).unwrap();
+    let marked = with(&input, &[(Mark::Thing, IN_SHADOW), (Mark::BeforeToy, OVER_TOY)]);
+    let things = marked.things.clone().unwrap();
+    let n_pixels = things.marks().len();
+    // A millimetre above the table nearly all of the table's shadow falls on it.
+    for (of_lights, is_darker) in [(0.6, true), (0.0, false)] {
+        let points = vec![RaisedPoint::new(1e-3, of_lights); n_pixels];
+        let raised = things.clone().with_raised(points).unwrap();
+        let picture = picture_of(&mut core, &marked.clone().with_things(Some(raised)));
+        let changed = apart(&picture, &input, IN_SHADOW);
+        assert_eq!(changed > 10, is_darker, "{changed} codes, {of_lights} of the lights");
+    }
+    assert!(things.with_raised(vec![RaisedPoint::default(); n_pixels - 1]).is_none());
 }
 
 #[test]

@@ -15,10 +15,13 @@ use crate::passes::plate::FINE_FORMAT;
 use crate::passes::thing_marks::{Things, ThingsView};
 
 pub(crate) const SHADER: Shader = shader!("frame/on_things");
-const SLOTS: &[Slot] = &[Slot::uniform::<ThingsView>(), Slot::Texture];
-/// Group of the maps, and its inputs.
-const GROUP_MAPS: usize = 2;
-const MAP_SLOTS: &[Slot] = &[Slot::Texture; 3];
+const SLOTS: &[Slot] = &[
+    Slot::uniform::<ThingsView>(),
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+    Slot::Texture,
+];
 /// Format of what is shown: more precise than codes, since its alpha is.
 const FORMAT: TextureFormat = FINE_FORMAT;
 
@@ -56,7 +59,7 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let groups = [SEEN_SLOTS, SLOTS, MAP_SLOTS, &[]];
+        let groups = [SEEN_SLOTS, SLOTS, &[], &[]];
         Self {
             draw: ByForm::new(gpu, move |gpu, form| {
                 gpu.draw(&DrawSpec {
@@ -70,15 +73,17 @@ impl Pass {
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
         let Some(plate) = &targets.plate else { return };
         let draw = self.draw.of(recorder.gpu, &inputs.seen.frame);
-        let maps = [
+        let [view, codes] = inputs.things.resources();
+        let resources = [
+            view,
+            codes,
             inputs.plate.into(),
             inputs.physical_visibility.into(),
             inputs.visibility.into(),
         ];
         let groups = [
             inputs.seen.bind(recorder, draw),
-            recorder.bind(draw, GROUP_PASS, &inputs.things.resources()),
-            recorder.bind(draw, GROUP_MAPS, &maps),
+            recorder.bind(draw, GROUP_PASS, &resources),
         ];
         recorder.fullscreen_onto(draw, &groups, &[Some(cleared(&plate.view))]);
     }
