@@ -24,5 +24,6 @@ mod texture;
 mod thing_watcher;
 mod things;
 mod uncertainty;
+mod upright;
 mod withheld;
 mod world_scale;

@@ -84,9 +84,17 @@ fn a_shadow_moves_on_a_thing_whose_points_are_known() {
         let raised = things.clone().with_raised(points).unwrap();
         let picture = picture_of(&mut core, &marked.clone().with_things(Some(raised)));
         let changed = apart(&picture, &input, IN_SHADOW);
-        assert_eq!(changed > 10, is_darker, "{changed} codes, {of_lights} of the lights");
+        assert_eq!(
+            changed > 10,
+            is_darker,
+            "{changed} codes, {of_lights} of the lights"
+        );
     }
-    assert!(things.with_raised(vec![RaisedPoint::default(); n_pixels - 1]).is_none());
+    assert!(
+        things
+            .with_raised(vec![RaisedPoint::default(); n_pixels - 1])
+            .is_none()
+    );
 }
 
 #[test]
