@@ -24,7 +24,9 @@ use app_scene::things::{Mark, RaisedPoint};
 const STEPS_A_WIDTH: i32 = 640;
 /// Steps between a thing's pixel and the next one of it below.
 const LARGEST_GAP: u32 = 3;
-/// Part of a thing's pixels that are in shadow, or on sides that no light reaches.
+/// Part of a thing's pixels that are in shadow, or on sides that no light reaches. With .1, .25 and
+/// .4 the shadow's RMS error is 1.89, 1.86 and 1.86 codes for a post, 6.55, 6.44 and 6.44 for a cup,
+/// and 4.54, 3.57 and 4.05 for a white mug on pale stone.
 const SHADED: f64 = 0.25;
 /// Least part of the light that a shadowed pixel of a thing loses, and the least number of such
 /// pixels of the level.
@@ -32,7 +34,8 @@ const SHADOWED: f32 = 0.1;
 const LEAST_SHADOWED: usize = 12;
 /// Distance in pixels from a thing's outline within which its pixels may show something else.
 const WITHIN_PX: i32 = 2;
-/// Largest loss of a thing's points, over that without shadows on them.
+/// Largest loss of a thing's points, over that without shadows on them: .14, .41 and .45 for those
+/// three; 1.5 for a chequered board whose front no light reaches, which one colour does not describe.
 const OF_NONE: f32 = 0.6;
 /// Largest loss of a pixel: a squared difference in plates.
 const MOST_LOSS: f32 = 0.2;
