@@ -122,7 +122,7 @@ pub struct Things {
     /// The camera that took the picture.
     camera: Camera,
     /// The point of a thing at each pixel; empty if none is known.
-    raised: Arc<[RaisedPoint]>,
+    raised: Arc<Vec<RaisedPoint>>,
 }
 
 impl Things {
@@ -144,8 +144,8 @@ impl Things {
     /// With the points of things at the picture's pixels, rows from the top: new shadows fall on
     /// them; `None` if their number is wrong.
     #[must_use]
-    pub fn with_raised(self, raised: impl Into<Arc<[RaisedPoint]>>) -> Option<Self> {
-        let raised = raised.into();
+    pub fn with_raised(self, raised: Vec<RaisedPoint>) -> Option<Self> {
+        let raised = Arc::new(raised);
         (raised.len() == self.marks.len()).then_some(Self { raised, ..self })
     }
 

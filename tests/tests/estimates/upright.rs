@@ -77,6 +77,7 @@ fn found(has_shadow: bool) -> Option<Things> {
         let index = 4 * (at.y * frame.width_px + at.x) as usize;
         // Not of one code, as no object is.
         let grain = ((7 * at.x + 13 * at.y) % 5) as u8;
+        #[allow(clippy::cast_possible_truncation, reason = "a code")]
         let code = |light: f32| (255.0 * srgb_from_linear(light)).round() as u8 + grain;
         for (channel, teal) in TEAL.into_iter().enumerate() {
             frame.rgba8[index + channel] = code(left * teal);
