@@ -24,6 +24,7 @@ pub(crate) mod planes;
 mod seeds;
 mod shade;
 mod sides;
+mod sight;
 mod simplex;
 mod standing;
 mod toy;
@@ -32,15 +33,12 @@ mod wrong_plate;
 
 use std::borrow::Cow;
 
-use glam::{DMat4, IVec2};
+use glam::IVec2;
 
 use crate::lights::Comparison;
-use crate::measured_points::MeasuredPoints;
-use crate::picture::{Level, Pyramid, places};
-use crate::pose::Paint;
-use crate::receivers::{SeenReceiver, receiver_at};
-use crate::shape::Shape;
-use app_scene::scene::{Light, MAX_RECEIVERS};
+use crate::picture::{Level, places};
+use crate::receivers::receiver_at;
+use app_scene::scene::MAX_RECEIVERS;
 use app_scene::things::{Mark, RaisedPoint};
 pub(crate) use codes::least_change;
 pub(crate) use found::adopt;
@@ -55,6 +53,7 @@ use planes::{FoundPlane, clearer};
 pub(crate) use seeds::Colored;
 use seeds::{Seed, Seeds};
 use shade::Brightness;
+pub(crate) use sight::Sight;
 use standing::standing;
 use toy::{Toy, is_shade};
 use wrong_plate::wrong_plate;
@@ -64,22 +63,6 @@ const MOST_PIXELS: i32 = 150_000;
 /// Share of seeds among a thing's pixels that show a receiver, below which these belong to the
 /// receiver itself.
 const OF_PLANE: f32 = 0.1;
-
-/// Inputs of the search for things.
-pub(crate) struct Sight<'a> {
-    pub(crate) shape: &'a Shape,
-    pub(crate) paint: &'a Paint,
-    pub(crate) receivers: &'a [SeenReceiver],
-    pub(crate) pyramid: &'a Pyramid,
-    pub(crate) lights: &'a [Light],
-    pub(crate) world_from_camera: &'a DMat4,
-    /// Points by each source that measured some; of use to planes alone.
-    pub(crate) points: &'a [MeasuredPoints],
-    /// Things whose planes are searched for, if any are.
-    pub(crate) planes_of: Option<Colored>,
-    /// Memory of the search in the previous picture; `None` for a picture by itself.
-    pub(crate) memory: Option<&'a Memory>,
-}
 
 /// Things beside the toy.
 pub(crate) struct Sighting {

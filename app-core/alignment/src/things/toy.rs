@@ -2,13 +2,13 @@
 
 use glam::IVec2;
 
-use super::Sight;
 use super::codes::{Codes, UNLIKE_CODES, apart, from_shaded};
 use super::found::InFrame;
 use super::groups::{cross, most_around};
 use super::grown::Grown;
 use super::known::Known;
 use super::seeds::{Seed, Seeds};
+use super::sight::Sight;
 use crate::measured_points::MeasuredPoints;
 use crate::picture::{Color, Level, index_in};
 use crate::raster::{Coverage, Rasterizer, project};

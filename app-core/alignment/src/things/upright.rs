@@ -9,10 +9,10 @@
 
 use glam::{DVec2, DVec3, IVec2, Vec3Swizzles};
 
-use super::Sight;
 use super::codes::codes_of;
 use super::found::Found;
 use super::groups::cross;
+use super::sight::Sight;
 use crate::lights::Compared;
 use crate::median::median;
 use crate::picture::{Color, Level, Picture, index_in, places};

@@ -2,9 +2,9 @@
 
 use glam::IVec2;
 
-use super::Toy;
 use super::groups::{groups, marked, place_of};
 use super::grown::Grown;
+use super::toy::Toy;
 use crate::lights::Compared;
 use crate::picture::{Mask, index_in, places};
 
