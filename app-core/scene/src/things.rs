@@ -195,7 +195,7 @@ impl Things {
     /// Whether both share their memory, and so mark the same picture.
     #[must_use]
     pub fn is(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.marks, &other.marks)
+        Arc::ptr_eq(&self.marks, &other.marks) && Arc::ptr_eq(&self.raised, &other.raised)
     }
 
     /// Whether both have equal contents.
