@@ -10,24 +10,35 @@ const MAX_BLOCKS: u32 = 6000;
 /// Pixels of a block.
 const N_PX: usize = (BLOCK_PX * BLOCK_PX) as usize;
 const N: f64 = N_PX as f64;
+/// Degrees of freedom of a block beside those of its mean, its displacement and its brightness.
+const N_FREE: f64 = N - 3.0;
 /// Codes that are neither clipped nor mostly rounding.
 const USABLE_CODES: [f32; 2] = [10.0, 250.0];
 /// Classes of brightness, uniform in the square root of light.
 const N_CLASSES: usize = 16;
 /// Number of blocks that a class needs.
 const MIN_BLOCKS: usize = 24;
-/// Standard deviation in codes below which a picture counts as clean, and no grain is made. Chosen
-/// on path-traced pictures without a sensor, which measured up to 2.5.
-const MIN_CODES: f64 = 4.0;
-/// The same, of the part that the plate lacks. A compressed picture is cleaner, but so is the mean
-/// of several that is its plate. Measured: up to 1.7 for pictures and plates from one phone's
-/// processing, from 2.9 on for a dim room's pictures after JPEG, and a plate of sixteen of them.
-const MIN_MISSING_CODES: f64 = 2.5;
+/// Standard deviation in codes below which a picture counts as clean, and no grain is made.
+/// Measured: up to 0.55 for path-traced pictures without a sensor, also after a phone's processing
+/// and beside a plate that is 0.4 px off; 0.93 for a sensor's noise of one code.
+const MIN_CODES: f64 = 0.75;
+/// Part of the texture's variance that a plate may lack if both pictures have equal noise: a gain of
+/// texture by 1.5 percent is none of noise. Measured on pictures and plates from one phone's
+/// processing: 0.02.
+const GAIN_OF_TEXTURE: f64 = 0.03;
+/// Part of the frame's noise from which on that of a plate may be equal: 0.76 was measured for such
+/// pictures, up to 0.3 for the mean of sixteen.
+const PART_OF_EQUAL: f64 = 0.5;
+/// Largest displacement in pixels of a plate's block that is compensated.
+const MAX_APART_PX: f64 = 1.0;
+/// Sine squared of the angle between two gradients, up to which they count as one.
+const PARALLEL: f64 = 1e-4;
 /// Variance of a class over the line through all of them from which it is none of noise alone: few
 /// blocks in the dark show an even shadow, and most others its rim or the toy. Measured on pictures
 /// of a dim room after JPEG on a uniform table, the fitted variance in the shadow over the true one:
 /// 1.30 to 1.46 with all classes, 1.14 to 1.21 without these; on textured tables it stays.
 const MOST_OVER_LINE: f64 = 1.5;
+/// Number of fits, each without the outliers of the one before.
 const N_FITS: usize = 4;
 /// Largest correlation of neighbours that can be made.
 const MAX_CORRELATION: f64 = 0.625;
@@ -62,6 +73,7 @@ struct Statistics {
     plate_light: f64,
     frame: f64,
     plate: f64,
+    texture: f64,
     beside: f64,
 }
 
@@ -108,42 +120,29 @@ impl Grain {
         plate: impl Fn(usize) -> Option<[f32; 3]>,
     ) -> Option<Self> {
         let (statistics, common) = statistics(size_px, [&frame, &plate]);
-        // Medians over blocks: shadows, things and edges that the plate lacks are no noise.
-        let typical_codes2 = |value: fn(&Statistics) -> f64| {
-            median(
-                statistics
-                    .iter()
-                    .map(|block| value(block) / light_per_code(block.light).powi(2)),
-            )
-        };
-        let plate = |block: &Statistics| block.plate * (block.light / block.plate_light).powi(2);
-        if !is_noisy([typical_codes2(|block| block.frame), typical_codes2(plate)]) {
+        // A median over blocks: shadows, things and edges that the plate lacks are no noise.
+        let typical_codes2 = median(
+            statistics
+                .iter()
+                .map(|block| block.frame / light_per_code(block.light).powi(2)),
+        );
+        if !is_noisy(typical_codes2) {
             return None;
         }
         let classes = classes(statistics);
         let of = |value: fn(&Statistics) -> f64, light: fn(&Statistics) -> f64| {
             fitted_without_outliers(classes.iter().map(|class| (light(class), value(class))))
         };
+        let beside = unbiased(median(classes.iter().map(|class| class.beside / class.frame)));
+        let whole = |noise: Noise| noise.times(1.0 / (1.0 - variance_of_mean(beside)));
         let grain = Self {
-            frame: of(|class| class.frame, |class| class.light)?,
-            plate: of(|class| class.plate, |class| class.plate_light)?,
-            beside: narrowed(
-                median(classes.iter().map(|class| class.beside / class.frame)),
-                MAX_CORRELATION,
-            ),
+            frame: whole(of(|class| class.frame, |class| class.light)?),
+            plate: whole(of(|class| class.plate, |class| class.plate_light)?),
+            beside,
             channels: narrowed(common, 1.0),
         };
-        let typical = |light: fn(&Statistics) -> f64| median(classes.iter().map(light));
-        grain
-            .is_seen(typical(|class| class.light), typical(|class| class.plate_light))
-            .then_some(grain)
-    }
-
-    /// Whether the picture is noisy at a light, which is another one in the plate if that has
-    /// another exposure.
-    fn is_seen(&self, light: f64, plate_light: f64) -> bool {
-        let plate = self.plate.variance(plate_light) * (light / plate_light).powi(2);
-        is_noisy([self.frame.variance(light), plate].map(|variance| variance / light_per_code(light).powi(2)))
+        let light = median(classes.iter().map(|class| class.light));
+        is_noisy(grain.frame.variance(light) / light_per_code(light).powi(2)).then_some(grain)
     }
 
     /// Checks the values.
@@ -170,9 +169,9 @@ impl Grain {
     }
 }
 
-/// Whether a picture is noisy, from the variances of its codes and of its plate's.
-fn is_noisy([frame, plate]: [f64; 2]) -> bool {
-    frame > MIN_CODES * MIN_CODES || frame - plate > MIN_MISSING_CODES * MIN_MISSING_CODES
+/// Whether a picture is noisy, from the variance of its codes.
+fn is_noisy(codes2: f64) -> bool {
+    codes2 > MIN_CODES * MIN_CODES
 }
 
 /// Light per code, at a light.
@@ -188,6 +187,29 @@ impl Noise {
     pub fn variance(&self, light: f64) -> f64 {
         f64::from(self.floor) + f64::from(self.per_light) * light
     }
+
+    fn times(self, factor: f32) -> Self {
+        Self {
+            floor: factor * self.floor,
+            per_light: factor * self.per_light,
+        }
+    }
+}
+
+/// Variance of the mean of a block, for noise of variance 1 that is made of means over three pixels
+/// each way, so that neighbours have this correlation.
+fn variance_of_mean(beside: f32) -> f32 {
+    let weight = beside / (1.0 + (1.0 - 2.0 * beside * beside).max(0.0).sqrt());
+    let along = (1.0 + 2.0 * weight).powi(2) / (1.0 + 2.0 * weight * weight);
+    along * along / N_PX as f32
+}
+
+/// The correlation of neighbours, of that around the means of blocks, which have a part of the noise.
+fn unbiased(around_means: f64) -> f32 {
+    (0..N_FITS).fold(narrowed(around_means, MAX_CORRELATION), |beside, _| {
+        let lost = f64::from(variance_of_mean(beside));
+        narrowed(around_means * (1.0 - lost) + lost, MAX_CORRELATION)
+    })
 }
 
 /// Light of a pixel by its index; `None` if it is unknown.
@@ -254,6 +276,7 @@ impl Channel {
         plate
             .iter_mut()
             .for_each(|value| *value = scale * (*value - plate_light));
+        register(&mut plate, &frame);
         Some(Self {
             frame,
             plate,
@@ -269,7 +292,7 @@ impl Channel {
         let sum = pixels
             .map(|k| self.frame[k] * (other.frame[k] - other.plate[k]))
             .sum::<f64>();
-        sum / (N - 1.0)
+        sum / N_FREE
     }
 
     fn statistics(&self) -> Statistics {
@@ -279,13 +302,14 @@ impl Channel {
             .zip(&self.plate)
             .map(|(a, b)| a * b)
             .sum::<f64>()
-            / (N - 1.0);
-        let plate = self.plate.iter().map(|b| b * b).sum::<f64>() / (N - 1.0);
+            / N_FREE;
+        let plate = self.plate.iter().map(|b| b * b).sum::<f64>() / N_FREE;
         Statistics {
             light: self.light,
             plate_light: self.light / self.scale,
             frame: self.covariance(self),
             plate: (plate - shared) / self.scale.powi(2),
+            texture: shared,
             beside: self.beside(),
         }
     }
@@ -303,8 +327,66 @@ impl Channel {
                 n += 1.0;
             }
         }
-        // The subtracted mean of the block contains a share of each pixel's noise.
-        sum / n + self.covariance(self) / N
+        sum / n
+    }
+}
+
+/// Moves a plate's deviations to where they resemble the frame's most, to first order: a plate that
+/// is a fraction of a pixel off is no noise.
+fn register(plate: &mut [f64; N_PX], frame: &[f64; N_PX]) {
+    let slopes = slopes(plate);
+    let [mut xx, mut yy, mut xy, mut x, mut y] = [0.0; 5];
+    for ([along, down], (plate, frame)) in slopes.iter().zip(plate.iter().zip(frame)) {
+        xx += along * along;
+        yy += down * down;
+        xy += along * down;
+        x += along * (frame - plate);
+        y += down * (frame - plate);
+    }
+    let determinant = xx * yy - xy * xy;
+    if determinant <= PARALLEL * xx * yy {
+        return;
+    }
+    let [dx, dy] = [x * yy - y * xy, y * xx - x * xy]
+        .map(|apart| (apart / determinant).clamp(-MAX_APART_PX, MAX_APART_PX));
+    for (plate, [along, down]) in plate.iter_mut().zip(slopes) {
+        *plate += dx * along + dy * down;
+    }
+}
+
+/// Differences per pixel along rows and down columns of a block, less their means.
+fn slopes(block: &[f64; N_PX]) -> [[f64; 2]; N_PX] {
+    let side = BLOCK_PX as usize;
+    let mut slopes = [[0.0; 2]; N_PX];
+    for (k, slope) in slopes.iter_mut().enumerate() {
+        for (slope, (at, step)) in slope.iter_mut().zip([(k % side, 1), (k / side, side)]) {
+            let [before, after] = [at.min(1), (side - 1 - at).min(1)];
+            *slope = (block[k + after * step] - block[k - before * step]) / (before + after) as f64;
+        }
+    }
+    for axis in [0, 1] {
+        let mean = slopes.iter().map(|slope| slope[axis]).sum::<f64>() / N;
+        slopes.iter_mut().for_each(|slope| slope[axis] -= mean);
+    }
+    slopes
+}
+
+impl Statistics {
+    /// With the same noise in both pictures, if a gain of the texture explains what the plate lacks.
+    fn with_equal_noise_if_alike(self) -> Self {
+        let to_frame = (self.light / self.plate_light).powi(2);
+        let plate = self.plate * to_frame;
+        let lacking = self.frame - plate;
+        let is_gain = lacking <= GAIN_OF_TEXTURE * self.texture && plate >= PART_OF_EQUAL * self.frame;
+        if lacking <= 0.0 || !is_gain {
+            return self;
+        }
+        let both = 0.5 * (self.frame + plate);
+        Self {
+            frame: both,
+            plate: both / to_frame,
+            ..self
+        }
     }
 }
 
@@ -329,9 +411,11 @@ fn classes(statistics: Vec<Statistics>) -> Vec<Statistics> {
             plate_light: of(|statistics| statistics.plate_light),
             frame: of(|statistics| statistics.frame),
             plate: of(|statistics| statistics.plate),
+            texture: of(|statistics| statistics.texture),
             beside: of(|statistics| statistics.beside),
         }
     })
+    .map(Statistics::with_equal_noise_if_alike)
     .filter(|class| class.frame > 0.0)
     .collect()
 }
