@@ -1,5 +1,9 @@
 //! Grain: the noise of a picture, measured against a plate of the same view.
 
+mod line;
+
+use line::{fitted_without_outliers, narrowed};
+
 use crate::geometry::color::{linear_from_srgb, linear_of_codes, linear_per_srgb};
 use crate::scene::{Camera, Image, InputError, Scene, check};
 
@@ -10,8 +14,10 @@ const MAX_BLOCKS: u32 = 6000;
 /// Pixels of a block.
 const N_PX: usize = (BLOCK_PX * BLOCK_PX) as usize;
 const N: f64 = N_PX as f64;
-/// Degrees of freedom of a block beside those of its mean, its displacement and its brightness.
-const N_FREE: f64 = N - 3.0;
+/// Degrees of freedom of a block beside those of its plate's displacement.
+const N_FREE: f64 = N - 2.0;
+/// Variance of the rounding of codes, which made pixels get as well.
+const ROUNDING_CODES2: f64 = 1.0 / 12.0;
 /// Codes that are neither clipped nor mostly rounding.
 const USABLE_CODES: [f32; 2] = [10.0, 250.0];
 /// Classes of brightness, uniform in the square root of light.
@@ -19,8 +25,9 @@ const N_CLASSES: usize = 16;
 /// Number of blocks that a class needs.
 const MIN_BLOCKS: usize = 24;
 /// Standard deviation in codes below which a picture counts as clean, and no grain is made.
-/// Measured: up to 0.55 for path-traced pictures without a sensor, also after a phone's processing
-/// and beside a plate that is 0.4 px off; 0.93 for a sensor's noise of one code.
+/// Measured: up to 0.55 for path-traced pictures without a sensor, also after a phone's processing,
+/// beside a plate that is 0.4 px off, or blurred by a motion of 5 px; 0.93 for a sensor's noise of
+/// one code.
 const MIN_CODES: f64 = 0.75;
 /// Part of the texture's variance that a plate may lack if both pictures have equal noise: a gain of
 /// texture by 1.5 percent is none of noise. Measured on pictures and plates from one phone's
@@ -33,13 +40,8 @@ const PART_OF_EQUAL: f64 = 0.5;
 const MAX_APART_PX: f64 = 1.0;
 /// Sine squared of the angle between two gradients, up to which they count as one.
 const PARALLEL: f64 = 1e-4;
-/// Variance of a class over the line through all of them from which it is none of noise alone: few
-/// blocks in the dark show an even shadow, and most others its rim or the toy. Measured on pictures
-/// of a dim room after JPEG on a uniform table, the fitted variance in the shadow over the true one:
-/// 1.30 to 1.46 with all classes, 1.14 to 1.21 without these; on textured tables it stays.
-const MOST_OVER_LINE: f64 = 1.5;
-/// Number of fits, each without the outliers of the one before.
-const N_FITS: usize = 4;
+/// Number of steps to the correlation of neighbours, which are enough for three digits.
+const N_SOLVES: usize = 4;
 /// Largest correlation of neighbours that can be made.
 const MAX_CORRELATION: f64 = 0.625;
 
@@ -69,6 +71,7 @@ pub struct Grain {
 /// Statistics of a block's channel, in linear light.
 #[derive(Clone, Copy, Default)]
 struct Statistics {
+    n_blocks: f64,
     light: f64,
     plate_light: f64,
     frame: f64,
@@ -120,18 +123,13 @@ impl Grain {
         plate: impl Fn(usize) -> Option<[f32; 3]>,
     ) -> Option<Self> {
         let (statistics, common) = statistics(size_px, [&frame, &plate]);
-        // A median over blocks: shadows, things and edges that the plate lacks are no noise.
-        let typical_codes2 = median(
-            statistics
-                .iter()
-                .map(|block| block.frame / light_per_code(block.light).powi(2)),
-        );
-        if !is_noisy(typical_codes2) {
+        if !is_noisy(codes2_without_texture(&statistics)) {
             return None;
         }
         let classes = classes(statistics);
         let of = |value: fn(&Statistics) -> f64, light: fn(&Statistics) -> f64| {
-            fitted_without_outliers(classes.iter().map(|class| (light(class), value(class))))
+            let points = classes.iter();
+            fitted_without_outliers(points.map(|class| (light(class), value(class), class.n_blocks)))
         };
         let beside = unbiased(median(classes.iter().map(|class| class.beside / class.frame)));
         let whole = |noise: Noise| noise.times(1.0 / (1.0 - variance_of_mean(beside)));
@@ -174,6 +172,26 @@ fn is_noisy(codes2: f64) -> bool {
     codes2 > MIN_CODES * MIN_CODES
 }
 
+/// Variance in codes of the noise where there is no texture, by medians over the blocks with less
+/// and with more of it: a plate that is less or more sharp differs by a part of the texture, and
+/// shadows, things and edges that the plate lacks are in few blocks.
+fn codes2_without_texture(blocks: &[Statistics]) -> f64 {
+    let in_codes = |block: &Statistics| {
+        let per_code2 = light_per_code(block.light).powi(2);
+        [block.texture, block.frame].map(|variance| variance / per_code2)
+    };
+    let mut blocks: Vec<[f64; 2]> = blocks.iter().map(in_codes).collect();
+    blocks.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+    let (less, more) = blocks.split_at(blocks.len() / 2);
+    let [[texture, noise], [more_texture, more_noise]] =
+        [less, more].map(|half| [0, 1].map(|value| median(half.iter().map(|block| block[value]))));
+    let texture = texture.max(0.0);
+    if more_texture <= texture {
+        return noise;
+    }
+    noise - (more_noise - noise) * texture / (more_texture - texture)
+}
+
 /// Light per code, at a light.
 fn light_per_code(light: f64) -> f64 {
     #[allow(clippy::cast_possible_truncation, reason = "of a light of one picture")]
@@ -206,7 +224,7 @@ fn variance_of_mean(beside: f32) -> f32 {
 
 /// The correlation of neighbours, of that around the means of blocks, which have a part of the noise.
 fn unbiased(around_means: f64) -> f32 {
-    (0..N_FITS).fold(narrowed(around_means, MAX_CORRELATION), |beside, _| {
+    (0..N_SOLVES).fold(narrowed(around_means, MAX_CORRELATION), |beside, _| {
         let lost = f64::from(variance_of_mean(beside));
         narrowed(around_means * (1.0 - lost) + lost, MAX_CORRELATION)
     })
@@ -305,6 +323,7 @@ impl Channel {
             / N_FREE;
         let plate = self.plate.iter().map(|b| b * b).sum::<f64>() / N_FREE;
         Statistics {
+            n_blocks: 1.0,
             light: self.light,
             plate_light: self.light / self.scale,
             frame: self.covariance(self),
@@ -388,6 +407,15 @@ impl Statistics {
             ..self
         }
     }
+
+    /// Without the frame's rounding.
+    fn without_rounding(self) -> Self {
+        let rounding = ROUNDING_CODES2 * light_per_code(self.light).powi(2);
+        Self {
+            frame: self.frame - rounding,
+            ..self
+        }
+    }
 }
 
 /// Medians of the classes of brightness that have enough blocks: things in only one picture are
@@ -407,6 +435,7 @@ fn classes(statistics: Vec<Statistics>) -> Vec<Statistics> {
     many.map(|class| {
         let of = |value: fn(&Statistics) -> f64| median(class.iter().map(value));
         Statistics {
+            n_blocks: class.len() as f64,
             light: of(|statistics| statistics.light),
             plate_light: of(|statistics| statistics.plate_light),
             frame: of(|statistics| statistics.frame),
@@ -415,7 +444,7 @@ fn classes(statistics: Vec<Statistics>) -> Vec<Statistics> {
             beside: of(|statistics| statistics.beside),
         }
     })
-    .map(Statistics::with_equal_noise_if_alike)
+    .map(|class| class.with_equal_noise_if_alike().without_rounding())
     .filter(|class| class.frame > 0.0)
     .collect()
 }
@@ -425,60 +454,4 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_unstable_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
-}
-
-/// The line through the points (light, variance), without those that are far above it.
-fn fitted_without_outliers(points: impl Iterator<Item = (f64, f64)>) -> Option<Noise> {
-    let mut points: Vec<(f64, f64)> = points.collect();
-    let mut noise = fitted(points.iter().copied())?;
-    for _ in 1..N_FITS {
-        points.retain(|(light, variance)| *variance <= MOST_OVER_LINE * noise.variance(*light));
-        noise = fitted(points.iter().copied()).unwrap_or(noise);
-    }
-    Some(noise)
-}
-
-/// The line through (light, variance) of least relative error with two non-negative coefficients.
-fn fitted(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<Noise> {
-    let largest = points.clone().map(|(_, variance)| variance).fold(0.0, f64::max);
-    let (mut n, mut x, mut y, mut xx, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for (light, variance) in points {
-        let weight = 1.0 / variance.max(0.01 * largest).max(1e-12).powi(2);
-        n += weight;
-        x += weight * light;
-        y += weight * variance;
-        xx += weight * light * light;
-        xy += weight * light * variance;
-    }
-    if n == 0.0 {
-        return None;
-    }
-    let spread = n * xx - x * x;
-    let slope = if spread > 1e-9 * n * xx {
-        (n * xy - x * y) / spread
-    } else {
-        0.0
-    };
-    let floor = (y - slope * x) / n;
-    let (floor, slope) = if slope < 0.0 {
-        (y / n, 0.0)
-    } else if floor < 0.0 {
-        (0.0, xy / xx)
-    } else {
-        (floor, slope)
-    };
-    Some(Noise {
-        floor: narrowed(floor, 1.0),
-        per_light: narrowed(slope, 1.0),
-    })
-}
-
-/// Clamped to 0 to `most`; 0 for NaN.
-#[allow(clippy::cast_possible_truncation, reason = "of the range of a single")]
-fn narrowed(value: f64, most: f64) -> f32 {
-    if value.is_finite() {
-        value.clamp(0.0, most) as f32
-    } else {
-        0.0
-    }
 }
