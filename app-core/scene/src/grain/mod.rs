@@ -172,8 +172,8 @@ fn is_noisy(codes2: f64) -> bool {
     codes2 > MIN_CODES * MIN_CODES
 }
 
-/// Variance in codes of the noise where there is no texture, by medians over the blocks with less
-/// and with more of it: a plate that is less or more sharp differs by a part of the texture, and
+/// Variance in codes of the noise where there is no texture, by medians over the quarter of
+/// the blocks with the least of it and over the next one: a plate that is less or more sharp differs by a part of the texture, and
 /// shadows, things and edges that the plate lacks are in few blocks.
 fn codes2_without_texture(blocks: &[Statistics]) -> f64 {
     let in_codes = |block: &Statistics| {
@@ -182,9 +182,9 @@ fn codes2_without_texture(blocks: &[Statistics]) -> f64 {
     };
     let mut blocks: Vec<[f64; 2]> = blocks.iter().map(in_codes).collect();
     blocks.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
-    let (less, more) = blocks.split_at(blocks.len() / 2);
+    let (less, more) = blocks[..blocks.len() / 2].split_at(blocks.len() / 4);
     let [[texture, noise], [more_texture, more_noise]] =
-        [less, more].map(|half| [0, 1].map(|value| median(half.iter().map(|block| block[value]))));
+        [less, more].map(|quarter| [0, 1].map(|value| median(quarter.iter().map(|block| block[value]))));
     let texture = texture.max(0.0);
     if more_texture <= texture {
         return noise;
