@@ -148,10 +148,6 @@ fn a_displaced_plate_is_no_noise() {
     let clean = session.frame(FRAME).unwrap().image;
     let plate = displaced(&session.scene().plates[0].image, 0.3);
     assert_eq!(Grain::measured(&clean, &plate), None);
-    let noisy = with_noise(&clean, 7, faint);
-    let found = Grain::measured(&noisy, &plate).expect("grain");
-    let ratio = found.frame.variance(0.3) / faint(0.3);
-    assert!((0.85..1.25).contains(&ratio), "{ratio}");
 }
 
 #[test]
