@@ -87,8 +87,10 @@ fn recorded() -> Vec<u8> {
     sink
 }
 
-/// Depths and people of each frame.
-fn told(capture: &Capture) -> Vec<(Option<Vec<u16>>, Option<Vec<u8>>)> {
+/// Depths and people of a frame.
+type Told = (Option<Vec<u16>>, Option<Vec<u8>>);
+
+fn told(capture: &Capture) -> Vec<Told> {
     let frames = (0..capture.n_frames()).map(|index| capture.frame(index).unwrap());
     let maps = frames.map(|frame| {
         let depths = frame.depth.map(|depth| depth.depths_mm().to_vec());
