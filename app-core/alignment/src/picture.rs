@@ -4,6 +4,7 @@ use glam::{DVec2, IVec2, UVec2};
 
 use app_scene::geometry::color::{linear_of_codes, linear_per_srgb};
 use app_scene::scene::{Image, Intrinsics};
+use app_scene::sharpness::Spread;
 use app_scene::things::Mark;
 
 /// Index of a place within a rectangle; `None` outside it.
@@ -105,20 +106,33 @@ impl Picture {
     /// Spread by a Gaussian, whose deviation is in pixels; what is near to the border, or to what is unknown, is unknown.
     pub(super) fn spread(&self, deviation_px: f64) -> Self {
         let weights = gaussian(deviation_px);
-        let along = |from: &Self, axis: IVec2| {
-            let pixel = |at: IVec2| {
-                let mut sum = [0.0; 3];
-                for (step, weight) in &weights {
-                    let Some(color) = from.get(at + *step * axis) else {
-                        return UNKNOWN;
-                    };
-                    sum = [0, 1, 2].map(|channel| sum[channel] + weight * color[channel]);
-                }
-                sum
-            };
-            Self::of(from.size_px, places(from.size_px).map(pixel).collect())
+        let [along, down] = [IVec2::X, IVec2::Y].map(|axis| {
+            let taps = weights.iter().map(|(step, weight)| (*step * axis, *weight));
+            taps.collect::<Vec<_>>()
+        });
+        self.taking(&along).taking(&down)
+    }
+
+    /// Spread along one axis, then along the other; what is near to the border, or to what is
+    /// unknown, is unknown.
+    pub(super) fn softened(&self, spread: Spread) -> Self {
+        let [first, second] = spread.axes_px().map(taps_along);
+        self.taking(&first).taking(&second)
+    }
+
+    /// The weighted sum of the pixels at these offsets from each.
+    fn taking(&self, taps: &[(IVec2, f32)]) -> Self {
+        let pixel = |at: IVec2| {
+            let mut sum = [0.0; 3];
+            for (offset, weight) in taps {
+                let Some(color) = self.get(at + *offset) else {
+                    return UNKNOWN;
+                };
+                sum = [0, 1, 2].map(|channel| sum[channel] + weight * color[channel]);
+            }
+            sum
         };
-        along(&along(self, IVec2::X), IVec2::Y)
+        Self::of(self.size_px, places(self.size_px).map(pixel).collect())
     }
 
     /// Each pixel that is known, changed.
@@ -170,6 +184,23 @@ pub(super) fn gaussian(deviation_px: f64) -> Vec<(i32, f32)> {
     #[allow(clippy::cast_possible_truncation, reason = "weights below 1")]
     let weights = (-reach_px..=reach_px).map(|step| (step, (weight(step) / total) as f32));
     weights.collect()
+}
+
+/// Taps of a Gaussian along an axis as long as its deviation, one pixel apart and bilinear between
+/// pixels.
+pub(super) fn taps_along(axis_px: DVec2) -> Vec<(IVec2, f32)> {
+    const LEAST_PX: f64 = 0.01;
+    let deviation_px = axis_px.length();
+    if deviation_px < LEAST_PX {
+        return vec![(IVec2::ZERO, 1.0)];
+    }
+    let mut taps = Vec::new();
+    for (step, weight) in gaussian(deviation_px) {
+        let four = bilinear(f64::from(step) * axis_px / deviation_px);
+        let near = four.into_iter().filter(|(_, part)| *part > 0.0);
+        taps.extend(near.map(|(offset, part)| (offset, weight * part)));
+    }
+    taps
 }
 
 /// The photograph and its plate at one level of the pyramid.

@@ -10,7 +10,7 @@ use glam::{DVec2, IVec2};
 use nalgebra::{Matrix3, Vector3};
 
 use super::median::median;
-use super::picture::{Level, Mask, bilinear, gaussian, places};
+use super::picture::{Level, Mask, places, taps_along};
 use super::raster::Coverage;
 use app_scene::sharpness::{Sharpness, Spread};
 
@@ -304,21 +304,4 @@ fn add_row(sums: &mut [f32], from: &[f32], offset: i32, weight: f32) {
     if let Some(nearest) = nearest {
         beyond.iter_mut().for_each(|sum| *sum += weight * nearest);
     }
-}
-
-/// Taps of a Gaussian along an axis as long as its deviation, one pixel apart and bilinear between
-/// pixels.
-fn taps_along(axis_px: DVec2) -> Vec<(IVec2, f32)> {
-    const LEAST_PX: f64 = 0.01;
-    let deviation_px = axis_px.length();
-    if deviation_px < LEAST_PX {
-        return vec![(IVec2::ZERO, 1.0)];
-    }
-    let mut taps = Vec::new();
-    for (step, weight) in gaussian(deviation_px) {
-        let four = bilinear(f64::from(step) * axis_px / deviation_px);
-        let near = four.into_iter().filter(|(_, part)| *part > 0.0);
-        taps.extend(near.map(|(offset, part)| (offset, weight * part)));
-    }
-    taps
 }

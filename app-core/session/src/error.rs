@@ -105,11 +105,13 @@ pub enum PictureError {
         /// Height of the session.
         expected_height_px: u32,
     },
-    /// Depths of another shape than the session's pictures.
+    /// A map of another shape than the session's pictures.
     #[error(
-        "the depths are {width_px} x {height_px} px, which is not the shape of the session's pictures, {picture_width_px} x {picture_height_px} px: turn or cut them like the pictures"
+        "{map} of {width_px} x {height_px} px, which is not the shape of the session's pictures, {picture_width_px} x {picture_height_px} px: turn or cut it like the pictures"
     )]
-    DepthSize {
+    MapSize {
+        /// The kind of map, with its article.
+        map: &'static str,
         /// Width in the header.
         width_px: u32,
         /// Height in the header.
@@ -119,26 +121,14 @@ pub enum PictureError {
         /// Height of the session's pictures.
         picture_height_px: u32,
     },
-    /// Depths that are no grey PNG of 16 bits.
-    #[error("not a grey PNG of 16 bits, as depths in millimetres must be")]
-    NotDepths,
-    /// A mask of people of another shape than the session's pictures.
-    #[error(
-        "the mask is {width_px} x {height_px} px, which is not the shape of the session's pictures, {picture_width_px} x {picture_height_px} px: turn or cut it like the pictures"
-    )]
-    PeopleSize {
-        /// Width in the header.
-        width_px: u32,
-        /// Height in the header.
-        height_px: u32,
-        /// Width of the session's pictures.
-        picture_width_px: u32,
-        /// Height of the session's pictures.
-        picture_height_px: u32,
+    /// A map that is no grey PNG of its number of bits.
+    #[error("not a grey PNG of {n_bits} bits, as {map} must be")]
+    NotAMap {
+        /// The kind of map, with its article.
+        map: &'static str,
+        /// Number of bits of a pixel.
+        n_bits: u8,
     },
-    /// A mask of people that is no grey PNG of 8 bits.
-    #[error("not a grey PNG of 8 bits, as a mask of people must be")]
-    NotPeople,
     /// Damaged or cut short.
     #[error("damaged picture: {0}")]
     Decode(#[from] image::ImageError),

@@ -53,74 +53,98 @@ pub(super) fn decode_mask(bytes: &[u8], size: PictureSize) -> Result<Image, Pict
     }
 }
 
-/// Decodes depths, which may be of another size than the pictures but not of another shape.
+/// A kind of map of a frame: a grey PNG, which may be of another size than the pictures but not of
+/// another shape.
+struct MapKind {
+    /// Its name with its article.
+    name: &'static str,
+    n_bits: u8,
+    color: ColorType,
+}
+
+const DEPTHS: MapKind = MapKind {
+    name: "a map of depths in millimetres",
+    n_bits: 16,
+    color: ColorType::L16,
+};
+const PEOPLE: MapKind = MapKind {
+    name: "a mask of people",
+    n_bits: 8,
+    color: ColorType::L8,
+};
+
+impl MapKind {
+    fn refusal(&self) -> PictureError {
+        PictureError::NotAMap {
+            map: self.name,
+            n_bits: self.n_bits,
+        }
+    }
+
+    /// The decoder of a map whose format and size are checked.
+    fn decoder<'a>(
+        &self,
+        bytes: &'a [u8],
+        size: PictureSize,
+    ) -> Result<PngDecoder<Cursor<&'a [u8]>>, PictureError> {
+        if !bytes.starts_with(PNG_MAGIC) {
+            return Err(self.refusal());
+        }
+        let mut limits = Limits::default();
+        limits.max_alloc = Some(MAX_GREY_BYTES);
+        let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits)?;
+        if decoder.color_type() != self.color {
+            return Err(self.refusal());
+        }
+        if is_alike(&decoder, size) {
+            return Ok(decoder);
+        }
+        let (width_px, height_px) = decoder.dimensions();
+        Err(PictureError::MapSize {
+            map: self.name,
+            width_px,
+            height_px,
+            picture_width_px: size.width_px,
+            picture_height_px: size.height_px,
+        })
+    }
+
+    /// A decoded map, of the texels that `of` finds in a picture.
+    fn decoded<T>(
+        &self,
+        (bytes, size): (&[u8], PictureSize),
+        of: impl FnOnce(UVec2, DynamicImage) -> Option<T>,
+    ) -> Result<T, PictureError> {
+        let image = DynamicImage::from_decoder(self.decoder(bytes, size)?)?;
+        let size_px = UVec2::new(image.width(), image.height());
+        of(size_px, image).ok_or_else(|| self.refusal())
+    }
+}
+
+/// Decodes depths.
 pub(super) fn decode_depth(bytes: &[u8], size: PictureSize) -> Result<Depth, PictureError> {
-    let decoder = depth_decoder(bytes, size)?;
-    let DynamicImage::ImageLuma16(image) = DynamicImage::from_decoder(decoder)? else {
-        return Err(PictureError::NotDepths);
-    };
-    let size_px = UVec2::new(image.width(), image.height());
-    Depth::new(size_px, image.into_raw()).ok_or(PictureError::NotDepths)
+    DEPTHS.decoded((bytes, size), |size_px, image| match image {
+        DynamicImage::ImageLuma16(image) => Depth::new(size_px, image.into_raw()),
+        _ => None,
+    })
+}
+
+/// Decodes a mask of people.
+pub(super) fn decode_people(bytes: &[u8], size: PictureSize) -> Result<People, PictureError> {
+    PEOPLE.decoded((bytes, size), |size_px, image| match image {
+        DynamicImage::ImageLuma8(image) => People::new(size_px, image.into_raw()),
+        _ => None,
+    })
 }
 
 /// Checks format and size of depths without decoding them.
 pub(super) fn check_depth(bytes: &[u8], size: PictureSize) -> Result<(), PictureError> {
-    depth_decoder(bytes, size).map(|_| ())
-}
-
-fn depth_decoder(bytes: &[u8], size: PictureSize) -> Result<PngDecoder<Cursor<&[u8]>>, PictureError> {
-    let decoder = grey_decoder(bytes, ColorType::L16)?.ok_or(PictureError::NotDepths)?;
-    if is_alike(&decoder, size) {
-        return Ok(decoder);
-    }
-    let (width_px, height_px) = decoder.dimensions();
-    Err(PictureError::DepthSize {
-        width_px,
-        height_px,
-        picture_width_px: size.width_px,
-        picture_height_px: size.height_px,
-    })
-}
-
-/// Decodes a mask of people, which may be of another size than the pictures but not of another
-/// shape.
-pub(super) fn decode_people(bytes: &[u8], size: PictureSize) -> Result<People, PictureError> {
-    let decoder = people_decoder(bytes, size)?;
-    let DynamicImage::ImageLuma8(image) = DynamicImage::from_decoder(decoder)? else {
-        return Err(PictureError::NotPeople);
-    };
-    let size_px = UVec2::new(image.width(), image.height());
-    People::new(size_px, image.into_raw()).ok_or(PictureError::NotPeople)
+    DEPTHS.decoder(bytes, size).map(|_| ())
 }
 
 /// Checks format and size of a mask of people without decoding it.
 pub(super) fn check_people(bytes: &[u8], size: PictureSize) -> Result<(), PictureError> {
-    people_decoder(bytes, size).map(|_| ())
-}
-
-fn people_decoder(bytes: &[u8], size: PictureSize) -> Result<PngDecoder<Cursor<&[u8]>>, PictureError> {
-    let decoder = grey_decoder(bytes, ColorType::L8)?.ok_or(PictureError::NotPeople)?;
-    if is_alike(&decoder, size) {
-        return Ok(decoder);
-    }
-    let (width_px, height_px) = decoder.dimensions();
-    Err(PictureError::PeopleSize {
-        width_px,
-        height_px,
-        picture_width_px: size.width_px,
-        picture_height_px: size.height_px,
-    })
-}
-
-/// Decoder of a PNG of one channel; `None` if it is none of this type.
-fn grey_decoder(bytes: &[u8], kind: ColorType) -> Result<Option<PngDecoder<Cursor<&[u8]>>>, PictureError> {
-    if !bytes.starts_with(PNG_MAGIC) {
-        return Ok(None);
-    }
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(MAX_GREY_BYTES);
-    let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits)?;
-    Ok((decoder.color_type() == kind).then_some(decoder))
+    PEOPLE.decoder(bytes, size).map(|_| ())
 }
 
 /// Whether a picture has the shape of a session's pictures and a size within the limits.

@@ -153,6 +153,7 @@ mod tests {
             exposure: 1.0,
             light_estimate: None,
             depth: None,
+            people: None,
             shown_pose: Pose::Authored,
             world_from_shown: None,
         };

@@ -276,9 +276,8 @@ impl Worker {
     }
 
     fn align(&self, job: AlignJob) {
-        self.run("align", ShellEvent::Aligned(None), move |_| {
-            ShellEvent::Aligned(Some(Box::new(job.run())))
-        });
+        let died = ShellEvent::Aligned(Box::new(job.without_result()));
+        self.run("align", died, move |_| ShellEvent::Aligned(Box::new(job.run())));
     }
 
     fn save_photo(&mut self, live: &Live) {

@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::path::Path;
 
 use anyhow::{Context, ensure};
-use app_core::recording::{Limits, Note, Picture, Topic, Writer};
+use app_core::recording::{Limits, Maps, Note, Picture, Topic, Writer};
 use app_core::session::{FileError, Files};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
@@ -42,14 +42,23 @@ struct Index<'a> {
 struct Entry {
     image: String,
     depth: Option<String>,
+    people: Option<String>,
     #[serde(default)]
     time: f64,
 }
 
 impl Entry {
+    /// Paths of its maps.
+    fn maps(&self) -> Maps<&str> {
+        Maps {
+            depth: self.depth.as_deref(),
+            people: self.people.as_deref(),
+        }
+    }
+
     /// Paths of its files that have a channel of a recording.
     fn files(&self) -> impl Iterator<Item = &str> {
-        std::iter::once(self.image.as_str()).chain(self.depth.as_deref())
+        std::iter::once(self.image.as_str()).chain(self.maps().in_order().into_iter().flatten())
     }
 }
 
@@ -196,7 +205,8 @@ fn write_frames(
     notes: &[Note],
 ) -> anyhow::Result<()> {
     let known: HashSet<&str> = paths.iter().map(String::as_str).collect();
-    let (mut pictures, mut depths) = (Numbered::default(), Numbered::default());
+    let mut pictures = Numbered::default();
+    let mut numbered_maps = [Numbered::default(), Numbered::default()];
     let mut notes = notes.iter().peekable();
     for (entry, text) in entries {
         let time_ns = time_ns(entry.time);
@@ -204,13 +214,21 @@ fn write_frames(
             writer.note(note.time_ns, note.topic, &note.message)?;
         }
         let picture = pictures.picture(session, &entry.image)?;
-        // A folder may lack it, and is converted all the same.
-        let named = entry.depth.as_deref().filter(|path| known.contains(path));
-        let depth = named.map(|path| depths.picture(session, path)).transpose()?;
-        let (number, depth_number) = writer.frame_with_depth(time_ns, picture, depth, text)?;
+        // A folder may lack one, and is converted all the same.
+        let paths = entry.maps().in_order();
+        let paths = paths.map(|path| path.filter(|path| known.contains(path)));
+        let mut maps = [None; 2];
+        for ((map, path), numbered) in maps.iter_mut().zip(paths).zip(&mut numbered_maps) {
+            *map = path.map(|path| numbered.picture(session, path)).transpose()?;
+        }
+        let (number, map_numbers) =
+            writer.frame_with_maps(time_ns, picture, Maps::from_ordered(maps), text)?;
         pictures.is_written(&entry.image, number);
-        if let Some((path, number)) = named.zip(depth_number) {
-            depths.is_written(path, number);
+        let written = paths.into_iter().zip(map_numbers.in_order());
+        for (numbered, (path, number)) in numbered_maps.iter_mut().zip(written) {
+            if let Some((path, number)) = path.zip(number) {
+                numbered.is_written(path, number);
+            }
         }
     }
     for note in notes {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use app_core::alignment::{Aligner, Conditions, Observer, ThingWatcher, Watched};
 use app_core::frame::FrameInput;
-use app_core::scene::{Image, Scene};
+use app_core::scene::{Camera, Image, Scene};
 use app_core::things::{Mark, Things};
 use glam::UVec2;
 use measure::random::Random;
@@ -113,6 +113,60 @@ fn a_picture_of_another_camera_is_searched_though_it_looks_the_same() {
         look(&input.clone().with_camera(camera)),
         Watched::Things(_)
     ));
+}
+
+/// A picture that is so many times as wide and as high.
+fn enlarged(image: &Image, times: u32) -> Arc<Image> {
+    let [width_px, height_px] = [image.width_px, image.height_px].map(|px| times * px);
+    let pixels = pixels([UVec2::ZERO, UVec2::new(width_px, height_px)]);
+    let rgba8 = pixels.flat_map(|at| {
+        let first = 4 * (at.y / times * image.width_px + at.x / times) as usize;
+        image.rgba8[first..first + 4].to_owned()
+    });
+    Arc::new(Image {
+        rgba8: rgba8.collect(),
+        width_px,
+        height_px,
+    })
+}
+
+fn enlarged_camera(camera: &Camera, times: u32) -> Camera {
+    Camera {
+        intrinsics: camera.intrinsics.scaled(f64::from(times)),
+        ..*camera
+    }
+}
+
+#[test]
+fn a_hand_in_a_picture_of_two_megapixels_is_found_where_it_is() {
+    const TIMES: u32 = 3;
+    let (scene, input) = &*SESSION;
+    let mut scene = Scene::clone(scene);
+    for plate in &mut scene.plates {
+        plate.image = enlarged(&plate.image, TIMES);
+        plate.camera = enlarged_camera(&plate.camera, TIMES);
+    }
+    [scene.width_px, scene.height_px] = [scene.width_px, scene.height_px].map(|px| TIMES * px);
+    let plain = Arc::clone(input.image.rgba());
+    let input = input.clone().with_camera(enlarged_camera(&input.camera, TIMES));
+    let input = input.with_image(enlarged(&plain, TIMES));
+    let mut aligner = Aligner::new(scene);
+    let alignment = aligner.align(&input).unwrap();
+    let (conditions, input) = (aligner.conditions().unwrap(), alignment.applied_to(&input));
+    let rect = hand(440);
+    let seen = input.with_image(enlarged(&painted(&plain, rect), TIMES));
+    let mut watcher = ThingWatcher::default();
+    let found = things(watcher.look(&conditions, &seen).unwrap()).unwrap();
+    // Marks are in a picture of their own.
+    let scale = f64::from(found.size_px().x) / f64::from(plain.width_px);
+    let rect = rect.map(|at| (at.as_dvec2() * scale).as_uvec2());
+    let [of_it, beyond] = marked(Some(&found), rect);
+    assert!(
+        of_it > 0.9 && beyond < 0.1,
+        "{of_it:.2} of it, {beyond:.2} beyond"
+    );
+    let [focal_px, of_session_px] = [found.camera(), &SESSION.1.camera].map(|camera| camera.intrinsics.fx_px);
+    assert!((focal_px / of_session_px - scale).abs() < 1e-6, "{focal_px}");
 }
 
 /// The picture with noise of three codes.

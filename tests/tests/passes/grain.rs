@@ -83,28 +83,81 @@ fn made_pixels_have_the_reference_noise() {
     assert!(mean.abs() < 1e-4, "{mean}");
 }
 
+/// With noise of a variance that depends on the light; neighbours have the correlation 0.4, channels
+/// 0.3.
+fn with_noise(clean: &Image, picture: u32, variance: impl Fn(f64) -> f64) -> Image {
+    let mut noisy = clean.clone();
+    for (index, codes) in (0..).zip(noisy.rgba8.chunks_mut(4)) {
+        let at = [
+            index % clean.width_px.cast_signed(),
+            index / clean.width_px.cast_signed(),
+        ];
+        let noise = grain_at(at, picture, 0.4, 0.3);
+        for (code, noise) in codes.iter_mut().zip(noise) {
+            let light = linear(*code);
+            let shown = (light + variance(light).sqrt() * noise).clamp(0.0, 1.0);
+            *code = (0..=255_u8)
+                .min_by(|a, b| (linear(*a) - shown).abs().total_cmp(&(linear(*b) - shown).abs()))
+                .unwrap();
+        }
+    }
+    noisy
+}
+
+/// Some 1.5 codes of a mid grey.
+fn faint(light: f64) -> f64 {
+    1e-4 * light
+}
+
+#[test]
+fn faint_noise_is_measured_and_that_of_the_plate() {
+    let session = session();
+    let plate = &session.scene().plates[0].image;
+    let noisy = with_noise(&session.frame(FRAME).unwrap().image, 7, faint);
+    let found = Grain::measured(&noisy, plate).expect("grain");
+    let ratio = found.frame.variance(0.3) / faint(0.3);
+    assert!((0.85..1.2).contains(&ratio), "{ratio}");
+    assert!(found.plate.variance(0.3) < 0.1 * faint(0.3), "{found:?}");
+    let as_noisy = with_noise(plate, 8, faint);
+    let found = Grain::measured(&noisy, &as_noisy).expect("grain");
+    let ratio = found.plate.variance(0.3) / found.frame.variance(0.3);
+    assert!((0.9..1.1).contains(&ratio), "{ratio}");
+}
+
+/// A picture that is displaced by a part of a pixel to the right and down.
+fn displaced(image: &Image, part: f64) -> Image {
+    let mut moved = image.clone();
+    let width = image.width_px as usize;
+    for (index, codes) in moved.rgba8.chunks_mut(4).enumerate() {
+        let up = if index < width { 0 } else { width };
+        let left = usize::from(index % width > 0);
+        for (channel, code) in codes.iter_mut().enumerate() {
+            let at = |back: usize| f64::from(image.rgba8[4 * (index - back) + channel]);
+            let row = |up: usize| (1.0 - part) * at(up) + part * at(up + left);
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
+            let mixed = ((1.0 - part) * row(0) + part * row(up)).round() as u8;
+            *code = mixed;
+        }
+    }
+    moved
+}
+
+#[test]
+fn a_displaced_plate_is_no_noise() {
+    let session = session();
+    let clean = session.frame(FRAME).unwrap().image;
+    let plate = displaced(&session.scene().plates[0].image, 0.3);
+    assert_eq!(Grain::measured(&clean, &plate), None);
+}
+
 #[test]
 fn noise_is_measured() {
     let session = session();
     let plate = &session.scene().plates[0].image;
     let clean = session.frame(FRAME).unwrap().image.as_ref().clone();
     assert_eq!(Grain::measured(&clean, plate), None, "of a clean picture");
-    let mut noisy = clean.clone();
     let wanted = |light: f64| 2e-5 + 1.4e-3 * light;
-    for (index, codes) in (0..).zip(noisy.rgba8.chunks_mut(4)) {
-        let at = [
-            index % clean.width_px.cast_signed(),
-            index / clean.width_px.cast_signed(),
-        ];
-        let noise = grain_at(at, 7, 0.4, 0.3);
-        for (code, noise) in codes.iter_mut().zip(noise) {
-            let light = linear(*code);
-            let shown = (light + wanted(light).sqrt() * noise).clamp(0.0, 1.0);
-            *code = (0..=255_u8)
-                .min_by(|a, b| (linear(*a) - shown).abs().total_cmp(&(linear(*b) - shown).abs()))
-                .unwrap();
-        }
-    }
+    let noisy = with_noise(&clean, 7, wanted);
     let found = Grain::measured(&noisy, plate).unwrap();
     for light in [0.1, 0.3] {
         let variance = f64::from(found.frame.floor) + f64::from(found.frame.per_light) * light;

@@ -182,10 +182,9 @@ impl Photograph {
         if self.pyramid.picture_px() > 1.0 {
             return None;
         }
-        let deviation_px = plate_spread.mean_px();
-        let softened = (deviation_px > 0.0).then(|| level.with_plate_spread(deviation_px));
-        let level = softened.as_ref().map_or(Some(level), Option::as_ref)?;
-        let plate = level.plate.as_ref()?;
+        let sharp = level.plate.as_ref()?;
+        let softened = (plate_spread != Spread::NONE).then(|| sharp.softened(plate_spread));
+        let plate = softened.as_ref().unwrap_or(sharp);
         let size_px = level.frame.size_px.as_uvec2().to_array();
         Grain::between(
             size_px,

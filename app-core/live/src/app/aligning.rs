@@ -57,7 +57,7 @@ impl AlignJob {
             place: self.place,
             aligner: self.aligner,
             given: self.input.camera,
-            result: Ok(alignment),
+            result: Some(Ok(alignment)),
         }
     }
 
@@ -69,7 +69,18 @@ impl AlignJob {
             place: self.place,
             aligner: self.aligner,
             given: self.input.camera,
-            result,
+            result: Some(result),
+        }
+    }
+
+    /// The result if the thread of the alignment does not end normally: nothing, and a new aligner.
+    #[must_use]
+    pub fn without_result(&self) -> AlignedJob {
+        AlignedJob {
+            place: self.place,
+            aligner: Aligner::new(Arc::clone(self.aligner.scene())),
+            given: self.input.camera,
+            result: None,
         }
     }
 }
@@ -80,7 +91,8 @@ pub struct AlignedJob {
     place: u64,
     aligner: Aligner,
     given: Camera,
-    result: Result<Alignment, AlignError>,
+    /// `None` if its thread did not end normally.
+    result: Option<Result<Alignment, AlignError>>,
 }
 
 /// The state of the toy according to an alignment.
@@ -242,20 +254,22 @@ impl Place {
         })
     }
 
-    /// Adopts the result of an alignment. Returns whether it belonged to this place.
+    /// Adopts the result of an alignment of this place. Returns whether there was one.
     pub(super) fn take(&mut self, done: AlignedJob) -> bool {
         if done.place != self.number {
             return false;
         }
+        let has_ended = done.result.is_some();
         match done.result {
-            Ok(alignment) => self.apply(&done.given, &done.aligner, alignment),
-            Err(reason) => {
+            Some(Ok(alignment)) => self.apply(&done.given, &done.aligner, alignment),
+            Some(Err(reason)) => {
                 self.watch.forget();
                 self.verdict = Some(Verdict::Failed(reason.to_string()));
             }
+            None => self.watch.forget(),
         }
         self.aligner = Some(done.aligner);
-        true
+        has_ended
     }
 
     /// Gives the toy's estimated pose and the lights to a recording.
@@ -264,12 +278,6 @@ impl Place {
             &self.world_from_object,
             self.lights.as_deref().unwrap_or_default(),
         );
-    }
-
-    /// Starts with a new aligner if the thread of an alignment did not end.
-    pub(super) fn begin_anew(&mut self) {
-        self.aligner = Some(Aligner::new(Arc::clone(&self.scene)));
-        self.watch.forget();
     }
 
     /// A search for things in `input`, if one is due and there is a plate to compare with.

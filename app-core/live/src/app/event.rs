@@ -179,8 +179,9 @@ pub enum ShellEvent {
     Plated(Option<Box<PlatedJob>>),
     /// [`WorkCommand::Search`] ended; `None` if its thread did not end normally.
     Searched(Option<Box<SearchedJob>>),
-    /// [`WorkCommand::Align`] ended; `None` if its thread did not end normally.
-    Aligned(Option<Box<AlignedJob>>),
+    /// [`WorkCommand::Align`] ended, [without a result](AlignJob::without_result) if its thread did
+    /// not end normally.
+    Aligned(Box<AlignedJob>),
     /// [`WorkCommand::Watch`] ended, [without a result](WatchJob::without_result) if its thread did
     /// not end normally.
     Watched(Box<WatchedJob>),

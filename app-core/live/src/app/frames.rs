@@ -219,12 +219,9 @@ impl App {
         Some(input)
     }
 
-    pub(super) fn aligned(&mut self, done: Option<Box<AlignedJob>>, commands: &mut Vec<ShellCommand>) {
+    pub(super) fn aligned(&mut self, done: AlignedJob, commands: &mut Vec<ShellCommand>) {
         let Some(place) = &mut self.place else { return };
-        let Some(done) = done else {
-            return place.begin_anew();
-        };
-        if place.take(*done) {
+        if place.take(done) {
             let verdict = place.verdict.clone();
             if let (Some(recorder), Some(Verdict::Found { .. })) = (&self.recorder, &verdict) {
                 place.tell(recorder);

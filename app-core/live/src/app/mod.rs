@@ -206,7 +206,7 @@ impl App {
             ShellEvent::MemoryLow => self.memory_low(),
             ShellEvent::Plated(done) => self.plated(done),
             ShellEvent::Searched(done) => self.searched(done, &mut commands),
-            ShellEvent::Aligned(done) => self.aligned(done, &mut commands),
+            ShellEvent::Aligned(done) => self.aligned(*done, &mut commands),
             ShellEvent::Watched(done) => self.watched(*done),
             ShellEvent::ToyFiles(files) => self.toy_files = Some(files),
             ShellEvent::Toy(read) => self.take_toy(read),

@@ -61,6 +61,7 @@ impl App {
                 exposure: input.exposure,
                 light_estimate: input.light_estimate,
                 depth: input.depth,
+                people: input.people,
                 shown_pose: input.shown_pose,
                 world_from_shown: input.world_from_shown,
             })

@@ -125,8 +125,12 @@ impl Core {
             let faint = Warning::FaintShadow { assumed: 1.0 - known };
             return Ok(stage.is_toy_in_picture().then_some(faint));
         }
-        if let Some(direct_fraction) = absent(total_direct_fractions(fit, model.region.plan.n_receivers)) {
+        let direct_fractions = total_direct_fractions(fit, model.region.plan.n_receivers);
+        if let Some(direct_fraction) = absent(direct_fractions) {
             return Ok(Some(Warning::Mismatch(Mismatch::NoShadow { direct_fraction })));
+        }
+        if let Some(color) = absent_color(direct_fractions) {
+            return Ok(Some(Warning::Mismatch(Mismatch::NoShadowInColor { color })));
         }
         let n_pixels = evidence.n_shadow_pixels();
         if n_pixels < FEWEST_PIXELS && stage.is_first_view() {
@@ -215,6 +219,14 @@ fn absent(mut fractions: [f32; 3]) -> Option<f32> {
     let is_absent =
         most < LEAST_DIRECT_FRACTION || (second < LEAST_DIRECT_FRACTION && most < CLEAR_DIRECT_FRACTION);
     is_absent.then_some(most)
+}
+
+/// The colour that has no visible shadow, though others have.
+fn absent_color(fractions: [f32; 3]) -> Option<&'static str> {
+    let mut colors = ["red", "green", "blue"].into_iter().zip(fractions);
+    colors
+        .find(|(_, fraction)| *fraction < LEAST_DIRECT_FRACTION)
+        .map(|(color, _)| color)
 }
 
 /// The first thing missing in the pictures that explains the others.

@@ -389,6 +389,11 @@ pub enum Mismatch {
         /// Share of the lights in the plate's radiance, from 0 to 1.
         direct_fraction: f32,
     },
+    /// The picture is as bright as the plate in the place of the real shadow, in one channel alone.
+    NoShadowInColor {
+        /// Name of the channel.
+        color: &'static str,
+    },
     /// The real shadow is too dark or too bright in the picture to be measured.
     ShadowUnreadable {
         /// Share of the shadow, from 0 to 1.
@@ -418,6 +423,10 @@ impl fmt::Display for Mismatch {
                 f,
                 "the picture shows no real shadow at its expected place: it is as bright as the plate there ({:.1} % of that is from the lights); check lights and toy, and whether a light is on",
                 100.0 * direct_fraction
+            ),
+            Self::NoShadowInColor { color } => write!(
+                f,
+                "the real shadow takes no {color} light away: unless the lamp has none, something of another colour stands in the shadow, or picture and plate differ in their white balance; the new shadow has that colour, too"
             ),
             Self::ShadowUnreadable { fraction } => write!(
                 f,

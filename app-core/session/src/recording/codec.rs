@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use glam::UVec2;
 use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
@@ -10,6 +11,7 @@ use super::error::WriteError;
 use crate::tags::{JPEG_MAGIC, PNG_MAGIC};
 use app_scene::camera_frame::CameraImage;
 use app_scene::depth::Depth;
+use app_scene::people::People;
 use app_scene::scene::Image;
 
 /// A platform's own encoder: from a camera picture to the bytes of a PNG or JPEG file, or `None` if
@@ -79,17 +81,25 @@ pub(super) fn png(image: &Image) -> Result<Vec<u8>, WriteError> {
 
 /// Depths as a grey PNG of 16 bit, in millimetres.
 pub(super) fn depth_png(depth: &Depth) -> Result<Vec<u8>, WriteError> {
-    let mut file = Vec::new();
-    let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Fast, FilterType::Adaptive);
-    let [width_px, height_px] = depth.size_px().to_array();
     // The encoder takes the processor's order of bytes.
     let bytes: Vec<u8> = depth
         .depths_mm()
         .iter()
         .flat_map(|depth_mm| depth_mm.to_ne_bytes())
         .collect();
+    grey_png(depth.size_px(), &bytes, ExtendedColorType::L16)
+}
+
+/// A mask of people as a grey PNG of 8 bit.
+pub(super) fn people_png(people: &People) -> Result<Vec<u8>, WriteError> {
+    grey_png(people.size_px(), people.codes(), ExtendedColorType::L8)
+}
+
+fn grey_png(size_px: UVec2, bytes: &[u8], kind: ExtendedColorType) -> Result<Vec<u8>, WriteError> {
+    let mut file = Vec::new();
+    let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Fast, FilterType::Adaptive);
     encoder
-        .write_image(&bytes, width_px, height_px, ExtendedColorType::L16)
+        .write_image(bytes, size_px.x, size_px.y, kind)
         .map_err(|error| WriteError::Picture(error.to_string()))?;
     Ok(file)
 }

@@ -52,13 +52,13 @@ pub enum WriteError {
         /// The limit.
         max_bytes: u64,
     },
-    /// A camera picture or its depths could not be encoded, for this reason. Nothing was written.
-    #[error("a picture or its depths cannot be encoded: {0}")]
+    /// A camera picture or one of its maps could not be encoded, for this reason. Nothing was written.
+    #[error("a picture, its depths or its mask of people cannot be encoded: {0}")]
     Picture(String),
-    /// A frame repeats a picture, or depths, that were never written. Nothing was written.
-    #[error("picture or depths {sequence} are repeated, but were never recorded")]
+    /// A frame repeats a picture, depths, or a mask of people that were never written. Nothing was written.
+    #[error("a frame repeats picture, depths or mask {sequence}, which were never recorded")]
     NoSuchPicture {
-        /// Number of the picture, or of the depths, from 0.
+        /// Number of the picture, or of the map, from 0.
         sequence: u32,
     },
 }
@@ -134,9 +134,9 @@ pub enum Loss {
         /// Number of written files.
         n_written: u32,
     },
-    /// Frames whose picture, or depths, were in a lost chunk, or are after one without its number.
+    /// Frames whose picture, or one of its maps, was in a lost chunk, or are after one without its number.
     #[error(
-        "{n_frames} frames are skipped, since their picture or its depths are lost or cannot be identified"
+        "{n_frames} frames are skipped, since their picture, depths or mask of people are lost or cannot be identified"
     )]
     Pictures {
         /// Their number.

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::error::Loss;
 use super::inflate::Compression;
+use super::maps::{MAP_TOPICS, Maps, N_MAPS};
 use super::message::{FrameMessage, NamedPictures, SessionMessage};
 use super::topics::Topic;
 use super::viewer::image_file;
@@ -61,8 +62,8 @@ pub(super) struct FoundFrame {
     pub(super) entry: String,
     /// Path and number of its picture.
     picture: (String, u32),
-    /// Path and number of its depths, if the recording has them.
-    depth: Option<(String, u32)>,
+    /// Path and number of its maps that the recording has, in order.
+    maps: [Option<(String, u32)>; N_MAPS],
 }
 
 /// Pictures of one channel.
@@ -115,7 +116,8 @@ pub(super) struct Found {
     pub(super) session: Option<SessionMessage>,
     pub(super) frames: Vec<FoundFrame>,
     pictures: Pictures,
-    depths: Pictures,
+    /// Of each map, in order.
+    maps: [Pictures; N_MAPS],
     /// Whether a chunk of a session occurs twice.
     pub(super) has_two_sessions: bool,
     pub(super) files: BTreeMap<String, Span>,
@@ -206,10 +208,12 @@ impl Found {
             }
             Read::Image(file) => {
                 let file = message.at + file.start..message.at + file.end;
-                let pictures = match message.topic {
-                    Topic::Depth => &mut self.depths,
-                    _ => &mut self.pictures,
-                };
+                let of_maps = MAP_TOPICS.into_iter().zip(&mut self.maps);
+                let pictures = of_maps
+                    .filter(|(topic, _)| *topic == message.topic)
+                    .map(|(_, pictures)| pictures)
+                    .next()
+                    .unwrap_or(&mut self.pictures);
                 pictures.numbered.push((message.sequence, home.span(file)));
             }
             Read::Frame(frame) => {
@@ -243,29 +247,35 @@ impl Found {
 
     /// Records that something may be missing here.
     pub(super) fn gap(&mut self) {
-        for pictures in [&mut self.pictures, &mut self.depths] {
+        for pictures in std::iter::once(&mut self.pictures).chain(&mut self.maps) {
             pictures.n_before_gap.get_or_insert(pictures.numbered.len());
         }
     }
 
-    /// Numbers pictures and depths.
+    /// Numbers pictures and maps.
     pub(super) fn number_pictures(&mut self) {
         let frames = self.frames.iter();
         self.pictures.number(frames.clone().map(|frame| frame.picture.1));
-        self.depths
-            .number(frames.filter_map(|frame| Some(frame.depth.as_ref()?.1)));
+        for (map, pictures) in self.maps.iter_mut().enumerate() {
+            pictures.number(
+                frames
+                    .clone()
+                    .filter_map(|frame| Some(frame.maps[map].as_ref()?.1)),
+            );
+        }
     }
 
-    /// Path and position of the pictures and depths of a frame; `None` if one is lost.
+    /// Path and position of the picture and the maps of a frame; `None` if one is lost.
     fn spans_of(&self, frame: &FoundFrame) -> Option<Vec<(String, Span)>> {
         let picture = (&frame.picture, &self.pictures);
-        let depth = frame.depth.as_ref().map(|depth| (depth, &self.depths));
-        let all = std::iter::once(picture).chain(depth);
+        let maps = frame.maps.iter().zip(&self.maps);
+        let maps = maps.filter_map(|(map, pictures)| Some((map.as_ref()?, pictures)));
+        let all = std::iter::once(picture).chain(maps);
         all.map(|((path, number), pictures)| Some((path.clone(), *pictures.spans.get(number)?)))
             .collect()
     }
 
-    /// Path and position of all pictures and depths.
+    /// Path and position of all pictures and maps.
     pub(super) fn picture_spans(&self) -> impl Iterator<Item = (String, Span)> + '_ {
         let of_frames = self.frames.iter();
         of_frames.filter_map(|frame| self.spans_of(frame)).flatten()
@@ -330,14 +340,18 @@ impl<'a> Read<'a> {
                 }
                 Self::Session(Box::new(session))
             }
-            Topic::Image | Topic::Depth => Self::Image(image_file(message.data)?),
+            Topic::Image | Topic::Depth | Topic::People => Self::Image(image_file(message.data)?),
             Topic::Frame => {
                 let frame: FrameMessage = serde_json::from_slice(message.data).ok()?;
                 let entry = frame.entry.get().to_owned();
                 let named: NamedPictures = serde_json::from_str(&entry).ok()?;
                 Self::Frame(FoundFrame {
                     picture: (named.image, frame.picture),
-                    depth: named.depth.zip(frame.depth),
+                    maps: Maps {
+                        depth: named.depth.zip(frame.depth),
+                        people: named.people.zip(frame.people),
+                    }
+                    .in_order(),
                     entry,
                 })
             }

@@ -24,6 +24,9 @@ pub(super) struct FrameMessage<'a> {
     /// Number of its depths, if they are in the recording.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) depth: Option<u32>,
+    /// The same of its mask of people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) people: Option<u32>,
     #[serde(borrow)]
     pub(super) entry: &'a RawValue,
 }
@@ -33,4 +36,5 @@ pub(super) struct FrameMessage<'a> {
 pub(super) struct NamedPictures {
     pub(super) image: String,
     pub(super) depth: Option<String>,
+    pub(super) people: Option<String>,
 }

@@ -7,9 +7,10 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
 use serde_json::json;
 
-use super::codec::{PictureCodec, depth_png};
+use super::codec::{PictureCodec, depth_png, people_png};
 use super::entry::{LiveFrame, LivePaths};
 use super::error::WriteError;
+use super::maps::{Maps, N_MAPS};
 use super::topics::Topic;
 use super::writer::{Flushed, Picture, Writer};
 use crate::tags::JPEG_MAGIC;
@@ -157,9 +158,10 @@ struct LiveEncoder {
     codec: PictureCodec,
     /// The toy of their clips.
     toy: Arc<Toy>,
-    /// The latest picture with the number and the path of itself and of its depths.
+    /// The latest picture with the numbers and paths of itself and of its maps.
     latest: Option<LatestPicture>,
-    n_depths: u32,
+    /// Number of each map so far, in order.
+    n_maps: [u32; N_MAPS],
 }
 
 /// A picture that was written.
@@ -167,7 +169,7 @@ struct LiveEncoder {
 struct LatestPicture {
     image: CameraImage,
     number: u32,
-    depth_number: Option<u32>,
+    map_numbers: Maps<u32>,
     paths: LivePaths,
 }
 
@@ -189,7 +191,7 @@ impl RecordingReceiver {
             codec,
             toy,
             latest: None,
-            n_depths: 0,
+            n_maps: [0; N_MAPS],
         });
     }
 
@@ -252,31 +254,45 @@ impl RecordingReceiver {
         let before = encoder.latest.as_ref();
         if let Some(same) = before.filter(|before| before.image.is(&live.image)) {
             let entry = json!(live.entry(time_secs, &same.paths, &encoder.toy)).to_string();
-            let depth = same.depth_number.map(Picture::Again);
-            let written = writer.frame_with_depth(time_ns, Picture::Again(same.number), depth, &entry);
+            let maps = same.map_numbers.map(Picture::Again);
+            let written = writer.frame_with_maps(time_ns, Picture::Again(same.number), maps, &entry);
             return written.map(|_| ());
         }
         let file = encoder.codec.encode(&live.image)?;
-        let depth_file = live.depth.as_ref().map(depth_png).transpose()?;
+        let map_files = Maps {
+            depth: live.depth.as_ref().map(depth_png).transpose()?,
+            people: live.people.as_ref().map(people_png).transpose()?,
+        };
         let number = before.map_or(0, |before| before.number + 1);
         let ending = if file.starts_with(JPEG_MAGIC) {
             "jpg"
         } else {
             "png"
         };
-        let n_depths = encoder.n_depths;
+        let [n_depths, n_people] = encoder.n_maps;
         let paths = LivePaths {
             picture: format!("frames/{number:06}.{ending}"),
-            depth: depth_file.is_some().then(|| format!("depths/{n_depths:06}.png")),
+            maps: Maps {
+                depth: map_files
+                    .depth
+                    .is_some()
+                    .then(|| format!("depths/{n_depths:06}.png")),
+                people: map_files
+                    .people
+                    .is_some()
+                    .then(|| format!("people/{n_people:06}.png")),
+            },
         };
         let entry = json!(live.entry(time_secs, &paths, &encoder.toy)).to_string();
-        let depth = depth_file.as_deref().map(Picture::New);
-        let (number, depth_number) = writer.frame_with_depth(time_ns, Picture::New(&file), depth, &entry)?;
-        encoder.n_depths += u32::from(depth_number.is_some());
+        let maps = map_files.as_ref().map(|file| Picture::New(file));
+        let (number, map_numbers) = writer.frame_with_maps(time_ns, Picture::New(&file), maps, &entry)?;
+        for (n, written) in encoder.n_maps.iter_mut().zip(map_numbers.in_order()) {
+            *n += u32::from(written.is_some());
+        }
         encoder.latest = Some(LatestPicture {
             image: live.image.clone(),
             number,
-            depth_number,
+            map_numbers,
             paths,
         });
         Ok(())

@@ -20,7 +20,7 @@ use crate::{FileError, Files, INDEX_FILE, MAX_INDEX_BYTES, check_path};
 pub struct Recording {
     source: Box<dyn Source>,
     index: Vec<u8>,
-    /// Pictures and depths of frames come before attached files.
+    /// Pictures and maps of frames come before attached files.
     spans: BTreeMap<String, Span>,
     n_frames: usize,
     device: BTreeMap<String, String>,

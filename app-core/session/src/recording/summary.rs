@@ -7,6 +7,7 @@ use super::wire::{
     ATTACHMENT_INDEX, Body, CHANNEL, CHUNK_INDEX, DATA_END, FOOTER, MAGIC, METADATA_INDEX, SCHEMA,
     STATISTICS, SUMMARY_OFFSET, head,
 };
+use crate::INDEX_FILE;
 
 /// Bytes of the footer's body.
 const FOOTER_BYTES: u64 = 20;
@@ -143,4 +144,16 @@ fn attachment_index(file: &FileEntry) -> Vec<u8> {
     body.text(&file.path)
         .text(file.media_type)
         .record(ATTACHMENT_INDEX)
+}
+
+/// The media type of an attached file.
+pub(super) fn media_type(path: &str) -> &'static str {
+    match path.rsplit_once('.') {
+        Some((_, "png")) => "image/png",
+        Some((_, "jpg" | "jpeg")) => "image/jpeg",
+        Some((_, "glb")) => "model/gltf-binary",
+        Some((_, "json")) => "application/json",
+        _ if path == INDEX_FILE => "application/json",
+        _ => "application/octet-stream",
+    }
 }

@@ -17,6 +17,8 @@ pub enum Topic {
     Image,
     /// Depths of frames, `foxglove.CompressedImage`.
     Depth,
+    /// Masks of the people in frames, `foxglove.CompressedImage`.
+    People,
     /// Projection of a frame's camera, `foxglove.CameraCalibration`.
     Calibration,
     /// Poses of camera and toy, `foxglove.FrameTransform`.
@@ -39,10 +41,11 @@ pub enum Topic {
 
 impl Topic {
     /// All topics; a channel's id and its schema's are its position here, counted from 1.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Session,
         Self::Image,
         Self::Depth,
+        Self::People,
         Self::Calibration,
         Self::Transform,
         Self::Frame,
@@ -70,6 +73,7 @@ impl Topic {
             Self::Session => "/session",
             Self::Image => "/camera/image",
             Self::Depth => "/camera/depth",
+            Self::People => "/camera/people",
             Self::Calibration => "/camera/calibration",
             Self::Transform => "/tf",
             Self::Frame => "/frame",
@@ -95,7 +99,7 @@ impl Topic {
 
     fn descriptor(self) -> Option<&'static Descriptor> {
         match self {
-            Self::Image | Self::Depth => Some(&COMPRESSED_IMAGE),
+            Self::Image | Self::Depth | Self::People => Some(&COMPRESSED_IMAGE),
             Self::Calibration => Some(&CAMERA_CALIBRATION),
             Self::Transform => Some(&FRAME_TRANSFORM),
             _ => None,
@@ -112,7 +116,7 @@ impl Topic {
             ),
             Self::Frame => (
                 "shadow_capture.Frame",
-                "An entry of a session's frames, the sequence number of its picture on /camera/image, and that of its depths on /camera/depth.",
+                "An entry of a session's frames, the sequence number of its picture on /camera/image, and those of its depths on /camera/depth and of its mask of people on /camera/people.",
                 &["picture", "entry"],
             ),
             Self::Planes => ("shadow_capture.Planes", "Planes that the platform tracks.", &[]),

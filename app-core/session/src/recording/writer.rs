@@ -7,12 +7,13 @@ use serde_json::value::RawValue;
 
 use super::chunk::{MAX_CHUNK_BYTES, OpenChunk};
 use super::error::{Stop, WriteError};
+use super::maps::{MAP_TOPICS, Maps, N_MAPS};
 use super::message::{FrameMessage, SessionMessage};
-use super::summary::{FileEntry, Written};
+use super::summary::{FileEntry, Written, media_type};
 use super::topics::Topic;
 use super::viewer::{self, EntryShape, SessionShape};
 use super::wire::{ATTACHMENT, Body, HEADER, MAGIC, METADATA, head};
-use crate::{INDEX_FILE, MAX_INDEX_BYTES};
+use crate::MAX_INDEX_BYTES;
 
 /// A chunk is closed after this time.
 const CHUNK_NS: u64 = 1_000_000_000;
@@ -99,7 +100,8 @@ pub struct Writer<W> {
     n_bytes: u64,
     n_frames: u32,
     n_pictures: u32,
-    n_depths: u32,
+    /// Number of each map so far, in order.
+    n_maps: [u32; N_MAPS],
     flushed: Flushed,
 }
 
@@ -131,7 +133,7 @@ impl<W: Write> Writer<W> {
             n_bytes: 0,
             n_frames: 0,
             n_pictures: 0,
-            n_depths: 0,
+            n_maps: [0; N_MAPS],
             flushed: Flushed::default(),
         };
         let header = Body::new().text("shadow-capture");
@@ -200,31 +202,35 @@ impl<W: Write> Writer<W> {
     /// When the entry is no JSON object, the picture is too large or was never recorded, or writing
     /// has ended or ends with this call.
     pub fn frame(&mut self, time_ns: u64, picture: Picture, entry: &str) -> Result<u32, WriteError> {
-        let (picture, _) = self.frame_with_depth(time_ns, picture, None, entry)?;
+        let (picture, _) = self.frame_with_maps(time_ns, picture, Maps::default(), entry)?;
         Ok(picture)
     }
 
-    /// Adds a frame with its depths, a PNG, which are counted apart from pictures: the entry names
-    /// both. Returns the numbers of picture and depths.
+    /// Adds a frame with its maps, PNGs, each kind of which is counted apart: the entry names all.
+    /// Returns the numbers of the picture and of its maps.
     ///
     /// # Errors
     /// As [`Self::frame`].
-    pub fn frame_with_depth(
+    pub fn frame_with_maps(
         &mut self,
         time_ns: u64,
         picture: Picture,
-        depth: Option<Picture>,
+        maps: Maps<Picture>,
         entry: &str,
-    ) -> Result<(u32, Option<u32>), WriteError> {
+    ) -> Result<(u32, Maps<u32>), WriteError> {
         self.check()?;
         let raw = object("a frame's entry", entry)?;
         let shape: EntryShape = serde_json::from_str(entry).unwrap_or_default();
         let (bytes, number) = picture.numbered(self.n_pictures)?;
-        let depth = depth.map(|depth| depth.numbered(self.n_depths)).transpose()?;
-        let depth_number = depth.map(|(_, number)| number);
+        let mut maps_numbered = [None; N_MAPS];
+        for ((numbered, map), n) in maps_numbered.iter_mut().zip(maps.in_order()).zip(self.n_maps) {
+            *numbered = map.map(|map| map.numbered(n)).transpose()?;
+        }
+        let map_numbers = Maps::from_ordered(maps_numbered).map(|(_, number)| number);
         let message = FrameMessage {
             picture: number,
-            depth: depth_number,
+            depth: map_numbers.depth,
+            people: map_numbers.people,
             entry: raw,
         };
         let message = serde_json::to_vec(&message).map_err(|error| json_error("a frame's entry", &error))?;
@@ -232,13 +238,16 @@ impl<W: Write> Writer<W> {
         let transforms = viewer::transforms(time_ns, &self.shape, &shape);
         // Headers and a viewer's messages are far smaller.
         const ROOM: u64 = 4096;
-        let pictures = [(Topic::Image, Some((bytes, number))), (Topic::Depth, depth)];
-        let pictures = pictures.map(|(topic, picture)| Some((topic, picture?.0?, picture?.1)));
-        let n_bytes: usize = pictures.iter().flatten().map(|(_, bytes, _)| bytes.len()).sum();
+        let of_maps = MAP_TOPICS.into_iter().zip(maps_numbered);
+        let pictures: Vec<_> = std::iter::once((Topic::Image, Some((bytes, number))))
+            .chain(of_maps)
+            .filter_map(|(topic, picture)| Some((topic, picture?.0?, picture?.1)))
+            .collect();
+        let n_bytes: usize = pictures.iter().map(|(_, bytes, _)| bytes.len()).sum();
         self.make_room(time_ns, (n_bytes + message.len()) as u64 + ROOM)?;
         let n_frames = self.n_frames;
         let chunk = self.open_chunk(time_ns)?;
-        for (topic, bytes, number) in pictures.into_iter().flatten() {
+        for (topic, bytes, number) in pictures {
             let image = viewer::compressed_image(time_ns, bytes);
             chunk.message(topic, number, time_ns, &image);
         }
@@ -251,9 +260,11 @@ impl<W: Write> Writer<W> {
         chunk.message(Topic::Frame, n_frames, time_ns, &message);
         self.n_frames += 1;
         self.n_pictures = self.n_pictures.max(number + 1);
-        self.n_depths = depth_number.map_or(self.n_depths, |number| self.n_depths.max(number + 1));
+        for (n, number) in self.n_maps.iter_mut().zip(map_numbers.in_order()) {
+            *n = number.map_or(*n, |number| number.saturating_add(1).max(*n));
+        }
         self.close_if_due(time_ns)?;
-        Ok((number, depth_number))
+        Ok((number, map_numbers))
     }
 
     /// Adds a message to one of the channels for arbitrary JSON objects ([`Topic::NOTES`]).
@@ -478,15 +489,4 @@ fn json_error(what: &'static str, error: &serde_json::Error) -> WriteError {
 
 fn count(n: usize) -> u32 {
     u32::try_from(n).unwrap_or(u32::MAX)
-}
-
-fn media_type(path: &str) -> &'static str {
-    match path.rsplit_once('.') {
-        Some((_, "png")) => "image/png",
-        Some((_, "jpg" | "jpeg")) => "image/jpeg",
-        Some((_, "glb")) => "model/gltf-binary",
-        Some((_, "json")) => "application/json",
-        _ if path == INDEX_FILE => "application/json",
-        _ => "application/octet-stream",
-    }
 }

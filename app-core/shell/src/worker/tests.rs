@@ -72,10 +72,10 @@ fn told(worker: &mut Worker) -> ShellEvent {
 #[test]
 fn a_thread_that_panics_is_told_as_work_that_failed() {
     let mut worker = worker_in(None);
-    worker.spawn("panics", ShellEvent::Aligned(None), |_| panic!("planted"));
+    worker.spawn("panics", ShellEvent::Plated(None), |_| panic!("planted"));
     let event = told(&mut worker);
-    assert!(matches!(event, ShellEvent::Aligned(None)), "{event:?}");
-    worker.spawn("works", ShellEvent::Aligned(None), |_| ShellEvent::MemoryLow);
+    assert!(matches!(event, ShellEvent::Plated(None)), "{event:?}");
+    worker.spawn("works", ShellEvent::Plated(None), |_| ShellEvent::MemoryLow);
     let event = told(&mut worker);
     assert!(matches!(event, ShellEvent::MemoryLow), "{event:?}");
 }

@@ -2,9 +2,9 @@
 
 mod converted;
 mod damage;
-mod depths;
 mod killed;
 mod library;
 mod limits;
+mod maps;
 mod rewritten;
 mod small;

@@ -80,7 +80,7 @@ fn people_are_masked_while_the_toy_moves_and_not_by_a_warm_phone() {
             }
             _ => None,
         });
-    let commands = app.event(ShellEvent::Aligned(aligned.map(Box::new)));
+    let commands = app.event(ShellEvent::Aligned(Box::new(aligned.unwrap())));
     assert_eq!(app.step(), Step::Play);
     assert_eq!(asked(&commands), [[true, true]]);
     // Plate and frames are compared, and a run may release the exposure.
@@ -118,7 +118,7 @@ fn a_mask_and_depths_reach_the_picture_and_the_alignment_and_those_of_another_sh
             aligned = Some(Box::new(job.known(alignment)));
         }
     }
-    assert!(aligned.is_some(), "an alignment was due");
+    let aligned = aligned.expect("an alignment was due");
     let _ = app.event(ShellEvent::Aligned(aligned));
     let shown = |app: &App| match app.show() {
         Show::Toy { input, .. } => has(&input),

@@ -71,10 +71,10 @@ impl Platform {
             Happening::Restarted => vec![ShellEvent::Restarted],
             Happening::AlignmentEnds(outline_px) => self.end(|job| {
                 let alignment = world::alignment(job.input(), outline_px);
-                Some(job.known(alignment))
+                job.known(alignment)
             }),
-            Happening::AlignmentRuns => self.end(|job| Some(job.run())),
-            Happening::AlignmentDies => self.end(|_| None),
+            Happening::AlignmentRuns => self.end(AlignJob::run),
+            Happening::AlignmentDies => self.end(|job| job.without_result()),
             Happening::WorkEnds(is_whole) => {
                 let plates = self.plates.drain(..);
                 let plates = plates.map(|job| is_whole.then(|| Box::new(job.run())));
@@ -119,10 +119,10 @@ impl Platform {
     }
 
     /// Ends the latest alignment, if there is one.
-    fn end(&mut self, end: impl FnOnce(AlignJob) -> Option<AlignedJob>) -> Vec<ShellEvent> {
+    fn end(&mut self, end: impl FnOnce(AlignJob) -> AlignedJob) -> Vec<ShellEvent> {
         let ended = self.jobs.pop().map(end);
         ended
-            .map(|done| ShellEvent::Aligned(done.map(Box::new)))
+            .map(|done| ShellEvent::Aligned(Box::new(done)))
             .into_iter()
             .collect()
     }
@@ -307,6 +307,44 @@ fn a_platform_that_is_asked_for_nonsense_says_so() {
         platform.check(&world::app()).err().as_deref(),
         Some("the camera runs where it may not, in Welcome")
     );
+}
+
+#[test]
+fn an_alignment_that_died_counts_for_its_own_place_alone() {
+    let (mut app, mut platform) = live_through(straight()).unwrap();
+    let mut happen = |app: &mut App, happening| {
+        for event in platform.events(happening) {
+            for command in app.event(event) {
+                platform.obey(command).unwrap();
+            }
+        }
+        platform.jobs.len()
+    };
+    assert_eq!(
+        happen(&mut app, Happening::Frames(40, 33, Tracking::Normal)),
+        1,
+        "a second later"
+    );
+    happen(&mut app, Happening::User(UserAction::Replace));
+    happen(&mut app, Happening::User(UserAction::Placed));
+    let second = Happening::Frames(2, 33, Tracking::Normal);
+    assert_eq!(happen(&mut app, second), 2, "one of each place");
+    let [former, present] = [0, 1].map(|index| platform.jobs[index].without_result());
+    let mut n_after = |app: &mut App, done| {
+        let _ = app.event(ShellEvent::Aligned(Box::new(done)));
+        for event in platform.events(Happening::Frames(40, 33, Tracking::Normal)) {
+            for command in app.event(event) {
+                platform.obey(command).unwrap();
+            }
+        }
+        platform.jobs.len()
+    };
+    assert_eq!(
+        n_after(&mut app, former),
+        2,
+        "that of the present place still runs"
+    );
+    assert_eq!(n_after(&mut app, present), 3, "another one begins");
 }
 
 fn effect(app: &App) -> f64 {

@@ -373,7 +373,7 @@ impl Moving {
         ))));
         if let Some(job) = self.jobs.pop() {
             let alignment = world::alignment(job.input(), Some(0.1));
-            self.tell(ShellEvent::Aligned(Some(Box::new(job.known(alignment)))));
+            self.tell(ShellEvent::Aligned(Box::new(job.known(alignment))));
         }
         self.now_ms.fetch_add(33 * self.n_each, Ordering::SeqCst);
         let time_s = self.now_ms.load(Ordering::SeqCst) as f64 / 1e3;

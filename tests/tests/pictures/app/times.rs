@@ -20,7 +20,7 @@ fn tell(live: &mut Live, event: ShellEvent) {
     for command in live.event(event) {
         if let ShellCommand::Work(WorkCommand::Align(job)) = command {
             let alignment = world::alignment(job.input(), Some(0.1));
-            tell(live, ShellEvent::Aligned(Some(Box::new(job.known(alignment)))));
+            tell(live, ShellEvent::Aligned(Box::new(job.known(alignment))));
         }
     }
 }

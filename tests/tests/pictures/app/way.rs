@@ -52,7 +52,7 @@ impl Person {
                     self.tell(ShellEvent::Searched(Some(Box::new(job.run()))));
                 }
                 ShellCommand::Work(WorkCommand::Align(job)) => {
-                    self.tell(ShellEvent::Aligned(Some(Box::new(job.run()))))
+                    self.tell(ShellEvent::Aligned(Box::new(job.run())))
                 }
                 ShellCommand::Work(WorkCommand::Watch(job)) => match &mut self.watches {
                     Some(watches) => watches.push(*job),

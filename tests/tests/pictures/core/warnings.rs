@@ -141,6 +141,11 @@ fn toy_middle() -> DVec3 {
 
 /// The first picture with the whole real shadow in one code.
 fn picture_with_shadow_of(core: &mut Core, code: u8) -> Arc<Image> {
+    picture_with_shadow(core, |_, _| [code, code, code, 255])
+}
+
+/// The first picture with other pixels in the whole real shadow, by their index and the pixel.
+fn picture_with_shadow(core: &mut Core, other: impl Fn(usize, [u8; 4]) -> [u8; 4]) -> Arc<Image> {
     let (scene, input) = (scene(), first_input());
     let width = scene.width_px as usize;
     core.set_scene(scene, Preset::Balanced).unwrap();
@@ -156,7 +161,7 @@ fn picture_with_shadow_of(core: &mut Core, code: u8) -> Arc<Image> {
         }
         let texel = (y - top) * n_columns + (x - left);
         let is_shadow = validity.texels[texel][0] > 0.0 && visibility.texels[texel][0] < 0.99;
-        if is_shadow { [code, code, code, 255] } else { pixel }
+        if is_shadow { other(k, pixel) } else { pixel }
     })
 }
 
@@ -167,6 +172,10 @@ fn broken_input_is_told_by_its_cause() {
     let plate = Arc::clone(&scene().plates[0].image);
     let picture = Arc::clone(first_input().image.rgba());
     let [black_shadow, white_shadow] = [0, 255].map(|code| picture_with_shadow_of(&mut core, code));
+    let without_blue = picture_with_shadow(&mut core, |k, [r, g, _, a]| [r, g, plate.rgba8[4 * k + 2], a]);
+    let without_a_half = picture_with_shadow(&mut core, |k, [r, g, b, a]| {
+        [r, g, b.midpoint(plate.rgba8[4 * k + 2]), a]
+    });
     let bundled = scene().lights[0];
     let camera = first_input().camera.world_from_camera;
     let behind = camera.transform_point3(DVec3::new(0.0, 0.0, 0.4));
@@ -184,6 +193,8 @@ fn broken_input_is_told_by_its_cause() {
         Case::new("white plate", &["PlateUnreadable"]).with_plate(|_| [255; 4]),
         Case::new("black shadow", &["ShadowUnreadable"]).with_picture(black_shadow),
         Case::new("white shadow", &["ShadowUnreadable"]).with_picture(white_shadow),
+        Case::new("shadow in red and green alone", &["NoShadowInColor"]).with_picture(without_blue),
+        Case::new("shadow of half the strength in blue", &[]).with_picture(without_a_half),
         // The shadow in the picture then belongs to no listed light.
         Case::new("light inside the toy", &["LightsInsideToy", "Outlier(Shadow)"])
             .lit_by(vec![bulb(toy_middle())]),

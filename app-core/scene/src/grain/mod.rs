@@ -1,5 +1,9 @@
 //! Grain: the noise of a picture, measured against a plate of the same view.
 
+mod line;
+
+use line::{fitted_without_outliers, narrowed};
+
 use crate::geometry::color::{linear_from_srgb, linear_of_codes, linear_per_srgb};
 use crate::scene::{Camera, Image, InputError, Scene, check};
 
@@ -10,25 +14,34 @@ const MAX_BLOCKS: u32 = 6000;
 /// Pixels of a block.
 const N_PX: usize = (BLOCK_PX * BLOCK_PX) as usize;
 const N: f64 = N_PX as f64;
+/// Degrees of freedom of a block beside those of its plate's displacement.
+const N_FREE: f64 = N - 2.0;
+/// Variance of the rounding of codes, which made pixels get as well.
+const ROUNDING_CODES2: f64 = 1.0 / 12.0;
 /// Codes that are neither clipped nor mostly rounding.
 const USABLE_CODES: [f32; 2] = [10.0, 250.0];
 /// Classes of brightness, uniform in the square root of light.
 const N_CLASSES: usize = 16;
 /// Number of blocks that a class needs.
 const MIN_BLOCKS: usize = 24;
-/// Standard deviation in codes below which a picture counts as clean, and no grain is made. Chosen
-/// on path-traced pictures without a sensor, which measured up to 2.5.
-const MIN_CODES: f64 = 4.0;
-/// The same, of the part that the plate lacks. A compressed picture is cleaner, but so is the mean
-/// of several that is its plate. Measured: up to 1.7 for pictures and plates from one phone's
-/// processing, from 2.9 on for a dim room's pictures after JPEG, and a plate of sixteen of them.
-const MIN_MISSING_CODES: f64 = 2.5;
-/// Variance of a class over the line through all of them from which it is none of noise alone: few
-/// blocks in the dark show an even shadow, and most others its rim or the toy. Measured on pictures
-/// of a dim room after JPEG on a uniform table, the fitted variance in the shadow over the true one:
-/// 1.30 to 1.46 with all classes, 1.14 to 1.21 without these; on textured tables it stays.
-const MOST_OVER_LINE: f64 = 1.5;
-const N_FITS: usize = 4;
+/// Standard deviation in codes below which a picture counts as clean, and no grain is made.
+/// Measured: up to 0.55 for path-traced pictures without a sensor, also after a phone's processing,
+/// beside a plate that is 0.4 px off, or blurred by a motion of 5 px; 0.93 for a sensor's noise of
+/// one code.
+const MIN_CODES: f64 = 0.75;
+/// Part of the texture's variance that a plate may lack if both pictures have equal noise: a gain of
+/// texture by 1.5 percent is none of noise. Measured on pictures and plates from one phone's
+/// processing: 0.02.
+const GAIN_OF_TEXTURE: f64 = 0.03;
+/// Part of the frame's noise from which on that of a plate may be equal: 0.76 was measured for such
+/// pictures, up to 0.3 for the mean of sixteen.
+const PART_OF_EQUAL: f64 = 0.5;
+/// Largest displacement in pixels of a plate's block that is compensated.
+const MAX_APART_PX: f64 = 1.0;
+/// Sine squared of the angle between two gradients, up to which they count as one.
+const PARALLEL: f64 = 1e-4;
+/// Number of steps to the correlation of neighbours, which are enough for three digits.
+const N_SOLVES: usize = 4;
 /// Largest correlation of neighbours that can be made.
 const MAX_CORRELATION: f64 = 0.625;
 
@@ -58,10 +71,12 @@ pub struct Grain {
 /// Statistics of a block's channel, in linear light.
 #[derive(Clone, Copy, Default)]
 struct Statistics {
+    n_blocks: f64,
     light: f64,
     plate_light: f64,
     frame: f64,
     plate: f64,
+    texture: f64,
     beside: f64,
 }
 
@@ -108,42 +123,24 @@ impl Grain {
         plate: impl Fn(usize) -> Option<[f32; 3]>,
     ) -> Option<Self> {
         let (statistics, common) = statistics(size_px, [&frame, &plate]);
-        // Medians over blocks: shadows, things and edges that the plate lacks are no noise.
-        let typical_codes2 = |value: fn(&Statistics) -> f64| {
-            median(
-                statistics
-                    .iter()
-                    .map(|block| value(block) / light_per_code(block.light).powi(2)),
-            )
-        };
-        let plate = |block: &Statistics| block.plate * (block.light / block.plate_light).powi(2);
-        if !is_noisy([typical_codes2(|block| block.frame), typical_codes2(plate)]) {
+        if !is_noisy(codes2_without_texture(&statistics)) {
             return None;
         }
         let classes = classes(statistics);
         let of = |value: fn(&Statistics) -> f64, light: fn(&Statistics) -> f64| {
-            fitted_without_outliers(classes.iter().map(|class| (light(class), value(class))))
+            let points = classes.iter();
+            fitted_without_outliers(points.map(|class| (light(class), value(class), class.n_blocks)))
         };
+        let beside = unbiased(median(classes.iter().map(|class| class.beside / class.frame)));
+        let whole = |noise: Noise| noise.times(1.0 / (1.0 - variance_of_mean(beside)));
         let grain = Self {
-            frame: of(|class| class.frame, |class| class.light)?,
-            plate: of(|class| class.plate, |class| class.plate_light)?,
-            beside: narrowed(
-                median(classes.iter().map(|class| class.beside / class.frame)),
-                MAX_CORRELATION,
-            ),
+            frame: whole(of(|class| class.frame, |class| class.light)?),
+            plate: whole(of(|class| class.plate, |class| class.plate_light)?),
+            beside,
             channels: narrowed(common, 1.0),
         };
-        let typical = |light: fn(&Statistics) -> f64| median(classes.iter().map(light));
-        grain
-            .is_seen(typical(|class| class.light), typical(|class| class.plate_light))
-            .then_some(grain)
-    }
-
-    /// Whether the picture is noisy at a light, which is another one in the plate if that has
-    /// another exposure.
-    fn is_seen(&self, light: f64, plate_light: f64) -> bool {
-        let plate = self.plate.variance(plate_light) * (light / plate_light).powi(2);
-        is_noisy([self.frame.variance(light), plate].map(|variance| variance / light_per_code(light).powi(2)))
+        let light = median(classes.iter().map(|class| class.light));
+        is_noisy(grain.frame.variance(light) / light_per_code(light).powi(2)).then_some(grain)
     }
 
     /// Checks the values.
@@ -170,9 +167,29 @@ impl Grain {
     }
 }
 
-/// Whether a picture is noisy, from the variances of its codes and of its plate's.
-fn is_noisy([frame, plate]: [f64; 2]) -> bool {
-    frame > MIN_CODES * MIN_CODES || frame - plate > MIN_MISSING_CODES * MIN_MISSING_CODES
+/// Whether a picture is noisy, from the variance of its codes.
+fn is_noisy(codes2: f64) -> bool {
+    codes2 > MIN_CODES * MIN_CODES
+}
+
+/// Variance in codes of the noise where there is no texture, by medians over the quarter of
+/// the blocks with the least of it and over the next one: a plate that is less or more sharp differs by a part of the texture, and
+/// shadows, things and edges that the plate lacks are in few blocks.
+fn codes2_without_texture(blocks: &[Statistics]) -> f64 {
+    let in_codes = |block: &Statistics| {
+        let per_code2 = light_per_code(block.light).powi(2);
+        [block.texture, block.frame].map(|variance| variance / per_code2)
+    };
+    let mut blocks: Vec<[f64; 2]> = blocks.iter().map(in_codes).collect();
+    blocks.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+    let (less, more) = blocks[..blocks.len() / 2].split_at(blocks.len() / 4);
+    let [[texture, noise], [more_texture, more_noise]] =
+        [less, more].map(|quarter| [0, 1].map(|value| median(quarter.iter().map(|block| block[value]))));
+    let texture = texture.max(0.0);
+    if more_texture <= texture {
+        return noise;
+    }
+    noise - (more_noise - noise) * texture / (more_texture - texture)
 }
 
 /// Light per code, at a light.
@@ -188,6 +205,29 @@ impl Noise {
     pub fn variance(&self, light: f64) -> f64 {
         f64::from(self.floor) + f64::from(self.per_light) * light
     }
+
+    fn times(self, factor: f32) -> Self {
+        Self {
+            floor: factor * self.floor,
+            per_light: factor * self.per_light,
+        }
+    }
+}
+
+/// Variance of the mean of a block, for noise of variance 1 that is made of means over three pixels
+/// each way, so that neighbours have this correlation.
+fn variance_of_mean(beside: f32) -> f32 {
+    let weight = beside / (1.0 + (1.0 - 2.0 * beside * beside).max(0.0).sqrt());
+    let along = (1.0 + 2.0 * weight).powi(2) / (1.0 + 2.0 * weight * weight);
+    along * along / N_PX as f32
+}
+
+/// The correlation of neighbours, of that around the means of blocks, which have a part of the noise.
+fn unbiased(around_means: f64) -> f32 {
+    (0..N_SOLVES).fold(narrowed(around_means, MAX_CORRELATION), |beside, _| {
+        let lost = f64::from(variance_of_mean(beside));
+        narrowed(around_means * (1.0 - lost) + lost, MAX_CORRELATION)
+    })
 }
 
 /// Light of a pixel by its index; `None` if it is unknown.
@@ -254,6 +294,7 @@ impl Channel {
         plate
             .iter_mut()
             .for_each(|value| *value = scale * (*value - plate_light));
+        register(&mut plate, &frame);
         Some(Self {
             frame,
             plate,
@@ -269,7 +310,7 @@ impl Channel {
         let sum = pixels
             .map(|k| self.frame[k] * (other.frame[k] - other.plate[k]))
             .sum::<f64>();
-        sum / (N - 1.0)
+        sum / N_FREE
     }
 
     fn statistics(&self) -> Statistics {
@@ -279,13 +320,15 @@ impl Channel {
             .zip(&self.plate)
             .map(|(a, b)| a * b)
             .sum::<f64>()
-            / (N - 1.0);
-        let plate = self.plate.iter().map(|b| b * b).sum::<f64>() / (N - 1.0);
+            / N_FREE;
+        let plate = self.plate.iter().map(|b| b * b).sum::<f64>() / N_FREE;
         Statistics {
+            n_blocks: 1.0,
             light: self.light,
             plate_light: self.light / self.scale,
             frame: self.covariance(self),
             plate: (plate - shared) / self.scale.powi(2),
+            texture: shared,
             beside: self.beside(),
         }
     }
@@ -303,8 +346,75 @@ impl Channel {
                 n += 1.0;
             }
         }
-        // The subtracted mean of the block contains a share of each pixel's noise.
-        sum / n + self.covariance(self) / N
+        sum / n
+    }
+}
+
+/// Moves a plate's deviations to where they resemble the frame's most, to first order: a plate that
+/// is a fraction of a pixel off is no noise.
+fn register(plate: &mut [f64; N_PX], frame: &[f64; N_PX]) {
+    let slopes = slopes(plate);
+    let [mut xx, mut yy, mut xy, mut x, mut y] = [0.0; 5];
+    for ([along, down], (plate, frame)) in slopes.iter().zip(plate.iter().zip(frame)) {
+        xx += along * along;
+        yy += down * down;
+        xy += along * down;
+        x += along * (frame - plate);
+        y += down * (frame - plate);
+    }
+    let determinant = xx * yy - xy * xy;
+    if determinant <= PARALLEL * xx * yy {
+        return;
+    }
+    let [dx, dy] = [x * yy - y * xy, y * xx - x * xy]
+        .map(|apart| (apart / determinant).clamp(-MAX_APART_PX, MAX_APART_PX));
+    for (plate, [along, down]) in plate.iter_mut().zip(slopes) {
+        *plate += dx * along + dy * down;
+    }
+}
+
+/// Differences per pixel along rows and down columns of a block, less their means.
+fn slopes(block: &[f64; N_PX]) -> [[f64; 2]; N_PX] {
+    let side = BLOCK_PX as usize;
+    let mut slopes = [[0.0; 2]; N_PX];
+    for (k, slope) in slopes.iter_mut().enumerate() {
+        for (slope, (at, step)) in slope.iter_mut().zip([(k % side, 1), (k / side, side)]) {
+            let [before, after] = [at.min(1), (side - 1 - at).min(1)];
+            *slope = (block[k + after * step] - block[k - before * step]) / (before + after) as f64;
+        }
+    }
+    for axis in [0, 1] {
+        let mean = slopes.iter().map(|slope| slope[axis]).sum::<f64>() / N;
+        slopes.iter_mut().for_each(|slope| slope[axis] -= mean);
+    }
+    slopes
+}
+
+impl Statistics {
+    /// With the same noise in both pictures, if a gain of the texture explains what the plate lacks.
+    fn with_equal_noise_if_alike(self) -> Self {
+        let to_frame = (self.light / self.plate_light).powi(2);
+        let plate = self.plate * to_frame;
+        let lacking = self.frame - plate;
+        let is_gain = lacking <= GAIN_OF_TEXTURE * self.texture && plate >= PART_OF_EQUAL * self.frame;
+        if lacking <= 0.0 || !is_gain {
+            return self;
+        }
+        let both = 0.5 * (self.frame + plate);
+        Self {
+            frame: both,
+            plate: both / to_frame,
+            ..self
+        }
+    }
+
+    /// Without the frame's rounding.
+    fn without_rounding(self) -> Self {
+        let rounding = ROUNDING_CODES2 * light_per_code(self.light).powi(2);
+        Self {
+            frame: self.frame - rounding,
+            ..self
+        }
     }
 }
 
@@ -325,13 +435,16 @@ fn classes(statistics: Vec<Statistics>) -> Vec<Statistics> {
     many.map(|class| {
         let of = |value: fn(&Statistics) -> f64| median(class.iter().map(value));
         Statistics {
+            n_blocks: class.len() as f64,
             light: of(|statistics| statistics.light),
             plate_light: of(|statistics| statistics.plate_light),
             frame: of(|statistics| statistics.frame),
             plate: of(|statistics| statistics.plate),
+            texture: of(|statistics| statistics.texture),
             beside: of(|statistics| statistics.beside),
         }
     })
+    .map(|class| class.with_equal_noise_if_alike().without_rounding())
     .filter(|class| class.frame > 0.0)
     .collect()
 }
@@ -341,60 +454,4 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_unstable_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
-}
-
-/// The line through the points (light, variance), without those that are far above it.
-fn fitted_without_outliers(points: impl Iterator<Item = (f64, f64)>) -> Option<Noise> {
-    let mut points: Vec<(f64, f64)> = points.collect();
-    let mut noise = fitted(points.iter().copied())?;
-    for _ in 1..N_FITS {
-        points.retain(|(light, variance)| *variance <= MOST_OVER_LINE * noise.variance(*light));
-        noise = fitted(points.iter().copied()).unwrap_or(noise);
-    }
-    Some(noise)
-}
-
-/// The line through (light, variance) of least relative error with two non-negative coefficients.
-fn fitted(points: impl Iterator<Item = (f64, f64)> + Clone) -> Option<Noise> {
-    let largest = points.clone().map(|(_, variance)| variance).fold(0.0, f64::max);
-    let (mut n, mut x, mut y, mut xx, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for (light, variance) in points {
-        let weight = 1.0 / variance.max(0.01 * largest).max(1e-12).powi(2);
-        n += weight;
-        x += weight * light;
-        y += weight * variance;
-        xx += weight * light * light;
-        xy += weight * light * variance;
-    }
-    if n == 0.0 {
-        return None;
-    }
-    let spread = n * xx - x * x;
-    let slope = if spread > 1e-9 * n * xx {
-        (n * xy - x * y) / spread
-    } else {
-        0.0
-    };
-    let floor = (y - slope * x) / n;
-    let (floor, slope) = if slope < 0.0 {
-        (y / n, 0.0)
-    } else if floor < 0.0 {
-        (0.0, xy / xx)
-    } else {
-        (floor, slope)
-    };
-    Some(Noise {
-        floor: narrowed(floor, 1.0),
-        per_light: narrowed(slope, 1.0),
-    })
-}
-
-/// Clamped to 0 to `most`; 0 for NaN.
-#[allow(clippy::cast_possible_truncation, reason = "of the range of a single")]
-fn narrowed(value: f64, most: f64) -> f32 {
-    if value.is_finite() {
-        value.clamp(0.0, most) as f32
-    } else {
-        0.0
-    }
 }

@@ -1,14 +1,15 @@
-//! Depths of frames and the mesh of the place in recordings: counted and named apart from pictures,
-//! in the chunk of their frame.
+//! Maps of frames and the mesh of the place in recordings: each kind is counted and named apart from
+//! pictures, in the chunk of its frame.
 
 use std::collections::BTreeMap;
 use std::fs;
 
 use app_core::depth::Depth;
+use app_core::people::People;
 use app_core::place_mesh::PlaceMesh;
 use app_core::recording::{
-    Ending, Item, Limits, LiveFrame, Loss, Picture, PictureCodec, Recording, RecordingJob, RecordingOptions,
-    WriteError, Writer,
+    Ending, Item, Limits, LiveFrame, Loss, Maps, Picture, PictureCodec, Recording, RecordingJob,
+    RecordingOptions, WriteError, Writer,
 };
 use app_core::scene::FieldError;
 use app_core::session::{Capture, Files, Session};
@@ -27,12 +28,21 @@ fn depth(first_mm: u16) -> Depth {
     Depth::new(UVec2::new(64, 36), depths).unwrap()
 }
 
+/// A mask of the shape of the bundled session's pictures.
+fn people(first: u32) -> People {
+    let codes: Vec<u8> = (0..32 * 18)
+        .map(|index| if index < first { 255 } else { 0 })
+        .collect();
+    People::new(UVec2::new(32, 18), codes).unwrap()
+}
+
 fn mesh() -> PlaceMesh {
     let points = [Vec3::ZERO, Vec3::X, Vec3::Z, Vec3::new(0.5, 0.02, 0.5)];
     PlaceMesh::new(points, [[0, 2, 1], [1, 2, 3]], Some(0.002)).unwrap()
 }
 
-/// Four frames: the second repeats the first one's picture, and the third has no depths.
+/// Four frames: the second repeats the first one's picture, the third has neither depths nor people,
+/// and the last has no people.
 fn recorded() -> Vec<u8> {
     let session = bundled_session();
     let scene = session.scene().clone().with_place_mesh(Some(mesh()));
@@ -44,16 +54,19 @@ fn recorded() -> Vec<u8> {
         exposure: 1.0,
         light_estimate: None,
         depth: Some(depth(300)),
+        people: Some(people(40)),
         shown_pose: frame.shown_pose,
         world_from_shown: None,
     };
     let other = LiveFrame {
         image: session.scene().plates[0].image.clone().into(),
         depth: None,
+        people: None,
         ..live.clone()
     };
     let last = LiveFrame {
         depth: Some(depth(500)),
+        people: None,
         ..live.clone()
     };
     let (sender, job) = RecordingJob::new(1, scene, live.camera.intrinsics);
@@ -74,10 +87,16 @@ fn recorded() -> Vec<u8> {
     sink
 }
 
-fn told(capture: &Capture) -> Vec<Option<Vec<u16>>> {
+/// Depths and people of a frame.
+type Told = (Option<Vec<u16>>, Option<Vec<u8>>);
+
+fn told(capture: &Capture) -> Vec<Told> {
     let frames = (0..capture.n_frames()).map(|index| capture.frame(index).unwrap());
-    let depths = frames.map(|frame| frame.depth.map(|depth| depth.depths_mm().to_vec()));
-    depths.collect()
+    let maps = frames.map(|frame| {
+        let depths = frame.depth.map(|depth| depth.depths_mm().to_vec());
+        (depths, frame.people.map(|people| people.codes().to_vec()))
+    });
+    maps.collect()
 }
 
 /// The corners of its triangles, which are not shared once it was read.
@@ -90,7 +109,7 @@ fn corners(mesh: &PlaceMesh) -> Vec<[Vec3; 3]> {
 }
 
 #[test]
-fn depths_and_mesh_come_back_also_by_a_folder() {
+fn maps_and_mesh_come_back_also_by_a_folder() {
     let folder = Temporary::new("recorded-depths");
     let [path, unpacked, again] = ["a.mcap", "folder", "b.mcap"].map(|name| folder.0.join(name));
     fs::write(&path, recorded()).unwrap();
@@ -100,15 +119,19 @@ fn depths_and_mesh_come_back_also_by_a_folder() {
     for path in [&path, &unpacked, &again] {
         let capture = Capture::open(Stored::open(path).unwrap()).unwrap();
         capture.check_pictures(0..4).unwrap();
-        assert_eq!(told(&capture), [near.clone(), near.clone(), None, far.clone()]);
+        let first = (near.clone(), Some(people(40).codes().to_vec()));
+        let expected = [first.clone(), first, (None, None), (far.clone(), None)];
+        assert_eq!(told(&capture), expected);
         let read = capture.scene().place_mesh.as_ref().unwrap();
         assert_eq!(read.deviation_m(), Some(0.002));
         assert_eq!(corners(read), corners(&mesh()));
     }
     let stored = Stored::open(&path).unwrap();
     let paths = stored.paths().unwrap();
-    let depths: Vec<&String> = paths.iter().filter(|path| path.starts_with("depths/")).collect();
-    assert_eq!(depths, ["depths/000000.png", "depths/000001.png"]);
+    let of =
+        |folder: &str| -> Vec<&String> { paths.iter().filter(|path| path.starts_with(folder)).collect() };
+    assert_eq!(of("depths/"), ["depths/000000.png", "depths/000001.png"]);
+    assert_eq!(of("people/"), ["people/000000.png"]);
 }
 
 /// A recorder of before depths had a channel attached them like any other file.
@@ -134,18 +157,22 @@ fn a_frame_whose_depths_are_lost_is_left_out_and_told() {
     let entry = |image: &str, depth: &str| format!(r#"{{"image":"{image}","depth":"{depth}"}}"#);
     let mut writer = Writer::new(Vec::new(), "{}", BTreeMap::new(), Limits::default()).unwrap();
     let [picture, depth] = [b"picture", b"depths "].map(|bytes| Picture::New(bytes));
-    let written = writer.frame_with_depth(0, picture, Some(depth), &entry("a.png", "a-d.png"));
-    assert_eq!(written.unwrap(), (0, Some(0)));
+    let maps = |depth| Maps {
+        depth: Some(depth),
+        people: None,
+    };
+    let written = writer.frame_with_maps(0, picture, maps(depth), &entry("a.png", "a-d.png"));
+    let numbers = Maps {
+        depth: Some(0),
+        people: None,
+    };
+    assert_eq!(written.unwrap(), (0, numbers));
     // A chunk later, the depths are those of the frame before.
-    let again = Some(Picture::Again(0));
-    let written = writer.frame_with_depth(2_000_000_000, picture, again, &entry("b.png", "a-d.png"));
-    assert_eq!(written.unwrap(), (1, Some(0)));
-    let missing = writer.frame_with_depth(
-        3_000_000_000,
-        picture,
-        Some(Picture::Again(1)),
-        &entry("c", "c-d"),
-    );
+    let again = maps(Picture::Again(0));
+    let written = writer.frame_with_maps(2_000_000_000, picture, again, &entry("b.png", "a-d.png"));
+    assert_eq!(written.unwrap(), (1, numbers));
+    let missing = maps(Picture::Again(1));
+    let missing = writer.frame_with_maps(3_000_000_000, picture, missing, &entry("c", "c-d"));
     assert_eq!(missing, Err(WriteError::NoSuchPicture { sequence: 1 }));
     let (bytes, _) = writer.finish().unwrap();
     let whole = open(&bytes).unwrap();
