@@ -284,6 +284,45 @@ fn a_plane_that_is_listed_too_low_is_found_in_its_place() {
     assert!(off_m.abs() < HEIGHT_M, "{:.2} mm off", 1e3 * off_m);
 }
 
+/// As trackers list planes: some millimetres off, and larger or smaller than they are.
+#[test]
+fn a_plane_that_is_listed_a_little_off_is_corrected() {
+    let world_from_board = board(0.018, 0.0);
+    let (scene, shot) = session(&[(world_from_board, HALF_M)]);
+    let exact = shot.scene.receivers[1].clone();
+    let corrected = |listed: Receiver| {
+        let mut scene = scene.clone();
+        scene.receivers.push(listed);
+        let mut observer = Observer::default();
+        observer.observed(&scene, &shot.input).unwrap();
+        let known = observer.scene(&scene);
+        assert_eq!(known.receivers.len(), 2);
+        known.receivers[1].clone()
+    };
+    assert_eq!(corrected(exact.clone()), exact);
+    for (up_m, wider_m, tilt_rad) in [
+        (0.002, 0.0, 0.0),
+        (0.0, 0.01, 0.0),
+        (0.0, -0.01, 0.0),
+        (0.0, 0.0, 0.0175),
+    ] {
+        let mut listed = exact.clone();
+        listed.half_extent_m += wider_m;
+        listed.world_from_plane *=
+            DMat4::from_rotation_translation(DQuat::from_rotation_x(tilt_rad), up_m * DVec3::Y);
+        let found = corrected(listed);
+        let what = format!("{up_m} m up, {wider_m} m wider, {tilt_rad} rad");
+        let off_m = found.world_from_plane.w_axis.truncate() - exact.world_from_plane.w_axis.truncate();
+        assert!(off_m.y.abs() < HEIGHT_M, "{what}: {off_m} m off");
+        let wider_m = found.half_extent_m - exact.half_extent_m;
+        assert!(
+            wider_m.abs().max_element() < EXTENT_M,
+            "{what}: {wider_m} m wider"
+        );
+        assert!(found.world_from_plane.y_axis.y > TILT_RAD.cos(), "{what}: tilted");
+    }
+}
+
 #[test]
 fn no_plane_is_found_where_there_is_none() {
     let (scene, shot) = session(&[]);
