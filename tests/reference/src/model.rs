@@ -294,13 +294,10 @@ impl Solution {
     /// light.
     #[must_use]
     pub fn plate_falloff(&self, region: &Region, point: ReceiverPoint) -> DVec3 {
-        let direct_fractions = self.receivers[point.receiver].direct_fractions.iter().enumerate();
-        let lit = direct_fractions
-            .clone()
-            .map(|(i, direct_fraction)| *direct_fraction * region.falloff(i, point));
-        let direct: DVec3 = direct_fractions
-            .map(|(_, direct_fraction)| *direct_fraction)
-            .sum();
+        let direct_fractions = &self.receivers[point.receiver].direct_fractions;
+        let direct: DVec3 = direct_fractions.iter().sum();
+        let lit = direct_fractions.iter().enumerate();
+        let lit = lit.map(|(i, direct_fraction)| *direct_fraction * region.falloff(i, point));
         (DVec3::ONE - direct) * region.open_sky(point) + lit.sum::<DVec3>()
     }
 
