@@ -11,6 +11,8 @@ use crate::measured_points::MeasuredPoints;
 use crate::picture::{Level, index_in, places};
 use crate::receivers::SeenReceiver;
 
+/// Smallest cosine between a level plane and the receiver.
+pub(super) const LEVEL: f64 = 0.9998;
 /// Number of trial angles of the rectangle over a quarter turn, and of finer ones on either side of
 /// the best. On steps of 2 degrees alone, the ends of a book's sides were 1.5 mm off.
 const N_TURNS: i32 = 45;

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::extent::Extent;
+use super::extent::{Extent, LEVEL};
 use super::inner::NOISIEST;
 use super::planes::{FoundPlane, GROUND, Nearer, Place, Search};
 use crate::lights::{Compared, Comparison};
@@ -48,7 +48,7 @@ fn corrected_plane(
     let as_listed = Extent::of_plane(listed, &plane_from_camera);
     let height_m = as_listed.height_m(&plane_from_camera, table);
     let tilt = (table.plane_from_camera * plane_from_camera.inverse()).y_axis.y;
-    let face_m = (tilt > super::sides::LEVEL).then_some(height_m);
+    let face_m = (tilt > LEVEL).then_some(height_m);
     let by_edges = as_listed.clearer(level, &plane_from_camera, face_m);
     if by_shadow.is_none() && by_edges.is_none() {
         return None;

@@ -5,6 +5,7 @@ use std::collections::HashSet;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
+use super::extent::LEVEL;
 use super::grown::Grown;
 use super::inner::NOISIEST;
 use super::listed;
@@ -17,8 +18,7 @@ use crate::receivers::{SeenReceiver, receiver_at};
 use crate::report::PlaneAlignment;
 use app_scene::scene::MAX_RECEIVERS;
 
-/// Smallest cosine between a level top and the receiver, and least height of it in metres.
-pub(super) const LEVEL: f64 = 0.9998;
+/// Least height of a level top above the receiver, in metres.
 const LEAST_M: f64 = 0.004;
 /// Largest distance in metres between a side and a receiver that it lies along.
 const ALONG_M: f64 = 0.012;
