@@ -28,6 +28,8 @@ struct Globals {
   receivers: array<ReceiverPlane, MAX_RECEIVERS>,
   // The lights in anchor space.
   lights: array<vec4f, MAX_LIGHTS>,
+  // Radius of each light's disc over its distance, 1 for directions: metres, or a slope.
+  light_radii: vec4f,
   // Width of the fade into untouched pixels at the region's (left, top, right, bottom) edge; 0 at the image's own edge.
   border_px: vec4f,
   camera_in_anchor: vec3f,
@@ -145,19 +147,6 @@ fn receiver_point(region_px: vec2f) -> ReceiverPoint {
 
 fn is_hit(point: ReceiverPoint) -> bool {
   return receiver_of(point) < MAX_RECEIVERS;
-}
-
-// Irradiance of light `i` at a receiver point relative to that at the receiver's reference point:
-// cos / d^2, with height over distance as the cosine; 0 if the light is behind the receiver.
-fn falloff(i: u32, point: ReceiverPoint) -> f32 {
-  let light = globals.receivers[receiver_of(point)].lights[i];
-  if light.y <= 0.0 { return 0.0; }
-  if light.w == 0.0 { return 1.0; }
-  let reference = globals.receivers[receiver_of(point)].reference_in_plane;
-  let to_here = distance(light.xyz, vec3f(point.xy.x, 0.0, point.xy.y));
-  let to_reference = distance(light.xyz, vec3f(reference.x, 0.0, reference.y));
-  let ratio = to_reference / to_here;
-  return ratio * ratio * ratio;
 }
 
 // Position of a receiver's point in the region; outside the region if it is behind the camera.

@@ -1,10 +1,11 @@
 // The model of a receiver: the frame as a fraction of the plate times the gain.
 //
 //   M = A (1 - sum f) + bounce A (1 - A) + sum f intensity V
-//   f = fraction falloff / (1 - sum fraction + sum fraction falloff)
+//   f = fraction falloff / ((1 - sum fraction) sky + sum fraction falloff)
 //
 // V is the visibility of a light, A the ambient visibility, f a light's fraction of the plate's
-// radiance there, `fraction` that at the reference point.
+// radiance there, `fraction` that at the reference point, and `sky` the part of the sky that no
+// other receiver hides there.
 // The occluder of 1 - A of the sky reflects light that enters through the open part, A: in a
 // crevice it is dark itself.
 // Source: Casas et al. 2019, section 4, gives the ratio of one sample; this is its additive form
@@ -13,13 +14,22 @@
 // light is unknown, and the bounce is the part of it that casts no shadow, for 1 all of it.
 
 //#import common/fit
+//#import common/plate_light
+
+// Ambient light's fraction of the plate's radiance at the reference point.
+fn ambient_fraction(receiver: u32) -> vec3f {
+  var fraction = vec3f(1.0);
+  for (var i = 0u; i < globals.n_lights; i++) { fraction -= fit.receivers[receiver].direct_fraction[i].rgb; }
+  return fraction;
+}
 
 // Irradiance of the plate at a receiver point relative to the reference point, if the ambient light
 // were even. It is positive, since the direct fractions sum to less than 1.
 fn plate_falloff(point: ReceiverPoint) -> vec3f {
-  var total = vec3f(1.0);
+  let receiver = receiver_of(point);
+  var total = open_sky(point) * ambient_fraction(receiver);
   for (var i = 0u; i < globals.n_lights; i++) {
-    total += fit.receivers[receiver_of(point)].direct_fraction[i].rgb * (falloff(i, point) - 1.0);
+    total += fit.receivers[receiver].direct_fraction[i].rgb * falloff(i, point);
   }
   return total;
 }
@@ -32,11 +42,9 @@ fn bounced(ambient: f32) -> f32 {
 
 // Part of the plate, whose falloff is `total`, from the ambient light and the toy's bounce.
 fn ambient_part(point: ReceiverPoint, ambient: f32, total: vec3f) -> vec3f {
-  var ambient_fraction = vec3f(1.0);
-  for (var i = 0u; i < globals.n_lights; i++) {
-    ambient_fraction -= fit.receivers[receiver_of(point)].direct_fraction[i].rgb;
-  }
-  return ambient * ambient_fraction / total + fit.receivers[receiver_of(point)].bounce.rgb * bounced(ambient);
+  let receiver = receiver_of(point);
+  let of_sky = ambient * open_sky(point) * ambient_fraction(receiver);
+  return of_sky / total + fit.receivers[receiver].bounce.rgb * bounced(ambient);
 }
 
 // Light `i`'s fraction of the plate's radiance at a point with the plate's falloff `total`.
@@ -48,22 +56,20 @@ fn light_part(i: u32, point: ReceiverPoint, total: vec3f) -> vec3f {
 // No array is indexed by a light's number, since processors keep such arrays in memory.
 fn receiver_models(point: ReceiverPoint, ambient: vec2f, visibility_0: vec4f, visibility_1: vec4f) -> mat2x3f {
   let receiver = receiver_of(point);
-  var total = vec3f(1.0);
-  var ambient_fraction = vec3f(1.0);
+  let of_sky = open_sky(point) * ambient_fraction(receiver);
+  var total = of_sky;
   var lit = mat2x3f();
   for (var i = 0u; i < globals.n_lights; i++) {
-    let fraction = fit.receivers[receiver].direct_fraction[i].rgb;
-    let here = fraction * falloff(i, point);
-    total += here - fraction;
-    ambient_fraction -= fraction;
+    let here = fit.receivers[receiver].direct_fraction[i].rgb * falloff(i, point);
+    total += here;
     let shining = here * fit.intensity[i].rgb;
     lit[0] += visibility_0[i] * shining;
     lit[1] += visibility_1[i] * shining;
   }
   let bounce = fit.receivers[receiver].bounce.rgb;
   return mat2x3f(
-    (ambient.x * ambient_fraction + lit[0]) / total + bounced(ambient.x) * bounce,
-    (ambient.y * ambient_fraction + lit[1]) / total + bounced(ambient.y) * bounce,
+    (ambient.x * of_sky + lit[0]) / total + bounced(ambient.x) * bounce,
+    (ambient.y * of_sky + lit[1]) / total + bounced(ambient.y) * bounce,
   );
 }
 

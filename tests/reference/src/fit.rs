@@ -165,7 +165,6 @@ fn receiver_equations(
         let [frame, plate] = [sample.frame, sample.plate].map(|color| color[channel]);
         let value = frame / before.gain[channel] - sample.reflected[channel];
         let total = before.plate_falloff(region, sample.point)[channel];
-        let plane = region.plane_of(sample.point);
         let ambient = sample.ambient;
         // Such a pixel counts as equally bright in shadow, as far as it is reliable.
         let visibility = match is_clipped(frame, plate) {
@@ -176,7 +175,7 @@ fn receiver_equations(
         columns.extend((0..region.lights.len()).map(|i| {
             let intensity = before.intensities[i][channel];
             let visible = intensity * visibility[i] - ambient;
-            plate * plane.falloff(i, sample.point.in_plane) * visible / total
+            plate * region.falloff(i, sample.point) * visible / total
         }));
         let mut weight = evidence(frame, plate);
         if is_reweighted {

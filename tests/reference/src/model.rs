@@ -5,6 +5,7 @@ use app_pipeline::geometry::rect::{PixelRect, PlaneRect};
 use app_pipeline::geometry::scene_layout::SceneLayout;
 use app_pipeline::geometry::view::View;
 use app_pipeline::passes::globals::globals;
+use app_scene::scene::Light;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
 use super::raster::Raster;
@@ -29,6 +30,8 @@ pub struct Region {
     pub border_px: [f64; 4],
     /// Homogeneous, in anchor space: (position, 1) or (unit direction to the light, 0).
     pub lights: Vec<DVec4>,
+    /// Radius of each light's disc over its distance, which is 1 for a direction.
+    pub light_radii: Vec<f64>,
     /// Reflection of the first receiver; `None` if it is matt.
     pub reflection: Option<Reflection>,
 }
@@ -57,6 +60,50 @@ pub struct ReceiverPoint {
     pub in_plane: DVec2,
 }
 
+/// Part of the sky that the faces below a rectangle's edges hide from a point.
+fn hidden_sky(at: DVec2, own_from_rect: &DMat4, rect: &PlaneRect) -> f64 {
+    const N_AZIMUTHS: u32 = 200;
+    let seen =
+        |x: f64, z: f64| own_from_rect.transform_point3(DVec3::new(x, 0.0, z)) - DVec3::new(at.x, 0.0, at.y);
+    let PlaneRect { min, max } = *rect;
+    let corners = [
+        seen(min.x, min.y),
+        seen(max.x, min.y),
+        seen(max.x, max.y),
+        seen(min.x, max.y),
+    ];
+    let middle = corners.into_iter().sum::<DVec3>() / 4.0;
+    let turn = |a: DVec3, b: DVec3| a.x * b.z - a.z * b.x;
+    let mut hidden = 0.0;
+    for (index, a) in corners.iter().copied().enumerate() {
+        let b = corners[(index + 1) % 4];
+        if turn(a, b) * turn(a - middle, b - middle) >= 0.0 {
+            continue;
+        }
+        let [a, b] = [a, b].map(|end| DVec3::new(end.x, end.y.max(0.0), end.z));
+        let (from, mut over) = (a.z.atan2(a.x), b.z.atan2(b.x) - a.z.atan2(a.x));
+        over -= std::f64::consts::TAU * (over / std::f64::consts::TAU).round();
+        for step in 0..N_AZIMUTHS {
+            let azimuth = from + over * (f64::from(step) + 0.5) / f64::from(N_AZIMUTHS);
+            let along = DVec3::new(azimuth.cos(), 0.0, azimuth.sin());
+            let part = turn(a, along) / (turn(a, along) - turn(b, along));
+            let edge = a.lerp(b, part);
+            let sine = edge.normalize().y;
+            hidden += sine * sine * over.abs() / f64::from(N_AZIMUTHS) / std::f64::consts::TAU;
+        }
+    }
+    hidden
+}
+
+/// Least radius of a light's disc, projected onto a top.
+const SHARPEST_M: f64 = 5e-4;
+
+/// Area of the unit disc below a line at `height`, over that of the disc.
+fn segment(height: f64) -> f64 {
+    let angle = height.clamp(-1.0, 1.0).acos();
+    1.0 - (angle - angle.sin() * angle.cos()) / std::f64::consts::PI
+}
+
 impl ReceiverPlane {
     /// The point of the infinite plane, (x, z) in metres, at `region_px`.
     #[must_use]
@@ -80,9 +127,8 @@ impl ReceiverPlane {
     }
 
     /// Irradiance of light `i` at a point over that at the reference point: cos / d^2; 0 from
-    /// behind the receiver.
-    #[must_use]
-    pub fn falloff(&self, i: usize, in_plane: DVec2) -> f64 {
+    /// behind the receiver. Nothing is between them.
+    fn open_falloff(&self, i: usize, in_plane: DVec2) -> f64 {
         let light = self.lights[i];
         if light.y <= 0.0 {
             return 0.0;
@@ -96,9 +142,62 @@ impl ReceiverPlane {
         };
         irradiance(in_plane) / irradiance(self.reference_in_plane)
     }
+
+    /// The part of light `i`, with a disc of a radius, that the receiver hides from a point of its
+    /// space: over each axis, the part of the disc's shadow that its two edges enclose.
+    #[must_use]
+    pub fn hidden(&self, i: usize, from: DVec3, radius: f64) -> f64 {
+        let light = self.lights[i];
+        let to_light = light.truncate() - light.w * from;
+        let is_between = from.y > 0.0 && light.y < 0.0 || from.y < 0.0 && light.y > 0.0;
+        if !is_between {
+            return 0.0;
+        }
+        let axis = |from_x: f64, to_x: f64, edges: [f64; 2]| {
+            let part = from.y.abs() / to_light.y.abs();
+            let radius = (part * radius * to_light.y.hypot(to_x) / to_light.y.abs()).max(SHARPEST_M);
+            let below = edges.map(|edge| segment((edge - from_x - part * to_x) / radius));
+            (below[1] - below[0]).max(0.0)
+        };
+        let PlaneRect { min, max } = self.rect;
+        axis(from.x, to_light.x, [min.x, max.x]) * axis(from.z, to_light.z, [min.y, max.y])
+    }
 }
 
 impl Region {
+    /// Irradiance of light `i` at a point over that at the reference point in the open: of the part
+    /// that no top of a thing hides.
+    #[must_use]
+    pub fn falloff(&self, i: usize, point: ReceiverPoint) -> f64 {
+        let own = self.plane_of(point);
+        let from = DVec3::new(point.in_plane.x, 0.0, point.in_plane.y);
+        let in_anchor = own.plane_from_anchor.inverse().transform_point3(from);
+        let hidden = self.tops(point.receiver).map(|(_, plane)| {
+            let here = plane.plane_from_anchor.transform_point3(in_anchor);
+            plane.hidden(i, here, self.light_radii[i])
+        });
+        own.open_falloff(i, point.in_plane) * (1.0 - hidden.sum::<f64>()).max(0.0)
+    }
+
+    /// Part of the sky that the faces below other receivers leave at a point, by integration over
+    /// azimuths: a face of elevation e hides sin^2 e.
+    #[must_use]
+    pub fn open_sky(&self, point: ReceiverPoint) -> f64 {
+        let tops = self.tops(point.receiver);
+        let hidden = tops.map(|(own_from_top, top)| hidden_sky(point.in_plane, &own_from_top, &top.rect));
+        (1.0 - hidden.sum::<f64>()).max(0.0)
+    }
+
+    /// The other receivers that are no walls of one, each with the matrix from its space.
+    fn tops(&self, receiver: usize) -> impl Iterator<Item = (DMat4, &ReceiverPlane)> {
+        let own_from_anchor = self.receivers[receiver].plane_from_anchor;
+        let others = self.receivers.iter().enumerate();
+        let others = others.filter(move |(index, _)| *index != receiver);
+        let turned =
+            others.map(move |(_, other)| (own_from_anchor * other.plane_from_anchor.inverse(), other));
+        turned.filter(|(own_from_other, _)| own_from_other.y_axis.y >= 0.5)
+    }
+
     /// The region `rect` of a camera's picture.
     #[must_use]
     pub fn new(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Self {
@@ -124,6 +223,7 @@ impl Region {
             size_px: rect.size_px,
             border_px: globals.border_px.map(f64::from),
             lights: lights_in(&world_from_anchor.inverse()),
+            light_radii: layout.lights.iter().map(Light::radius).collect(),
             reflection: None,
         }
     }
@@ -194,17 +294,17 @@ impl Solution {
     /// light.
     #[must_use]
     pub fn plate_falloff(&self, region: &Region, point: ReceiverPoint) -> DVec3 {
-        let direct_fractions = self.receivers[point.receiver].direct_fractions.iter().enumerate();
-        let plane = region.plane_of(point);
-        let more = direct_fractions
-            .map(|(i, direct_fraction)| *direct_fraction * (plane.falloff(i, point.in_plane) - 1.0));
-        DVec3::ONE + more.sum::<DVec3>()
+        let direct_fractions = &self.receivers[point.receiver].direct_fractions;
+        let direct: DVec3 = direct_fractions.iter().sum();
+        let lit = direct_fractions.iter().enumerate();
+        let lit = lit.map(|(i, direct_fraction)| *direct_fraction * region.falloff(i, point));
+        (DVec3::ONE - direct) * region.open_sky(point) + lit.sum::<DVec3>()
     }
 
     /// A light's share of the plate's radiance at a point.
     #[must_use]
     pub fn light_fraction(&self, region: &Region, i: usize, point: ReceiverPoint) -> DVec3 {
-        let falloff = region.plane_of(point).falloff(i, point.in_plane);
+        let falloff = region.falloff(i, point);
         let at_reference = self.receivers[point.receiver].direct_fractions[i];
         at_reference * falloff / self.plate_falloff(region, point)
     }

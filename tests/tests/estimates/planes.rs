@@ -284,6 +284,29 @@ fn a_plane_that_is_listed_too_low_is_found_in_its_place() {
     assert!(off_m.abs() < HEIGHT_M, "{:.2} mm off", 1e3 * off_m);
 }
 
+/// As trackers list planes, 2 mm off; an exact one stays.
+#[test]
+fn a_plane_that_is_listed_a_little_off_is_corrected() {
+    let world_from_board = board(0.018, 0.0);
+    let (scene, shot) = session(&[(world_from_board, HALF_M)]);
+    let exact = shot.scene.receivers[1].clone();
+    let corrected = |listed: Receiver| {
+        let mut scene = scene.clone();
+        scene.receivers.push(listed);
+        let mut observer = Observer::default();
+        observer.observed(&scene, &shot.input).unwrap();
+        let known = observer.scene(&scene);
+        assert_eq!(known.receivers.len(), 2);
+        known.receivers[1].clone()
+    };
+    assert_eq!(corrected(exact.clone()), exact);
+    let mut listed = exact.clone();
+    listed.world_from_plane.w_axis.y += 0.002;
+    let found = corrected(listed);
+    let off_m = found.world_from_plane.w_axis.y - exact.world_from_plane.w_axis.y;
+    assert!(off_m.abs() < HEIGHT_M, "{:.2} mm off", 1e3 * off_m);
+}
+
 #[test]
 fn no_plane_is_found_where_there_is_none() {
     let (scene, shot) = session(&[]);

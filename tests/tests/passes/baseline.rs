@@ -22,7 +22,7 @@ use crate::device::Device;
 use crate::errors::{Errors, channels};
 use crate::photo::photograph;
 use crate::run::{crop, input, raster, scene};
-use crate::setups::{SETUPS, Setup};
+use crate::setups::{Beside, SETUPS, Setup};
 use crate::stand::Stand;
 
 /// The device's results for a setup by the published method.
@@ -53,7 +53,7 @@ static RUNS: LazyLock<Result<Vec<BaselineRun>, String>> = LazyLock::new(|| {
         run.map_err(|error| error.to_string())
     };
     // The published method has one receiver.
-    let setups = SETUPS.into_iter().filter(|setup| !setup.has_wall);
+    let setups = SETUPS.into_iter().filter(|setup| setup.beside == Beside::Nothing);
     setups.enumerate().map(run).collect()
 });
 

@@ -17,7 +17,7 @@ use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::{Photo, photograph};
 use crate::run::{crop, input, plate_of, raster, runs, scene};
-use crate::setups::{Setup, WALL};
+use crate::setups::{Beside, Setup, WALL};
 use crate::stand::Stand;
 
 /// Offsets of cameras from their targets: the view's, one beside it, and one from the other side.
@@ -29,7 +29,7 @@ pub(crate) const SETUP: Setup = WALL.of_size(231, 173);
 
 fn without_wall() -> Setup {
     Setup {
-        has_wall: false,
+        beside: Beside::Nothing,
         lights: &WALL.lights[..1],
         ..SETUP
     }

@@ -3,12 +3,24 @@
 use reference::fill::fill;
 use reference::residual::pool;
 
+use crate::device::Device;
 use crate::errors::{Errors, channels};
+use crate::photo::photograph;
 use crate::run::{Run, runs};
+use crate::setups::BOOK;
+use crate::stand::Stand;
 
 #[test]
 fn pooled_and_filled() {
     runs().iter().for_each(check_residuals);
+}
+
+/// A book hides light and sky from the table beside it.
+#[test]
+fn beside_a_book() {
+    let (device, stand) = (Device::shared(), Stand::new(BOOK));
+    let pictures = photograph(&stand);
+    check_residuals(&Run::new(stand, pictures, &device.decoded()).unwrap());
 }
 
 pub(crate) fn check_residuals(run: &Run) {

@@ -13,8 +13,18 @@ pub(crate) struct Setup {
     pub(crate) distance_m: f64,
     /// Height of the toy's feet over the receiver, since tracking is never exact.
     pub(crate) feet_m: f64,
-    /// Whether there is a wall behind the toy, so that its shadow is broken by the crease.
-    pub(crate) has_wall: bool,
+    /// The second receiver.
+    pub(crate) beside: Beside,
+}
+
+/// What is beside the toy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Beside {
+    Nothing,
+    /// A wall behind the toy, so that its shadow is broken by the crease.
+    Wall,
+    /// A book, of which the top is a receiver: it hides light and sky from the table.
+    Book,
 }
 
 impl Setup {
@@ -68,7 +78,7 @@ const NEAR: Setup = Setup {
     lights: &[BULB],
     distance_m: 0.42,
     feet_m: 0.0,
-    has_wall: false,
+    beside: Beside::Nothing,
 };
 /// The shadow of one light continues up a wall that ends within the picture; another light is
 /// behind it.
@@ -77,7 +87,15 @@ pub(crate) const WALL: Setup = Setup {
     image_px: UVec2::new(163, 119),
     lights: &[LOW_BULB, BACK_BULB],
     distance_m: 0.55,
-    has_wall: true,
+    beside: Beside::Wall,
+    ..NEAR
+};
+/// The toy's shadow falls on a book and on the table, and the book's own shadow on the table.
+pub(crate) const BOOK: Setup = Setup {
+    name: "book",
+    image_px: UVec2::new(131, 89),
+    lights: &[BULB],
+    beside: Beside::Book,
     ..NEAR
 };
 /// Ambient light alone.

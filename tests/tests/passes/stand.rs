@@ -15,7 +15,7 @@ use app_scene::geometry::bounds::Bounds;
 use glam::{DMat4, DQuat, DVec2, DVec3, UVec2};
 use reference::model::Region;
 
-use crate::setups::Setup;
+use crate::setups::{Beside, Setup};
 use crate::toy;
 
 /// Moment of the shown clip, in seconds.
@@ -80,7 +80,7 @@ impl Stand {
             DQuat::from_rotation_y(-0.5),
             DVec3::new(0.0, 0.015 + setup.feet_m, 0.0),
         );
-        let receivers = receivers(&world_from_table, setup.has_wall);
+        let receivers = receivers(&world_from_table, setup.beside);
         let anchored = anchored(&receivers, &toy, &world_from_object);
         let anchor_from_world = anchored[0].world_from_plane.inverse();
         let pose = |pose: &Pose| {
@@ -200,7 +200,7 @@ fn anchored(receivers: &[Receiver], toy: &Toy, world_from_object: &DMat4) -> Vec
 }
 
 /// The table, and a wall on it behind the toy, which reaches a little into it.
-fn receivers(world_from_table: &DMat4, has_wall: bool) -> Vec<Receiver> {
+fn receivers(world_from_table: &DMat4, beside: Beside) -> Vec<Receiver> {
     let table = Receiver {
         name: "table".to_owned(),
         world_from_plane: *world_from_table,
@@ -218,7 +218,19 @@ fn receivers(world_from_table: &DMat4, has_wall: bool) -> Vec<Receiver> {
         half_extent_m,
         surface: Surface::Textured,
     };
-    if has_wall { vec![table, wall] } else { vec![table] }
+    let table_from_book =
+        DMat4::from_rotation_translation(DQuat::from_rotation_y(0.3), DVec3::new(-0.11, 0.025, 0.03));
+    let book = Receiver {
+        name: "book".to_owned(),
+        world_from_plane: *world_from_table * table_from_book,
+        half_extent_m: DVec2::new(0.045, 0.06),
+        surface: Surface::Textured,
+    };
+    match beside {
+        Beside::Nothing => vec![table],
+        Beside::Wall => vec![table, wall],
+        Beside::Book => vec![table, book],
+    }
 }
 
 fn camera(offset: DVec3) -> DMat4 {

@@ -15,6 +15,14 @@ use crate::picture::{Color, Level};
 const STEPS_A_PX: f64 = 2.0;
 const WITH_FACE: RangeInclusive<i32> = -60..=12;
 const NEAR: RangeInclusive<i32> = -5..=9;
+/// Distance in metres within which the edge of a listed plane is searched, the most steps of that,
+/// those within which it is where it is listed, and the least contrast over that of the clearest
+/// edge there. With these the sides of a book that is listed exactly stay, and of one that is listed
+/// 10 mm too large or too small they come to within 7 mm.
+const LISTED_M: f64 = 0.013;
+const MOST_STEPS: f64 = 100.0;
+const AS_LISTED: i32 = 3;
+const CLEAR: f64 = 0.5;
 /// Distance of the compared colours from an edge, in pixels.
 const BESIDE_PX: f64 = 1.25;
 /// Number of places along a side, and the part of it that they cover.
@@ -56,6 +64,42 @@ pub(super) fn moved_m(side: &Side, plane_from_camera: &DMat4, level: &Level) -> 
         None => nearest(NEAR, |step| contrast(step, 0.0)),
     };
     step.map_or(0.0, |step| px_m * step_px(step))
+}
+
+/// Distance in metres by which a listed side moves outward: to the nearest clear edge, or not at all
+/// if that is as near as can be told.
+pub(super) fn clearer_m(side: &Side, plane_from_camera: &DMat4, level: &Level) -> f64 {
+    let seen = SeenSide {
+        side,
+        camera_from_plane: plane_from_camera.inverse(),
+        level,
+    };
+    let Some(px_m) = seen.px_m() else { return 0.0 };
+    let face_m = side.face_m.filter(|_| seen.faces_camera());
+    let contrast = |step: i32| {
+        let at = |down_m: f64| {
+            let contrast = seen.contrast((px_m * step_px(step), down_m), BESIDE_PX * px_m);
+            contrast.unwrap_or(0.0)
+        };
+        face_m.map_or(at(0.0), |face_m| (at(0.0) * at(face_m)).sqrt())
+    };
+    #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
+    let most = (STEPS_A_PX * LISTED_M / px_m).min(MOST_STEPS).ceil() as i32;
+    let contrasts: Vec<f64> = (-most..=most).map(contrast).collect();
+    let clearest = contrasts.iter().copied().fold(0.0, f64::max);
+    let peaks = contrasts.windows(3).zip(-most + 1..);
+    let peaks = peaks.filter(|(around, step)| {
+        // Stripes of a thing are as clear as its edge, which may be any where it is listed.
+        let least = if step.abs() > AS_LISTED {
+            CLEAR * clearest
+        } else {
+            0.0
+        };
+        around[1] > least.max(LEAST) && around[1] >= around[0] && around[1] > around[2]
+    });
+    let nearest = peaks.map(|(_, step)| step).min_by_key(|step| step.abs());
+    let moved = nearest.filter(|step| step.abs() > AS_LISTED);
+    moved.map_or(0.0, |step| px_m * step_px(step))
 }
 
 /// Contrast of a side where it is, in logarithms of light; `None` if too little of it is visible.

@@ -3,7 +3,7 @@
 
 use glam::{DMat4, DVec2, DVec3, Vec3Swizzles};
 
-use super::edges::{Side, contrast, moved_m};
+use super::edges::{Side, clearer_m, contrast, moved_m};
 use super::groups::groups;
 use super::grown::Grown;
 use super::seeds::Colored;
@@ -11,6 +11,8 @@ use crate::measured_points::MeasuredPoints;
 use crate::picture::{Level, index_in, places};
 use crate::receivers::SeenReceiver;
 
+/// Smallest cosine between a level plane and the receiver.
+pub(super) const LEVEL: f64 = 0.9998;
 /// Number of trial angles of the rectangle over a quarter turn, and of finer ones on either side of
 /// the best. On steps of 2 degrees alone, the ends of a book's sides were 1.5 mm off.
 const N_TURNS: i32 = 45;
@@ -168,8 +170,38 @@ impl Extent {
         among(&mut (-N_FINER..=N_FINER).map(fine))
     }
 
+    /// The rectangle of a receiver on a plane close to its own.
+    pub(super) fn of_plane(receiver: &SeenReceiver, plane_from_camera: &DMat4) -> Self {
+        let from_receiver = *plane_from_camera * receiver.plane_from_camera.inverse();
+        Self {
+            middle: from_receiver.w_axis.truncate().xz(),
+            turn_rad: from_receiver.x_axis.truncate().xz().to_angle(),
+            half_m: receiver.half_extent_m(),
+        }
+    }
+
+    /// The rectangle with those sides moved that the plate shows elsewhere; `None` if it shows all
+    /// sides where they are.
+    pub(super) fn clearer(
+        &self,
+        level: &Level,
+        plane_from_camera: &DMat4,
+        face_m: Option<f64>,
+    ) -> Option<Self> {
+        let moved = |extent: &Self| extent.moved(face_m, |side| clearer_m(side, plane_from_camera, level));
+        let once = moved(self);
+        let is_moved = once.half_m != self.half_m || once.middle != self.middle;
+        // The first round corrects the lengths that the second one looks along.
+        is_moved.then(|| moved(&once))
+    }
+
     /// The rectangle with its sides on edges of the plate, above upright faces of a height.
     fn on_edges(self, level: &Level, plane_from_camera: &DMat4, face_m: Option<f64>) -> Self {
+        self.moved(face_m, |side| moved_m(side, plane_from_camera, level))
+    }
+
+    /// The rectangle with its sides moved outward by some metres.
+    fn moved(&self, face_m: Option<f64>, by_m: impl Fn(&Side) -> f64) -> Self {
         let axis = DVec2::from_angle(self.turn_rad);
         let moved_m = |outward: DVec2, out_m: f64, half_m: f64| {
             let side = Side {
@@ -178,7 +210,7 @@ impl Extent {
                 half_m,
                 face_m,
             };
-            moved_m(&side, plane_from_camera, level).max(-MOST_INWARD * out_m)
+            by_m(&side).max(-MOST_INWARD * out_m)
         };
         let along = |axis: DVec2, out_m: f64, half_m: f64| {
             [axis, -axis].map(|outward| moved_m(outward, out_m, half_m))
@@ -190,7 +222,7 @@ impl Extent {
         Self {
             middle: self.middle + 0.5 * axis.rotate(moved),
             half_m: self.half_m + 0.5 * grown,
-            ..self
+            ..*self
         }
     }
 

@@ -18,6 +18,7 @@ pub(crate) mod groups;
 mod grown;
 mod inner;
 mod known;
+mod listed;
 mod measured;
 mod memory;
 pub(crate) mod planes;

@@ -44,6 +44,8 @@ const NOISE: f64 = 1e-4;
 const OFF_MEASURED: f64 = 1e-4;
 /// If these leave a smaller loss, there is nothing to explain.
 const LEAST_LEFT: f64 = 3e-4;
+/// The same for a listed plane. One that is 2 mm off leaves 4e-4, an exact one 1e-5.
+const LEAST_LISTED: f64 = 1e-4;
 /// How much smaller the loss must be if the thing may have the place's colours: a ramp of the
 /// table's own wood has 3e-6 in place of 5e-3.
 const ALIKE_TIMES: f64 = 2.0;
@@ -181,6 +183,14 @@ fn found(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     })
 }
 
+/// A plane near a listed one.
+pub(super) struct Nearer {
+    /// Rigid; without bounds.
+    pub(super) plane_from_camera: DMat4,
+    /// Losses of the known receivers and of the plane.
+    pub(super) losses: [f64; 2],
+}
+
 /// A candidate for a thing's plane.
 struct Candidate {
     heights: Heights,
@@ -250,6 +260,29 @@ impl<'a> Search<'a> {
     fn measured(mut self, outline: &Outline<'_>) -> Option<Self> {
         self.measured = Some(Measured::of(outline, self.middle)?);
         Some(self)
+    }
+
+    /// The plane near a listed one that explains the shadow far better; `None` if there is none.
+    pub(super) fn nearer(&self, raster: &mut Rasterizer, listed: &SeenReceiver) -> Option<Nearer> {
+        let table_from_plane = self.table.plane_from_camera * listed.plane_from_camera.inverse();
+        let (normal, origin) = (
+            table_from_plane.y_axis.truncate(),
+            table_from_plane.w_axis.truncate(),
+        );
+        let slope = -normal.xz() / normal.y;
+        let height_m = origin.y + slope.dot(self.middle - origin.xz());
+        let starts = [
+            [height_m, 0.0, 0.0],
+            [height_m, slope.x * self.size_m, slope.y * self.size_m],
+        ];
+        let [level, tilted] = starts.map(|heights| [(self.loss(raster, &heights), heights)]);
+        let nearer = self.refined(raster, &level, &tilted)?;
+        let (of_listed, of_others) = self.known_losses();
+        let is_better = of_others > LEAST_LISTED && nearer.loss < OF_OTHERS * of_others;
+        (is_better && self.is_shown(raster, &nearer)).then(|| Nearer {
+            losses: [of_listed, nearer.loss],
+            plane_from_camera: self.plane(&nearer.heights).plane_from_camera,
+        })
     }
 
     /// The plane with the smallest residual.
@@ -334,9 +367,7 @@ impl<'a> Search<'a> {
             Colored::Alike => ALIKE_TIMES,
         };
         let is_significant = of_others > LEAST_LEFT && times * loss < OF_PLANE.min(OF_OTHERS * of_others);
-        let n_shadowed = self.n_shadowed(raster, &candidate.heights);
-        let least = LEAST_SHADOWED[usize::from(!candidate.is_level)];
-        (is_significant && n_shadowed >= least).then_some([of_receiver, loss])
+        (is_significant && self.is_shown(raster, candidate)).then_some([of_receiver, loss])
     }
 
     /// Losses of the known receivers and of an upright side; `None` if those, or no shadow at all,
@@ -433,15 +464,14 @@ impl<'a> Search<'a> {
         depth
     }
 
-    fn n_shadowed(&self, raster: &mut Rasterizer, heights: &Heights) -> usize {
-        let expected = self.ratios(raster, &self.plane(heights));
-        let is_shadowed = |color: &Color| color.iter().sum::<f32>() / 3.0 < 1.0 - SHADOWED;
-        self.apart
-            * expected
-                .iter()
-                .flatten()
-                .filter(|color| is_shadowed(color))
-                .count()
+    /// Whether enough of the shadow falls on a plane.
+    fn is_shown(&self, raster: &mut Rasterizer, candidate: &Candidate) -> bool {
+        let expected = self.ratios(raster, &self.plane(&candidate.heights));
+        let shadowed = expected
+            .iter()
+            .flatten()
+            .filter(|color| color.iter().sum::<f32>() / 3.0 < 1.0 - SHADOWED);
+        self.apart * shadowed.count() >= LEAST_SHADOWED[usize::from(!candidate.is_level)]
     }
 
     /// Prediction of a plane for each pixel that shows it.

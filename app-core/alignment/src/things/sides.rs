@@ -5,8 +5,10 @@ use std::collections::HashSet;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
+use super::extent::LEVEL;
 use super::grown::Grown;
 use super::inner::NOISIEST;
+use super::listed;
 use super::planes::{self, FoundPlane, GROUND, Place, Search};
 use super::seeds::Colored;
 use crate::lights::{Compared, Comparison};
@@ -16,8 +18,7 @@ use crate::receivers::{SeenReceiver, receiver_at};
 use crate::report::PlaneAlignment;
 use app_scene::scene::MAX_RECEIVERS;
 
-/// Smallest cosine between a level top and the receiver, and least height of it in metres.
-const LEVEL: f64 = 0.9998;
+/// Least height of a level top above the receiver, in metres.
 const LEAST_M: f64 = 0.004;
 /// Largest distance in metres between a side and a receiver that it lies along.
 const ALONG_M: f64 = 0.012;
@@ -49,6 +50,10 @@ pub(super) fn with_sides(
     let mut planes = grown.map_or(Vec::new(), |grown| {
         planes::find(place, level, comparison, (grown, colored))
     });
+    let listed = listed::corrected(place, level, comparison).into_iter();
+    let is_known = |listed: &FoundPlane| planes.iter().any(|found| found.instead_of == listed.instead_of);
+    let listed: Vec<FoundPlane> = listed.filter(|listed| !is_known(listed)).collect();
+    planes.extend(listed);
     let seen = grown.filter(|_| colored == Colored::Otherwise);
     let upright = upright(place, (level, seen), comparison, &planes);
     planes.extend(upright);

@@ -43,6 +43,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "no_light",
     "pixel",
     "planes",
+    "plate_light",
     "pool",
     "receiver_light",
     "reflection",

@@ -1,6 +1,6 @@
 //! Readback of the model's maps, for reports and tests.
 
-use glam::{UVec2, Vec2, Vec3, Vec4};
+use glam::{DMat4, DVec2, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::texture::Texture;
@@ -10,8 +10,9 @@ use crate::model::capture::validity::FAR_MARKS;
 use crate::model::diagnostics::evidence::linear_colors;
 use crate::model::frame::coverage::{COVERED_CODES, N_POSITIONS};
 use crate::model::state::solution::Fit;
-use crate::passes::globals::Globals;
+use crate::passes::globals::{Globals, ReceiverPlane};
 use crate::readback::{FloatMap, Map, read_texture};
+use app_scene::geometry::opaque::{hidden_light, hidden_sky, is_top};
 use app_scene::scene::Image;
 
 impl Model {
@@ -145,17 +146,18 @@ impl Model {
     }
 }
 
-/// Sum over lights of fraction falloff / (1 - sum fraction + sum fraction falloff), with the
-/// falloff cos / d^2 relative to the reference point, as in the shaders' model; 0 outside the
-/// receivers.
+/// Sum over lights of fraction falloff / ((1 - sum fraction) sky + sum fraction falloff), with the
+/// falloff cos / d^2 relative to the reference point, and the part of the sky that no other receiver
+/// hides, as in the shaders' model; 0 outside the receivers.
 fn direct_fraction_at(globals: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
     let Some((index, in_plane)) = receiver_point(globals, region_px) else {
         return Vec3::ZERO;
     };
     let (receiver, fit) = (&globals.receivers[index], &fit.receivers[index]);
-    let (mut direct, mut total) = (Vec3::ZERO, Vec3::ONE);
+    let sky = open_sky(globals, (index, in_plane));
+    let (mut direct, mut total) = (Vec3::ZERO, Vec3::splat(sky));
     let lights = receiver.lights.iter().zip(&fit.direct_fraction);
-    for (light, direct_fraction) in lights.take(globals.n_lights as usize) {
+    for (i, (light, direct_fraction)) in lights.take(globals.n_lights as usize).enumerate() {
         let light = Vec4::from_array(*light);
         let distance = |p: Vec2| light.truncate().distance(Vec3::new(p.x, 0.0, p.y));
         let reference = Vec2::from_array(receiver.reference_in_plane);
@@ -166,11 +168,54 @@ fn direct_fraction_at(globals: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
         } else {
             (distance(reference) / distance(in_plane)).powi(3)
         };
+        let falloff = falloff * unhidden(globals, i, (index, in_plane));
         let direct_fraction = Vec4::from_array(*direct_fraction).truncate();
         direct += direct_fraction * falloff;
-        total += direct_fraction * (falloff - 1.0);
+        total += direct_fraction * (falloff - sky);
     }
     direct / total
+}
+
+/// Part of a light that the other receivers leave at a point of one.
+fn unhidden(globals: &Globals, light: usize, (own, in_plane): (usize, Vec2)) -> f32 {
+    let from = Vec3::new(in_plane.x, 0.0, in_plane.y).as_dvec3();
+    let hidden = tops(globals, own).map(|(own_from_top, top)| {
+        let here = own_from_top.inverse().transform_point3(from);
+        let centre = Vec4::from_array(top.lights[light]).as_dvec4();
+        hidden_light(here, centre, f64::from(globals.light_radii[light]), ends(top))
+    });
+    #[allow(clippy::cast_possible_truncation, reason = "a part, to 7 digits")]
+    let left = (1.0 - hidden.sum::<f64>()).max(0.0) as f32;
+    left
+}
+
+/// Part of the sky that the other receivers leave at a point of one.
+fn open_sky(globals: &Globals, (own, in_plane): (usize, Vec2)) -> f32 {
+    let hidden = tops(globals, own)
+        .map(|(own_from_top, top)| hidden_sky(in_plane.as_dvec2(), &own_from_top, ends(top)));
+    #[allow(clippy::cast_possible_truncation, reason = "a part, to 7 digits")]
+    let left = (1.0 - hidden.sum::<f64>()).max(0.0) as f32;
+    left
+}
+
+/// The receivers that may be tops of what stands on one of them, each with the matrix from its space
+/// to that one's.
+fn tops(globals: &Globals, own: usize) -> impl Iterator<Item = (DMat4, &ReceiverPlane)> {
+    let own_from_anchor = plane_from_anchor(&globals.receivers[own]);
+    let receivers = globals.receivers.iter().take(globals.n_receivers as usize);
+    let others = receivers.enumerate().filter(move |(index, _)| *index != own);
+    let turned = others.map(move |(_, other)| (own_from_anchor * plane_from_anchor(other).inverse(), other));
+    turned.filter(|(own_from_other, _)| is_top(own_from_other))
+}
+
+fn plane_from_anchor(receiver: &ReceiverPlane) -> DMat4 {
+    Mat4::from_cols_array_2d(&receiver.plane_from_anchor).as_dmat4()
+}
+
+/// The smallest and the largest (x, z) of a receiver.
+fn ends(receiver: &ReceiverPlane) -> [DVec2; 2] {
+    let [x_min, z_min, x_max, z_max] = receiver.rect.map(f64::from);
+    [DVec2::new(x_min, z_min), DVec2::new(x_max, z_max)]
 }
 
 /// The nearest receiver visible at a pixel, and its point there; `None` if the pixel shows its

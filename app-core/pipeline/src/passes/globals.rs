@@ -42,6 +42,7 @@ shared_struct! {
         pub clip_from_anchor: [[f32; 4]; 4],
         pub receivers: [ReceiverPlane; MAX_RECEIVERS],
         pub lights: [[f32; 4]; MAX_LIGHTS],
+        pub light_radii: [f32; MAX_LIGHTS],
         pub border_px: [f32; 4],
         pub camera_in_anchor: [f32; 3],
         pub n_lights: u32,
@@ -152,6 +153,7 @@ pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globa
             .to_cols_array_2d(),
         receivers,
         lights: lights_in(layout.lights, &world_from_anchor.inverse()),
+        light_radii: light_radii(layout.lights),
         border_px: [
             fade(rect.origin_px.x > 0),
             fade(rect.origin_px.y > 0),
@@ -273,6 +275,14 @@ fn seen_from_behind(view: &View, receivers: &[AnchoredReceiver]) -> u32 {
     let receivers = receivers.iter().take(MAX_RECEIVERS).enumerate();
     let behind = receivers.filter(|(_, receiver)| !view.sees_front_of(&receiver.world_from_plane));
     behind.fold(0, |seen, (index, _)| seen | 1 << index)
+}
+
+fn light_radii(lights: &[Light]) -> [f32; MAX_LIGHTS] {
+    let mut radii = [0.0; MAX_LIGHTS];
+    for (slot, light) in radii.iter_mut().zip(lights) {
+        *slot = narrowed(light.radius());
+    }
+    radii
 }
 
 fn lights_in(lights: &[Light], space_from_world: &DMat4) -> [[f32; 4]; MAX_LIGHTS] {

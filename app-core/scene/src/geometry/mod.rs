@@ -5,3 +5,4 @@ pub mod color;
 pub mod disc;
 pub mod edges;
 pub mod nearest_receivers;
+pub mod opaque;

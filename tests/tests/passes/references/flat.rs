@@ -29,6 +29,7 @@ pub(crate) fn region(size_px: UVec2, lights: Vec<DVec4>) -> Region {
         receivers: vec![receiver],
         size_px,
         border_px: [0.0; 4],
+        light_radii: vec![0.0; lights.len()],
         lights,
         reflection: None,
     }

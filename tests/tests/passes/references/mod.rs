@@ -7,6 +7,7 @@ mod eligible;
 mod estimated;
 mod fit;
 mod flat;
+mod opaque;
 mod pcss;
 mod plate;
 mod precision;

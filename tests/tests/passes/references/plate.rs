@@ -31,6 +31,7 @@ pub(crate) fn above(middle: DVec2, height_m: f64) -> Viewpoint {
             size_px: SIZE,
             border_px: [0.0; 4],
             lights: Vec::new(),
+            light_radii: Vec::new(),
             reflection: None,
         },
         centre_in_anchor: DVec3::new(middle.x, height_m, middle.y),

@@ -1,0 +1,91 @@
+//! Corrects listed planes of things, such as the top of a book that a tracker gave some millimetres
+//! off or larger than it is: height and tilt by the toy's shadow, extents by edges of the plate.
+
+use glam::DVec3;
+
+use super::extent::{Extent, LEVEL};
+use super::inner::NOISIEST;
+use super::planes::{FoundPlane, GROUND, Nearer, Place, Search};
+use crate::lights::{Compared, Comparison};
+use crate::picture::Level;
+use crate::raster::Rasterizer;
+use crate::receivers::SeenReceiver;
+use crate::report::PlaneAlignment;
+
+/// Least cosine between a plane and the receiver on which the thing stands: an upright one is a wall.
+const STANDS: f64 = 0.85;
+/// Least height of its centre above the receiver, in metres.
+const LEAST_M: f64 = 0.004;
+/// Width in metres of the border that may not show the plane: listed ones are up to a centimetre too
+/// large.
+const BORDER_M: f64 = 0.01;
+/// Least pixels for a search of height and tilt.
+const LEAST_PIXELS: usize = 300;
+/// Largest distance in metres between a listed plane and the true one, at its centre.
+const MOST_M: f64 = 0.006;
+
+/// The listed planes that are off, corrected.
+pub(super) fn corrected(place: &Place<'_>, level: &Level, comparison: &Comparison) -> Vec<FoundPlane> {
+    (GROUND + 1..place.receivers.len())
+        .filter_map(|index| corrected_plane(place, (level, comparison), index))
+        .collect()
+}
+
+fn corrected_plane(
+    place: &Place<'_>,
+    (level, comparison): (&Level, &Comparison),
+    index: usize,
+) -> Option<FoundPlane> {
+    let (table, listed) = (&place.receivers[GROUND], &place.receivers[index]);
+    let table_from_listed = table.plane_from_camera * listed.plane_from_camera.inverse();
+    if table_from_listed.y_axis.y < STANDS || table_from_listed.w_axis.y < LEAST_M {
+        return None;
+    }
+    let by_shadow = by_shadow(place, (level, comparison), listed);
+    let plane_from_camera = by_shadow
+        .as_ref()
+        .map_or(listed.plane_from_camera, |nearer| nearer.plane_from_camera);
+    let as_listed = Extent::of_plane(listed, &plane_from_camera);
+    let height_m = as_listed.height_m(&plane_from_camera, table);
+    let tilt = (table.plane_from_camera * plane_from_camera.inverse()).y_axis.y;
+    let face_m = (tilt > LEVEL).then_some(height_m);
+    let by_edges = as_listed.clearer(level, &plane_from_camera, face_m);
+    if by_shadow.is_none() && by_edges.is_none() {
+        return None;
+    }
+    let extent = by_edges.unwrap_or(as_listed);
+    Some(FoundPlane {
+        plane: extent.plane(&plane_from_camera),
+        instead_of: Some(index),
+        contrast: extent.contrast(level, &plane_from_camera),
+        report: PlaneAlignment {
+            height_m,
+            tilt_rad: tilt.clamp(-1.0, 1.0).acos(),
+            half_extent_m: extent.half_m.to_array(),
+            losses: by_shadow.map_or([0.0; 2], |nearer| nearer.losses),
+        },
+    })
+}
+
+/// The plane by the toy's shadow on it; `None` if the listed one explains it.
+fn by_shadow(
+    place: &Place<'_>,
+    (level, comparison): (&Level, &Comparison),
+    listed: &SeenReceiver,
+) -> Option<Nearer> {
+    let half_m = listed.half_extent_m();
+    let inner = SeenReceiver::of_size(listed.plane_from_camera, (half_m - BORDER_M).max(0.5 * half_m));
+    let pixels: Vec<&Compared> = comparison
+        .pixels
+        .iter()
+        .filter(|pixel| pixel.noise < NOISIEST && inner.point_at(&level.intrinsics, pixel.at).is_some())
+        .collect();
+    if pixels.len() < LEAST_PIXELS {
+        return None;
+    }
+    let search = Search::new((place.shape, place.receivers), level, comparison, &pixels)?;
+    let nearer = search.nearer(&mut Rasterizer::default(), listed)?;
+    let centre = listed.plane_from_camera.inverse().transform_point3(DVec3::ZERO);
+    let off_m = nearer.plane_from_camera.transform_point3(centre).y.abs();
+    (off_m < MOST_M).then_some(nearer)
+}

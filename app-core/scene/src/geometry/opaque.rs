@@ -1,0 +1,80 @@
+//! What the top of a thing hides, such as that of a book: parts of a light, and of the sky.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DMat4, DVec2, DVec3, DVec4, Vec3Swizzles};
+
+/// Least radius of a light's disc, projected onto a rectangle, in metres: a pixel shows no sharper
+/// edge.
+const SHARPEST_M: f64 = 5e-4;
+/// Least cosine between a receiver and the top of what stands on it.
+const STANDS: f64 = 0.5;
+
+/// Whether a rectangle may be the top of what stands on a plane y = 0; the matrix leads from its
+/// space to the plane's. An upright one is a wall, which may have a window, or a side.
+#[must_use]
+pub fn is_top(plane_from_rect: &DMat4) -> bool {
+    plane_from_rect.y_axis.y >= STANDS
+}
+
+/// The part of a light that an opaque rectangle on the plane y = 0 hides from a point, 0 to 1.
+///
+/// `light` is its centre, homogeneous, and `radius` that of its disc over its distance, which is 1
+/// for a direction: metres, or a slope. The rectangle has a smallest and a largest (x, z). Each pair
+/// of parallel edges cuts the light's disc by itself.
+#[must_use]
+pub fn hidden_light(from: DVec3, light: DVec4, radius: f64, [min, max]: [DVec2; 2]) -> f64 {
+    if from.y * light.y >= 0.0 {
+        return 0.0;
+    }
+    let to_light = light.truncate() - light.w * from;
+    let part = -from.y / to_light.y;
+    let at = from.xz() + part * to_light.xz();
+    // Half the axes of the disc, projected onto the plane from the point.
+    let slope = to_light.xz() / to_light.y;
+    let radius = part * radius * (DVec2::ONE + slope * slope).map(f64::sqrt);
+    let radius = radius.max(DVec2::splat(SHARPEST_M));
+    let parts = |t: DVec2| t.map(disc_part);
+    let within = (parts((at - min) / radius) + parts((max - at) / radius) - 1.0).max(DVec2::ZERO);
+    within.element_product()
+}
+
+/// Part of the area of a disc on one side of a line at a distance from its centre, in radii.
+fn disc_part(t: f64) -> f64 {
+    let c = t.clamp(-1.0, 1.0);
+    0.5 + (c.asin() + c * (1.0 - c * c).sqrt()) / PI
+}
+
+/// The part of the sky, cosine-weighted, that is hidden from a point of the plane y = 0 by the
+/// upright faces below the edges of a rectangle, 0 to 1; 0 if that is no top.
+///
+/// The matrix leads from the rectangle's space, where it is on y = 0 with a smallest and a largest
+/// (x, z), to the plane's. Source: Nishita and Nakamae 1985 (Lambert's formula).
+#[must_use]
+pub fn hidden_sky(at: DVec2, plane_from_rect: &DMat4, [min, max]: [DVec2; 2]) -> f64 {
+    if !is_top(plane_from_rect) {
+        return 0.0;
+    }
+    let seen = |corner: DVec2| {
+        let corner = DVec3::new(corner.x, 0.0, corner.y);
+        plane_from_rect.transform_point3(corner) - DVec3::new(at.x, 0.0, at.y)
+    };
+    let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)].map(seen);
+    let middle = seen(0.5 * (min + max));
+    let edges = (0..4).map(|index| (corners[index], corners[(index + 1) % 4]));
+    let turned_here = edges
+        .filter(|(a, b)| a.xz().perp_dot(b.xz()) * (*a - middle).xz().perp_dot((*b - middle).xz()) < 0.0);
+    let above = |end: DVec3| DVec3::new(end.x, end.y.max(0.0), end.z);
+    turned_here.map(|(a, b)| hidden_below(above(a), above(b))).sum()
+}
+
+/// The same by the upright face below one edge, from its ends relative to the point.
+fn hidden_below(a: DVec3, b: DVec3) -> f64 {
+    let across = a.cross(b);
+    let area = across.length();
+    if area == 0.0 {
+        return 0.0;
+    }
+    let ground = a.xz().angle_to(b.xz()).abs();
+    ((ground - a.angle_between(b) * across.y.abs() / area) / TAU).max(0.0)
+}
