@@ -222,6 +222,26 @@ fn a_toy_that_is_larger_than_its_model_is_found_larger_where_it_stands() {
     assert!(off_mm(&found)[0] < 0.3, "{:?}", off_mm(&found));
 }
 
+/// The table is inclined about one foot, so that the others are given in the air or below it. A smaller toy on its plane
+/// looks like a higher one.
+#[test]
+fn a_toy_that_is_given_on_one_foot_keeps_its_size_and_height() {
+    for deg in [2.0_f64, 3.5] {
+        let foot = DMat4::from_translation(DVec3::new(0.025, 0.0, 0.0));
+        let inclined = foot * DMat4::from_axis_angle(DVec3::NEG_Z, deg.to_radians()) * foot.inverse();
+        let mut scene = SESSION.0.clone();
+        scene.receivers[0].world_from_plane = inclined * scene.receivers[0].world_from_plane;
+        let start = disturbed(Camera::Ideal, DVec3::new(2.5, 0.0, -1.6), (DVec3::Y, 1.0));
+        let found = align(scene, &start);
+        let pose = found.report.pose.unwrap();
+        assert!(
+            pose.is_applied && (pose.size_ratio - 1.0).abs() < 1e-6,
+            "{pose:?}"
+        );
+        assert!(off_mm(&found)[0] < 0.3, "{:?}", off_mm(&found));
+    }
+}
+
 #[test]
 fn receivers_that_are_a_guess_are_laid_under_the_toy() {
     let recorded = SESSION.0.receivers[0].world_from_plane;
