@@ -102,6 +102,16 @@ fn a_picture_out_of_focus_is_told_by_its_texture_and_its_outline() {
     }
 }
 
+/// A toy that is not where its outline is has no blur that could be measured there.
+#[test]
+fn a_wrong_pose_is_no_blur() {
+    let (scene, input) = spread_session(None, None);
+    let aside = glam::DMat4::from_translation(4e-3 * glam::DVec3::X) * input.world_from_object;
+    let sharpness = as_given(&(scene, input.with_world_from_object(aside)));
+    assert_eq!(sharpness.outline_spread, sharpness.plate_spread);
+    assert!(sharpness.plate_spread.widest_px() < 0.3, "{sharpness:?}");
+}
+
 /// Softness of a shadow by the lens is none of its light: a bulb is found in its own size.
 #[test]
 fn a_light_is_no_larger_out_of_focus() {

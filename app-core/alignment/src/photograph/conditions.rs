@@ -2,7 +2,7 @@
 
 use glam::DMat4;
 
-use super::Photograph;
+use super::{MOST_OUTLINE_PX, Photograph};
 use crate::found_planes::FoundReceiver;
 use crate::lights::FoundReflection;
 use crate::measured_points::MeasuredPoints;
@@ -195,8 +195,10 @@ impl Photograph {
         world_from_object: &DMat4,
     ) -> Result<Sharpness, ToyError> {
         let start = self.start(scene, *world_from_object)?;
-        let outline_px = pose::spread_px(start.subject(), &self.pyramid);
-        let outline_px = outline_px.map(|px| px * self.pyramid.picture_px());
+        let picture_px = self.pyramid.picture_px();
+        let most_px = MOST_OUTLINE_PX / picture_px;
+        let outline_px = pose::spread_px(start.subject(), &self.pyramid, most_px);
+        let outline_px = outline_px.map(|px| px * picture_px);
         self.sharpness(scene, world_from_object, outline_px)
     }
 

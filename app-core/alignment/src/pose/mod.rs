@@ -221,13 +221,14 @@ pub(super) fn tried(shape: &Shape, pyramid: &Pyramid, start: Start) -> Option<(D
 }
 
 /// Standard deviation of the camera's blur of the outline of a toy in its place, in pixels of the
-/// largest level; `None` if too little of the outline is visible.
-pub(super) fn spread_px(subject: Subject<'_>, pyramid: &Pyramid) -> Option<f64> {
+/// largest level; `None` if too little of the outline is visible, or if it is more than `most_px`
+/// from the picture's, which looks like a blur.
+pub(super) fn spread_px(subject: Subject<'_>, pyramid: &Pyramid, most_px: f64) -> Option<f64> {
     let shape = subject.shape;
     let mut search = Search::new(shape, pyramid, &PoseUncertainty::default());
     let placement = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
-    search.fit(&placement)?;
-    Some(search.spread_px(subject.paint, &placement))
+    let fit = search.fit(&placement)?;
+    (fit.outline_px() <= most_px).then(|| search.spread_px(subject.paint, &placement))
 }
 
 /// The pixels of a level that a shape covers.
