@@ -2,11 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::DMat4;
-
 use super::Aligner;
 use super::kept_lights::KeptLights;
-use super::lights::{Joined, View, joined};
+use super::lights::{Joined, joined};
 use super::photograph::{MOST_OUTLINE_PX, Photograph, apart};
 use super::rigid_motion::Matrix6;
 use super::view::Seen;
@@ -51,15 +49,20 @@ impl Aligner {
         let looked_at = freed.as_ref().unwrap_or(&*seen);
         let clear = self.things.as_ref().map(|things| looked_at.clear_of(things));
         let photograph = &clear.as_ref().unwrap_or(looked_at).photograph;
-        let Some((world_from_object, joined)) =
-            photograph.joined(&self.scene, &seen.input, (lights.in_use(), &covariance))?
+        let known = (lights.in_use(), &covariance);
+        let Some(Joined {
+            motion,
+            lights: found,
+        }) = photograph.joined(&self.scene, &seen.input, known)?
         else {
             return Ok(());
         };
-        if joined.iter().any(|light| light.check("lights").is_err()) {
+        if found.iter().any(|light| light.check("lights").is_err()) {
             return Ok(());
         }
-        lights.moved_to(joined);
+        let camera = seen.input.camera.world_from_camera;
+        let world_from_object = camera * motion * camera.inverse() * seen.input.world_from_object;
+        lights.moved_to(found.into());
         seen.view.world_from_object = world_from_object;
         seen.input.world_from_object = world_from_object;
         if let Some(report) = &mut seen.view.report {
@@ -72,20 +75,15 @@ impl Aligner {
 }
 
 impl Photograph {
-    /// Pose and lights by outline and shadows; `None` if the shadows show no better ones.
+    /// A step of pose and lights by outline and shadows; `None` if the shadows show none.
     fn joined(
         &self,
         scene: &Scene,
         input: &FrameInput,
         (lights, covariance): (&[Light], &Matrix6),
-    ) -> Result<Option<(DMat4, Arc<[Light]>)>, ToyError> {
+    ) -> Result<Option<Joined>, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let world_from_camera = &input.camera.world_from_camera;
-        let view: View<'_> = self.seen(&shape);
-        let found = joined(lights, view, covariance, world_from_camera);
-        Ok(found.map(|Joined { motion, lights }| {
-            let camera_from_object = self.camera_from_object(&input.world_from_object);
-            (*world_from_camera * motion * camera_from_object, lights.into())
-        }))
+        Ok(joined(lights, self.seen(&shape), covariance, world_from_camera))
     }
 }

@@ -227,11 +227,11 @@ fn a_toy_that_is_larger_than_its_model_is_found_larger_where_it_stands() {
 #[test]
 fn a_toy_that_is_given_on_one_foot_keeps_its_size_and_height() {
     for deg in [2.0_f64, 3.5] {
-        let foot = DMat4::from_translation(DVec3::new(0.025, 0.0, 0.0));
+        let foot = DMat4::from_translation(DVec3::new(0.0192, 0.0, 0.0));
         let inclined = foot * DMat4::from_axis_angle(DVec3::NEG_Z, deg.to_radians()) * foot.inverse();
         let mut scene = SESSION.0.clone();
         scene.receivers[0].world_from_plane = inclined * scene.receivers[0].world_from_plane;
-        let start = disturbed(Camera::Ideal, DVec3::new(2.5, 0.0, -1.6), (DVec3::Y, 1.0));
+        let start = disturbed(Camera::Ideal, DVec3::new(0.0, 0.0, -2.6), (DVec3::Y, 1.0));
         let found = align(scene, &start);
         let pose = found.report.pose.unwrap();
         assert!(
