@@ -242,6 +242,19 @@ fn a_toy_that_is_given_on_one_foot_keeps_its_size_and_height() {
     }
 }
 
+/// A soft outline says little about the distance. The poses of more lights than alignment uses are the outline's alone.
+#[test]
+fn the_shadow_says_how_far_away_a_toy_that_is_out_of_focus_is() {
+    let start = disturbed(Camera::Soft(2.0), DVec3::new(2.0, 0.0, -2.0), (DVec3::Y, 1.5));
+    let by_outline = align(SESSION.0.clone(), &start);
+    let with_shadow = align(SESSION.0.clone(), &start.with_lights(None));
+    let [by_outline_mm, with_shadow_mm] = [by_outline, with_shadow].map(|found| off_mm(&found)[0]);
+    assert!(
+        with_shadow_mm < 0.6 * by_outline_mm,
+        "{with_shadow_mm} mm, {by_outline_mm} mm by the outline alone"
+    );
+}
+
 #[test]
 fn receivers_that_are_a_guess_are_laid_under_the_toy() {
     let recorded = SESSION.0.receivers[0].world_from_plane;
