@@ -179,6 +179,20 @@ impl KeptLights {
         self.errors.is_some() || matches!(self.discovered, Some(Ok(_)))
     }
 
+    /// Whether these are lamps that explain the shadows of the latest view.
+    pub(super) fn do_explain(&self) -> bool {
+        let is_explained =
+            |latest: Watched| latest.shadows >= LEAST_SHADOWS && latest.unexplained <= MOST_UNEXPLAINED;
+        !self.is_assumed() && !self.is_long && self.latest.is_some_and(is_explained)
+    }
+
+    /// With these lights in place of estimates; a list that stays is not changed.
+    pub(super) fn moved_to(&mut self, lights: Arc<[Light]>) {
+        if self.applied.is_some() {
+            self.applied = Some(lights);
+        }
+    }
+
     /// Adds another view, and returns whether it needs other lights.
     pub(super) fn watch(&mut self, now: Watched) -> bool {
         if now.shadows < LEAST_SHADOWS {

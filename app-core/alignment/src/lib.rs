@@ -1,38 +1,36 @@
 //! Alignment: camera, toy and lights, corrected by the photograph.
 //!
-//! No tracker knows where a toy is to a tenth of a pixel, and no person where a lamp is to a tenth
-//! of a degree; both show in the picture at once. The **table** beside the toy gives the camera
-//! (`camera`), since plates show its texture. Frame against plate is the best segmentation there
-//! is: the **outline** of the toy gives its pose, and its feet stand on the table (`pose`); the
-//! outline of its **shadow**, a second view of the toy from the light, gives the light (`lights`).
-//! If the outline shows that the toy differs from its **model**, the model is displaced to match it
-//! (`adapted`). Both papers name misregistration as their largest error and leave it there.
+//! No tracker knows where a toy is to a tenth of a pixel, and no person where a lamp is to a tenth of a degree;
+//! both show in the picture at once. The **table** beside the toy gives the camera (`camera`), since plates show
+//! its texture. Frame against plate is the best segmentation there is: the **outline** of the toy gives its pose,
+//! and its feet stand on the table (`pose`); the outline of its **shadow**, a second view of the toy from the
+//! light, gives the light (`lights`). If the outline shows that the toy differs from its **model**, the model is
+//! displaced to match it (`adapted`). Both papers name misregistration as their largest error and leave it there.
 //!
 //! ```text
 //! frame, plates ─► camera ─► pyramid ─┐
 //! physical pose ─► shape ─────────────┴► pose ─► model ─► lights ─► things ─► Alignment
 //! ```
 //!
-//! If the receiver below the toy reflects it, the reflection is estimated as well, once per
-//! session, and removed for the shadows (`lights/reflection`).
+//! If the receiver below the toy reflects it, the reflection is estimated as well, once per session, and removed
+//! for the shadows (`lights/reflection`).
 //!
-//! The softness of the photograph, relative to its plate and at the toy's outline, is measured as
-//! well (`softness`), and so is its noise beside the plate's ([`Grain`](app_scene::grain::Grain)).
+//! The softness of the photograph, relative to its plate and at the toy's outline, is measured as well
+//! (`softness`), and so is its noise beside the plate's ([`Grain`](app_scene::grain::Grain)).
 //!
-//! On request, the **focal length** or the **scale** of the world is estimated first, from toy and
-//! shadow together (`ratio`), and before all else the distortion of the **lens**
-//! ([`Aligner::lens`]), which is removed from photographs.
+//! On request, the **focal length** or the **scale** of the world is estimated first, from toy and shadow
+//! together (`ratio`), and before all else the distortion of the **lens** ([`Aligner::lens`]), which is removed
+//! from photographs.
 //!
-//! Some quantities are fixed, since pictures do not constrain them separately: the first plate's
-//! camera, to which all others are relative, the principal point, and the receivers. All is solved
-//! in camera space, from numbers of 32 bits: the correction does not depend on the world's origin,
-//! except for the last bits. A correction is applied only if it explains the picture better by more
-//! than noise ([`Aligner::align`]).
+//! Some quantities are fixed, since pictures do not constrain them separately: the first plate's camera, to which
+//! all others are relative, the principal point, and the receivers. All is solved in camera space, from numbers
+//! of 32 bits: the correction does not depend on the world's origin, except for the last bits. A correction is
+//! applied only if it explains the picture better by more than noise ([`Aligner::align`]).
 //!
-//! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.5 to 1.3 s for a pose,
-//! once a view, and 1 to 7 s for the lights, once a session, growing with the number of triangles
-//! and lights. A camera takes about as long as a pose, once a view and once for each of the first
-//! 32 plates; unlisted lights 1 to 5 s, and a focal length 2 to 12 s more, once a session.
+//! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.5 to 1.3 s for a pose, once a view, and
+//! 1 to 7 s for the lights, once a session, growing with the number of triangles and lights. A camera takes about
+//! as long as a pose, once a view and once for each of the first 32 plates; unlisted lights 1 to 5 s, and a focal
+//! length 2 to 12 s more, once a session.
 
 #![forbid(unsafe_code)]
 
@@ -45,6 +43,7 @@ mod found;
 mod found_planes;
 mod gloss;
 mod hand;
+mod joint_pose;
 mod kept_lights;
 mod kept_reflection;
 mod light_search;
@@ -272,10 +271,7 @@ impl Aligner {
         };
         let seen = self.with_adapted_model(seen)?;
         let seen = self.on_placed_receivers(seen, input)?;
-        self.lights = Some(match kept {
-            Some(kept) if self.are_shadows_withheld => kept,
-            kept => self.look_at_lights(kept, given, &seen)?,
-        });
+        let seen = self.with_lights(seen, kept, given)?;
         if seen.view.is_trusted(MOST_OUTLINE_PX) {
             self.held = Some(seen.view.world_from_object);
         }
@@ -404,6 +400,7 @@ impl Aligner {
                 camera_report,
                 world_from_object: found.world_from_object,
                 plate_spread_px: found.plate_spread_px,
+                covariance: found.covariance,
                 report: found.report,
                 grain: photograph.grain(sharpness.plate_spread),
                 sharpness,

@@ -10,6 +10,7 @@ use super::lights::{FoundLight, Hints, InitialLight, Relight, Watched};
 use super::picture::{Mask, Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
 use super::report::{AssumedLight, EstimatedLight, LightAlignment, PoseAlignment, PoseDeviation};
+use super::rigid_motion::Matrix6;
 use super::shape::Shape;
 use super::without_people::without_people;
 use super::{lights, pose};
@@ -197,6 +198,7 @@ impl Photograph {
             return FoundPose {
                 world_from_object: *start,
                 plate_spread_px: 0.0,
+                covariance: None,
                 report: None,
             };
         };
@@ -211,6 +213,7 @@ impl Photograph {
         FoundPose {
             world_from_object,
             plate_spread_px: found.plate_spread_px,
+            covariance: is_better.then_some(found.covariance),
             report: Some(PoseAlignment {
                 is_applied: world_from_object != input.world_from_object,
                 is_held: !is_better && *start != input.world_from_object,
@@ -390,7 +393,7 @@ impl PoseStart {
 }
 
 /// Difference of two poses: metres that a point of the object moves, and the angle in radians.
-fn apart(a: &DMat4, b: &DMat4, point: DVec3) -> (f64, f64) {
+pub(super) fn apart(a: &DMat4, b: &DMat4, point: DVec3) -> (f64, f64) {
     let moved_m = a.transform_point3(point).distance(b.transform_point3(point));
     let [a, b] = [a, b].map(|pose| pose.to_scale_rotation_translation().1);
     (moved_m, (b * a.inverse()).to_scaled_axis().length())
@@ -406,6 +409,8 @@ pub(super) struct FoundPose {
     /// The blur that makes the plate as soft as the photograph, in pixels of the largest level; 0
     /// if they are equally soft.
     pub(super) plate_spread_px: f64,
+    /// Covariance of a step of it in camera space; `None` if it was not estimated.
+    pub(super) covariance: Option<Matrix6>,
     /// `None` if too little of the outline is visible.
     pub(super) report: Option<PoseAlignment>,
 }

@@ -5,6 +5,7 @@ use glam::DMat4;
 use super::lights::FoundReflection;
 use super::photograph::Photograph;
 use super::report::{CameraAlignment, PoseAlignment};
+use super::rigid_motion::Matrix6;
 use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
 use app_scene::grain::Grain;
@@ -31,6 +32,8 @@ pub(super) struct AlignedView {
     pub(super) camera_report: Option<CameraAlignment>,
     pub(super) world_from_object: DMat4,
     pub(super) plate_spread_px: f64,
+    /// Covariance of the pose by its outline; `None` if it is not an estimate.
+    pub(super) covariance: Option<Matrix6>,
     pub(super) report: Option<PoseAlignment>,
     pub(super) sharpness: Sharpness,
     pub(super) grain: Option<Grain>,

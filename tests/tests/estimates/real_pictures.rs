@@ -222,6 +222,39 @@ fn a_toy_that_is_larger_than_its_model_is_found_larger_where_it_stands() {
     assert!(off_mm(&found)[0] < 0.3, "{:?}", off_mm(&found));
 }
 
+/// The table is inclined about one foot, so that the others are given in the air or below it. A smaller toy on its plane
+/// looks like a higher one.
+#[test]
+fn a_toy_that_is_given_on_one_foot_keeps_its_size_and_height() {
+    for deg in [2.0_f64, 3.5] {
+        let foot = DMat4::from_translation(DVec3::new(0.0192, 0.0, 0.0));
+        let inclined = foot * DMat4::from_axis_angle(DVec3::NEG_Z, deg.to_radians()) * foot.inverse();
+        let mut scene = SESSION.0.clone();
+        scene.receivers[0].world_from_plane = inclined * scene.receivers[0].world_from_plane;
+        let start = disturbed(Camera::Ideal, DVec3::new(0.0, 0.0, -2.6), (DVec3::Y, 1.0));
+        let found = align(scene, &start);
+        let pose = found.report.pose.unwrap();
+        assert!(
+            pose.is_applied && (pose.size_ratio - 1.0).abs() < 1e-6,
+            "{pose:?}"
+        );
+        assert!(off_mm(&found)[0] < 0.3, "{:?}", off_mm(&found));
+    }
+}
+
+/// A soft outline says little about the distance. The poses of more lights than alignment uses are the outline's alone.
+#[test]
+fn the_shadow_says_how_far_away_a_toy_that_is_out_of_focus_is() {
+    let start = disturbed(Camera::Soft(2.0), DVec3::new(2.0, 0.0, -2.0), (DVec3::Y, 1.5));
+    let by_outline = align(SESSION.0.clone(), &start);
+    let with_shadow = align(SESSION.0.clone(), &start.with_lights(None));
+    let [by_outline_mm, with_shadow_mm] = [by_outline, with_shadow].map(|found| off_mm(&found)[0]);
+    assert!(
+        with_shadow_mm < 0.6 * by_outline_mm,
+        "{with_shadow_mm} mm, {by_outline_mm} mm by the outline alone"
+    );
+}
+
 #[test]
 fn receivers_that_are_a_guess_are_laid_under_the_toy() {
     let recorded = SESSION.0.receivers[0].world_from_plane;

@@ -121,7 +121,7 @@ impl Shadows<'_> {
         let shaded = self.shaded(&taken);
         let (observations, blocks) = self.observations(&shaded, &changes, robust);
         let solved: Vec<DMatrix<f64>> = blocks.into_iter().map(Block::solved).collect();
-        let tile_px = (TILE * self.px_per_rad).max(LEAST_TILE_PX);
+        let tile_px = tile_px(self.px_per_rad);
         let n_columns = changes.n_columns();
         let mut normal = DMatrix::<f64>::zeros(n_columns, n_columns);
         let mut tiles: BTreeMap<[i32; 2], DVector<f64>> = BTreeMap::new();
@@ -218,6 +218,11 @@ impl Shadows<'_> {
             })
             .collect()
     }
+}
+
+/// Side of the parts of a picture whose errors are alike, in pixels.
+pub(super) fn tile_px(px_per_rad: f64) -> f64 {
+    (TILE * px_per_rad).max(LEAST_TILE_PX)
 }
 
 /// Covariance of the first `n_parts` columns: that of the tiles' scores, and that of one standard

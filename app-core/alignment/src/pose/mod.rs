@@ -127,6 +127,8 @@ pub(super) struct Found {
     pub(super) evidence: f64,
     /// Standard deviation of the estimate.
     pub(super) deviation: PoseDeviation,
+    /// Covariance of a further step of the motion, by the scatter alone.
+    pub(super) covariance: Matrix6,
     /// Distance of the model's outline along some centimetres, in pixels.
     pub(super) model_px: f64,
     /// Correlation of the model's texture with the picture's; `None` without a texture, or if the

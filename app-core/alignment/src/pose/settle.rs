@@ -176,9 +176,22 @@ impl<'a> Balance<'a> {
 
     /// Standard deviation of the placement, whose outline has the given root mean square distance
     /// in pixels: by the scatter of residuals between parts of the picture, and by the misfit.
+    pub(super) fn deviation(&self, misfit_px: f64, depth_m: f64) -> PoseDeviation {
+        let covariance = self.covariance();
+        let root = |index: usize| OF_BLOCKS * covariance[(index, index)].max(0.0).sqrt();
+        let floor_m = OF_MISFIT * misfit_px * depth_m / self.known.k.fx_px;
+        PoseDeviation {
+            lateral_m: root(3).hypot(root(4)).hypot(floor_m),
+            depth_m: root(5).hypot(floor_m),
+            rotation_rad: OF_TURN * root(0).hypot(root(1)).hypot(root(2)).hypot(floor_m)
+                / self.known.radius_m,
+        }
+    }
+
+    /// Covariance of a step by the scatter of residuals between parts of the picture.
     ///
     /// Source: the sandwich of White 1982, clustered.
-    pub(super) fn deviation(&self, misfit_px: f64, depth_m: f64) -> PoseDeviation {
+    pub(super) fn covariance(&self) -> Information {
         let mut blocks: BTreeMap<[i32; 2], Unknowns> = BTreeMap::new();
         for one in &self.rows {
             let pull = blocks.entry(one.block.to_array()).or_insert_with(Unknowns::zeros);
@@ -192,15 +205,7 @@ impl<'a> Balance<'a> {
             .information
             .try_inverse()
             .unwrap_or_else(Information::identity);
-        let covariance = inverse * pulls * inverse;
-        let root = |index: usize| OF_BLOCKS * covariance[(index, index)].max(0.0).sqrt();
-        let floor_m = OF_MISFIT * misfit_px * depth_m / self.known.k.fx_px;
-        PoseDeviation {
-            lateral_m: root(3).hypot(root(4)).hypot(floor_m),
-            depth_m: root(5).hypot(floor_m),
-            rotation_rad: OF_TURN * root(0).hypot(root(1)).hypot(root(2)).hypot(floor_m)
-                / self.known.radius_m,
-        }
+        inverse * pulls * inverse
     }
 }
 

@@ -72,12 +72,46 @@ impl Standing {
         })
     }
 
+    /// For a toy that would topple by its box, such as one on a thin leg: its lowest point on the plane, and those that
+    /// would be lowest if it were inclined to any side as high above as they are given; `None` without points.
+    pub(super) fn on_lowest(shape: &Shape, plane: Plane) -> Option<Self> {
+        let (across, along) = plane.normal.any_orthonormal_pair();
+        let lowest = |normal: DVec3| {
+            let height = |point: &DVec3| normal.dot(*point - shape.centre);
+            let points = shape.points.iter().copied();
+            points.min_by(|a, b| height(a).total_cmp(&height(b)))
+        };
+        let lowest_m = plane.height_m(lowest(plane.normal)?);
+        let [a, b, c] = [0.0_f64, 1.0, 2.0].map(|third| {
+            let (sine, cosine) = (third * std::f64::consts::TAU / 3.0).sin_cos();
+            lowest(plane.normal - MOST_LEAN_RAD * (cosine * across + sine * along))
+        });
+        let points = [a?, b?, c?];
+        Some(Self {
+            plane,
+            points,
+            heights_m: points.map(|point| plane.height_m(point) - lowest_m),
+        })
+    }
+
     /// With the same points at their given heights.
     pub(super) fn as_given(&self) -> Self {
         Self {
             heights_m: self.points.map(|point| self.plane.height_m(point)),
             ..*self
         }
+    }
+
+    /// Given height of the lowest point, in metres.
+    pub(super) fn lowest_m(&self) -> f64 {
+        let heights_m = self.points.map(|point| self.plane.height_m(point));
+        heights_m.into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Given distance of the nearest point from the plane, in metres.
+    pub(super) fn nearest_m(&self) -> f64 {
+        let heights_m = self.points.map(|point| self.plane.height_m(point).abs());
+        heights_m.into_iter().fold(f64::INFINITY, f64::min)
     }
 
     /// Logarithm of the likelihood ratio of the feet's heights after and before a motion.

@@ -1,0 +1,89 @@
+//! The pose by outline and shadows together, once the lights are found.
+
+use std::sync::Arc;
+
+use super::Aligner;
+use super::kept_lights::KeptLights;
+use super::lights::{Joined, joined};
+use super::photograph::{MOST_OUTLINE_PX, Photograph, apart};
+use super::rigid_motion::Matrix6;
+use super::view::Seen;
+use app_scene::frame::FrameInput;
+use app_scene::scene::{Light, PoseUncertainty, Scene};
+use app_scene::toy::ToyError;
+
+impl Aligner {
+    /// Finds or watches the lights of a view; in the first one they correct the toy's pose.
+    pub(super) fn with_lights(
+        &mut self,
+        mut seen: Seen,
+        kept: Option<KeptLights>,
+        given: Arc<[Light]>,
+    ) -> Result<Seen, ToyError> {
+        let is_first = kept.is_none();
+        let mut lights = match kept {
+            Some(kept) if self.are_shadows_withheld => kept,
+            kept => self.look_at_lights(kept, given, &seen)?,
+        };
+        if is_first {
+            self.join_shadow(&mut seen, &mut lights)?;
+        }
+        self.lights = Some(lights);
+        Ok(seen)
+    }
+
+    /// Moves the toy and the lights of a view by what the shadows show, if the outline has moved the toy and the lights
+    /// explain the shadows.
+    ///
+    /// Measured: a toy that is out of focus by 2 px was .39 mm off along the view, which its light took on; the
+    /// shadow's error, low-passed, fell from 1.3 times the exact pose's to 1.1.
+    fn join_shadow(&self, seen: &mut Seen, lights: &mut KeptLights) -> Result<(), ToyError> {
+        let Some(covariance) = seen.view.covariance else {
+            return Ok(());
+        };
+        let is_open = self.scene.uncertainty.toy == PoseUncertainty::default();
+        if !is_open || !seen.view.is_trusted(MOST_OUTLINE_PX) || !lights.do_explain() {
+            return Ok(());
+        }
+        let freed = self.reflection.removed_from(&self.scene, seen)?;
+        let looked_at = freed.as_ref().unwrap_or(&*seen);
+        let clear = self.things.as_ref().map(|things| looked_at.clear_of(things));
+        let photograph = &clear.as_ref().unwrap_or(looked_at).photograph;
+        let known = (lights.in_use(), &covariance);
+        let Some(Joined {
+            motion,
+            lights: found,
+        }) = photograph.joined(&self.scene, &seen.input, known)?
+        else {
+            return Ok(());
+        };
+        if found.iter().any(|light| light.check("lights").is_err()) {
+            return Ok(());
+        }
+        let camera = seen.input.camera.world_from_camera;
+        let world_from_object = camera * motion * camera.inverse() * seen.input.world_from_object;
+        lights.moved_to(found.into());
+        seen.view.world_from_object = world_from_object;
+        seen.input.world_from_object = world_from_object;
+        if let Some(report) = &mut seen.view.report {
+            let middle = self.scene.toy.bounds_of_pose(&self.scene.physical_pose)?;
+            let middle = 0.5 * (middle.min + middle.max).as_dvec3();
+            (report.moved_m, report.turned_rad) = apart(&seen.view.given, &world_from_object, middle);
+        }
+        Ok(())
+    }
+}
+
+impl Photograph {
+    /// A step of pose and lights by outline and shadows; `None` if the shadows show none.
+    fn joined(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        (lights, covariance): (&[Light], &Matrix6),
+    ) -> Result<Option<Joined>, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let world_from_camera = &input.camera.world_from_camera;
+        Ok(joined(lights, self.seen(&shape), covariance, world_from_camera))
+    }
+}

@@ -1,0 +1,273 @@
+//! The toy's pose and the lights, estimated together from the outline's pose and the shadows.
+//!
+//! A shadow is a second view of the toy, from the light. The step of pose and lamps that explains the shadows best is
+//! solved with the outline's pose as prior knowledge, and the light's factors eliminated. Errors of the light model are
+//! alike over parts of the picture, so that the shadows count as little as the scatter between these says.
+
+use std::collections::BTreeMap;
+
+use glam::DMat4;
+use nalgebra::{DMatrix, DVector, SMatrix};
+
+use super::follow::View;
+use super::lamp::{Lamp, N_PARTS};
+use super::prior::Prior;
+use super::shading::{FIRST_LAMP, Factors, N_FACTORS, PRIOR, Shaded, Shading};
+use super::shadows::{LEAST_PIXELS, ROBUST_NEAR, Shadows};
+use super::step::Slope;
+use super::uncertainty::tile_px;
+use crate::raster::Rasterizer;
+use crate::rigid_motion::{Matrix6, RigidMotion, Vector6};
+use crate::shape::Shape;
+use app_scene::scene::Light;
+
+/// Number of the pose's parameters.
+const N_POSE: usize = 6;
+/// The level that is compared: the last of the search for lights.
+const LEVEL: usize = 1;
+/// Length of differences, in pixels, and as a fraction of the penumbra.
+const LEAST_PX: f64 = 0.5;
+const OF_PENUMBRA: f64 = 0.15;
+/// Largest step in standard deviations of the outline's pose by its scatter, which is two and a half times too small.
+const MOST_DEVIATIONS: f64 = 7.5;
+
+/// A step of the toy, and the lights after it.
+pub(crate) struct Joined {
+    /// From camera space to camera space.
+    pub(crate) motion: DMat4,
+    pub(crate) lights: Vec<Light>,
+}
+
+/// The step of pose and lights that explains the shadows better, if the outline's pose has the given covariance of
+/// steps; `None` if there is none.
+pub(crate) fn joined(
+    lights: &[Light],
+    view: View<'_>,
+    covariance: &Matrix6,
+    world_from_camera: &DMat4,
+) -> Option<Joined> {
+    let shape = view.shape;
+    let of_outline = covariance.try_inverse()?;
+    let camera_from_world = world_from_camera.inverse();
+    let lamps = lights.iter();
+    let lamps = lamps.map(|light| Lamp::new(light, &camera_from_world, shape.centre));
+    let lamps = lamps.collect::<Option<Vec<Lamp>>>()?;
+    let mut raster = Rasterizer::default();
+    let level = view.pyramid.level(LEVEL);
+    let mut shadows = Shadows::new(&mut raster, (shape, view.receivers), level, Some(&lamps));
+    if lamps.is_empty() || !shadows.has_plate || shadows.pixels.len() < LEAST_PIXELS {
+        return None;
+    }
+    let shading = shadows.shading(&mut raster, &lamps, ROBUST_NEAR);
+    shadows.light(&lamps, &shading);
+    let taken = shadows.taken_of_all(&mut raster, &lamps);
+    let shading = shadows.shaded(&taken).fit(view.receivers.len(), ROBUST_NEAR);
+    let columns = shadows.columns(&mut raster, &lamps);
+    let system = shadows.system((&taken, &columns), &shading);
+    let step = system.step(&of_outline)?;
+    let of_pose = Vector6::from_iterator(step.rows(system.n_lamp_columns(), N_POSE).iter().copied());
+    if (of_outline * of_pose).dot(&of_pose) > MOST_DEVIATIONS * MOST_DEVIATIONS {
+        return None;
+    }
+    let moved: Vec<Lamp> = lamps
+        .iter()
+        .enumerate()
+        .map(|(index, lamp)| lamp.moved(&std::array::from_fn(|part| step[N_PARTS * index + part])))
+        .collect();
+    let there = shadows.taken_of_shape(&mut raster, &stepped(shape, &of_pose), &moved);
+    let after = shadows.shaded(&there).fit(view.receivers.len(), ROBUST_NEAR);
+    (after.loss < shading.loss).then(|| Joined {
+        motion: motion(shape, &of_pose).matrix(),
+        lights: moved
+            .iter()
+            .map(|lamp| lamp.light(world_from_camera, shape.centre))
+            .collect(),
+    })
+}
+
+fn motion(shape: &Shape, step: &Vector6) -> RigidMotion {
+    RigidMotion::none(shape.centre, shape.radius_m).then(step)
+}
+
+/// The toy after a step; lamps stay relative to its former centre.
+fn stepped(shape: &Shape, step: &Vector6) -> Shape {
+    let motion = motion(shape, step);
+    Shape {
+        points: shape.points.iter().map(|point| motion.apply(*point)).collect(),
+        ..shape.clone()
+    }
+}
+
+/// Derivatives of each lamp's blocked light by one parameter; `None` for a lamp that it does not change.
+type Column = Vec<Slope>;
+
+/// The shadows' equations for lamps and pose, without the factors of the light.
+struct System {
+    normal: DMatrix<f64>,
+    side: DVector<f64>,
+    /// Weighted residuals of each part of the picture.
+    scores: Vec<DVector<f64>>,
+}
+
+impl System {
+    fn n_lamp_columns(&self) -> usize {
+        self.side.len() - N_POSE
+    }
+
+    /// The step of lamps and pose, with the outline's information about the pose; `None` if it is unconstrained.
+    fn step(&self, of_outline: &Matrix6) -> Option<DVector<f64>> {
+        let first = self.n_lamp_columns();
+        let mut of_lamps = self.normal.view((0, 0), (first, first)).into_owned();
+        for part in 0..first {
+            // A parameter that the picture does not show stays.
+            if of_lamps[(part, part)] <= 0.0 {
+                of_lamps[(part, part)] = 1.0;
+            }
+        }
+        let of_lamps = of_lamps.cholesky()?;
+        // How the lamps follow the pose, and what is left of the pose's equations.
+        let followed = of_lamps.solve(&self.normal.view((0, first), (first, N_POSE)));
+        let mixed = self.normal.view((first, 0), (N_POSE, first));
+        let rest = self.normal.view((first, first), (N_POSE, N_POSE)) - mixed * &followed;
+        let own = |all: &DVector<f64>| all.rows(first, N_POSE) - followed.tr_mul(&all.rows(0, first));
+        let scatter = self
+            .scores
+            .iter()
+            .fold(DMatrix::zeros(N_POSE, N_POSE), |sum, score| {
+                let own = own(score);
+                sum + &own * own.transpose()
+            });
+        let rest = Matrix6::from_iterator(rest.iter().copied());
+        let scatter = Matrix6::from_iterator(scatter.iter().copied());
+        let alike = (rest.cholesky()?.solve(&scatter).trace() / N_POSE as f64).max(1.0);
+        let side = Vector6::from_iterator(own(&self.side).iter().copied()) / alike;
+        let of_pose = (of_outline + rest / alike).cholesky()?.solve(&side);
+        let of_pose = DVector::from_column_slice(of_pose.as_slice());
+        let lamps = of_lamps.solve(&self.side.rows(0, first)) - followed * &of_pose;
+        Some(DVector::from_iterator(
+            self.side.len(),
+            lamps.iter().chain(of_pose.iter()).copied(),
+        ))
+    }
+}
+
+impl Shadows<'_> {
+    /// The columns of all lamps, then those of the pose.
+    fn columns(&self, raster: &mut Rasterizer, lamps: &[Lamp]) -> Vec<Column> {
+        let shape = self.caster.shape;
+        let mut columns = Vec::new();
+        for (index, lamp) in lamps.iter().enumerate() {
+            let prior = Prior::free(lamp, shape.radius_m);
+            for slope in self.slopes(raster, (lamp, None), &prior) {
+                let mut column: Column = vec![None; lamps.len()];
+                column[index] = slope;
+                columns.push(column);
+            }
+        }
+        let widest_px = lamps
+            .iter()
+            .map(|lamp| self.penumbra_px(lamp))
+            .fold(0.0, f64::max);
+        let by_m = (OF_PENUMBRA * widest_px).max(LEAST_PX) / self.px_per_rad * shape.radius_m;
+        for part in 0..N_POSE {
+            let mut there = |by_m: f64| {
+                let mut step = Vector6::zeros();
+                step[part] = by_m;
+                self.taken_of_shape(raster, &stepped(shape, &step), lamps)
+            };
+            let (more, less) = (there(by_m), there(-by_m));
+            let column = more.iter().zip(&less).map(|(more, less)| {
+                #[allow(clippy::cast_possible_truncation, reason = "a slope, to 7 digits")]
+                let slope = |(more, less): (&f32, &f32)| (f64::from(more - less) / (2.0 * by_m)) as f32;
+                Some(more.iter().zip(less).map(slope).collect())
+            });
+            columns.push(column.collect());
+        }
+        columns
+    }
+
+    fn system(&self, (taken, columns): (&[Vec<f32>], &[Column]), shading: &Shading) -> System {
+        let n = columns.len();
+        let shaded = self.shaded(taken);
+        let mut blocks = vec![(square(PRIOR), DMatrix::zeros(N_FACTORS, n)); 3 * shading.factors.len()];
+        self.each(&shaded, columns, shading, |one| {
+            let (normal, mixed) = &mut blocks[one.block];
+            *normal += one.weight * one.factors * one.factors.transpose();
+            mixed.ger(one.weight, &one.factors, &one.row, 1.0);
+        });
+        let solved = blocks.into_iter().map(|(normal, mixed)| match normal.cholesky() {
+            Some(factor) => factor.solve(&mixed),
+            None => DMatrix::zeros(N_FACTORS, n),
+        });
+        let solved: Vec<DMatrix<f64>> = solved.collect();
+        let (mut normal, mut side) = (DMatrix::zeros(n, n), DVector::zeros(n));
+        let mut scores: BTreeMap<[i32; 2], DVector<f64>> = BTreeMap::new();
+        let tile_px = tile_px(self.px_per_rad);
+        self.each(&shaded, columns, shading, |one| {
+            let own = &one.row - solved[one.block].tr_mul(&one.factors);
+            normal.ger(one.weight, &own, &own, 1.0);
+            side.axpy(one.weight * one.residual, &own, 1.0);
+            let at = self.pixels[one.pixel].at.as_dvec2();
+            let score = scores.entry((at / tile_px).floor().as_ivec2().to_array());
+            let score = score.or_insert_with(|| DVector::zeros(n));
+            score.axpy(one.weight * one.residual, &own, 1.0);
+        });
+        System {
+            normal,
+            side,
+            scores: scores.into_values().collect(),
+        }
+    }
+
+    fn each(
+        &self,
+        shaded: &Shaded<'_>,
+        columns: &[Column],
+        shading: &Shading,
+        mut visit: impl FnMut(&Observation),
+    ) {
+        let mut row = DVector::zeros(columns.len());
+        for (pixel, seen) in self.pixels.iter().enumerate() {
+            let taken = shaded.columns(pixel);
+            for channel in 0..3 {
+                let factors = &shading.factors[seen.receiver][channel];
+                let Some(one) = shaded.residual((pixel, channel), &taken, factors, ROBUST_NEAR) else {
+                    continue;
+                };
+                let plate = f64::from(seen.plate[channel]);
+                for (value, column) in row.iter_mut().zip(columns) {
+                    let slopes = column.iter().enumerate();
+                    let slopes = slopes.filter_map(|(lamp, slope)| Some((lamp, slope.as_ref()?[pixel])));
+                    *value = slopes
+                        .map(|(lamp, slope)| -plate * factors[FIRST_LAMP + lamp] * f64::from(slope))
+                        .sum();
+                }
+                visit(&Observation {
+                    block: 3 * seen.receiver + channel,
+                    pixel,
+                    factors: one.row,
+                    row: row.clone(),
+                    weight: one.weight,
+                    residual: one.residual,
+                });
+            }
+        }
+    }
+}
+
+/// One channel of a pixel.
+struct Observation {
+    /// Index of its receiver and channel.
+    block: usize,
+    pixel: usize,
+    /// Its derivatives by the factors of the light.
+    factors: Factors,
+    /// By lamps and pose.
+    row: DVector<f64>,
+    weight: f64,
+    residual: f64,
+}
+
+fn square(diagonal: f64) -> SMatrix<f64, N_FACTORS, N_FACTORS> {
+    SMatrix::identity() * diagonal
+}
