@@ -206,7 +206,7 @@ fn write_frames(
 ) -> anyhow::Result<()> {
     let known: HashSet<&str> = paths.iter().map(String::as_str).collect();
     let mut pictures = Numbered::default();
-    let mut numbered_maps = [Numbered::default(), Numbered::default()];
+    let mut numbered_maps = Maps::<()>::default().in_order().map(|_| Numbered::default());
     let mut notes = notes.iter().peekable();
     for (entry, text) in entries {
         let time_ns = time_ns(entry.time);
@@ -217,7 +217,7 @@ fn write_frames(
         // A folder may lack one, and is converted all the same.
         let paths = entry.maps().in_order();
         let paths = paths.map(|path| path.filter(|path| known.contains(path)));
-        let mut maps = [None; 2];
+        let mut maps = Maps::default().in_order();
         for ((map, path), numbered) in maps.iter_mut().zip(paths).zip(&mut numbered_maps) {
             *map = path.map(|path| numbered.picture(session, path)).transpose()?;
         }

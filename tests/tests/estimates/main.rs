@@ -8,6 +8,7 @@ mod discovery;
 mod focal_length;
 mod from_photographs;
 mod gloss;
+mod grain;
 mod lens_found;
 mod model;
 mod moved_lights;

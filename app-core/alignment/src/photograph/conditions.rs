@@ -149,12 +149,12 @@ impl Photograph {
         Ok(Sighted {
             planes: planes.collect(),
             memory,
-            things: Things::new(found.size_px.as_uvec2(), found.marks, camera).and_then(|things| {
+            things: Things::new(found.size_px.as_uvec2(), found.marks, camera).map(|things| {
                 if found.raised.is_empty() {
-                    Some(things)
-                } else {
-                    things.with_raised(found.raised)
+                    return things;
                 }
+                // The marks are known without points, too.
+                things.clone().with_raised(found.raised).unwrap_or(things)
             }),
         })
     }

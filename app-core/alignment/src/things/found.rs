@@ -12,7 +12,7 @@ use crate::picture::{Color, Mask, places};
 use app_scene::things::{Mark, Things};
 
 /// Things in a level.
-pub(super) struct Found {
+pub(super) struct Found<'a> {
     /// Planes of things, if they are wanted.
     pub(super) planes: Vec<FoundPlane>,
     /// Things that plate and frame show.
@@ -26,18 +26,18 @@ pub(super) struct Found {
     /// The wrong part of the plate.
     pub(super) wrong: Option<Mask>,
     /// The light in the plate, if a shadow lies on it that the frame does not show.
-    pub(super) in_plate: Option<Brightness>,
+    pub(super) in_plate: Option<&'a Brightness>,
     /// The light on the parts of things that the toy hides.
     pub(super) on_things: Option<Brightness>,
     /// Things that the frame alone shows, such as a hand.
     pub(super) in_frame: Option<InFrame>,
     /// The comparison of the level's pixels.
-    pub(super) compared: Vec<Compared>,
+    pub(super) compared: &'a [Compared],
     /// The colours of the things that plate and frame show.
     pub(super) colored: Colored,
 }
 
-impl Found {
+impl Found<'_> {
     /// Whether nothing is marked, and no plane is found.
     pub(super) fn is_empty(&self) -> bool {
         let in_frame = self.in_frame.iter().flat_map(|found| &found.marks);
@@ -85,7 +85,12 @@ impl Found {
         }
     }
 
-    /// The thing that plate and frame show at a place in pixels of the level, without its shadow.
+    /// The thing that plate and frame show at a place in pixels of the level, with its shadow.
+    pub(super) fn thing_at(&self, place: DVec2) -> Option<usize> {
+        self.grown.as_ref()?.at(place)
+    }
+
+    /// The same without its shadow.
     pub(super) fn body_at(&self, place: DVec2) -> Option<usize> {
         let grown = self.grown.as_ref()?;
         let is_place = self.colored == Colored::Otherwise && grown.is_like_place(place);
@@ -109,7 +114,7 @@ impl Found {
         if wrong.is_some_and(|wrong| wrong.has(place.floor().as_ivec2())) {
             return Mark::WrongPlate;
         }
-        let left = self.in_plate.as_ref().and_then(|light| light.missing_at(place));
+        let left = self.in_plate.and_then(|light| light.missing_at(place));
         left.map_or(Mark::None, Mark::shaded_plate)
     }
 

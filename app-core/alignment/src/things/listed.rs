@@ -12,16 +12,20 @@ use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
 use crate::report::PlaneAlignment;
 
-/// Least cosine between a plane and the receiver on which the thing stands: an upright one is a wall.
-const STANDS: f64 = 0.85;
-/// Least height of its centre above the receiver, in metres.
-const LEAST_M: f64 = 0.004;
+/// Least cosine between the normals of a plane that is corrected and of the receiver: steeper ones
+/// also hide light and have shadows, but stay as they are listed.
+const LEAST_COSINE: f64 = 0.85;
+/// Least height in metres above the receiver: of a listed plane's centre, and of a level top with
+/// sides.
+pub(super) const LEAST_M: f64 = 0.004;
 /// Width in metres of the border that may not show the plane: listed ones are up to a centimetre too
 /// large.
 const BORDER_M: f64 = 0.01;
-/// Least pixels for a search of height and tilt.
+/// Least pixels for a search of height and tilt: with fewer, the least shadow of a tilted plane
+/// would be nearly all of them.
 const LEAST_PIXELS: usize = 300;
-/// Largest distance in metres between a listed plane and the true one, at its centre.
+/// Largest distance in metres between a listed plane and the true one, at its centre: further away
+/// it is another plane.
 const MOST_M: f64 = 0.006;
 
 /// The listed planes that are off, corrected.
@@ -38,7 +42,7 @@ fn corrected_plane(
 ) -> Option<FoundPlane> {
     let (table, listed) = (&place.receivers[GROUND], &place.receivers[index]);
     let table_from_listed = table.plane_from_camera * listed.plane_from_camera.inverse();
-    if table_from_listed.y_axis.y < STANDS || table_from_listed.w_axis.y < LEAST_M {
+    if table_from_listed.y_axis.y < LEAST_COSINE || table_from_listed.w_axis.y < LEAST_M {
         return None;
     }
     let by_shadow = by_shadow(place, (level, comparison), listed);
@@ -57,7 +61,7 @@ fn corrected_plane(
     Some(FoundPlane {
         plane: extent.plane(&plane_from_camera),
         instead_of: Some(index),
-        contrast: extent.contrast(level, &plane_from_camera),
+        contrast: 0.0,
         report: PlaneAlignment {
             height_m,
             tilt_rad: tilt.clamp(-1.0, 1.0).acos(),

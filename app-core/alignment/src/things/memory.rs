@@ -106,8 +106,7 @@ impl Memory {
         marks: Vec<Mark>,
     ) -> Vec<Mark> {
         let (known_px, known) = &self.marks;
-        let is_comparable = *known_px == size_px && self.frame.size_px == now.frame.size_px;
-        if !is_comparable || !self.place.is_like(&now.place, self.frame.size_px) {
+        if *known_px != size_px || !self.is_of_same_view(now) {
             return marks;
         }
         let has_changed = self.frame.changed(&now.frame);
@@ -132,9 +131,16 @@ impl Memory {
         steadied.collect()
     }
 
-    /// The points of things, if the marks have not changed.
-    pub(super) fn raised(&self, marks: &[Mark]) -> Option<&[RaisedPoint]> {
-        (self.marks.1 == marks).then_some(&self.raised)
+    /// The points of things, if neither the marks nor light, toy and camera have changed.
+    pub(super) fn raised(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> Option<&[RaisedPoint]> {
+        let (known_px, known) = &self.marks;
+        let is_same = *known_px == size_px && known == marks && self.is_of_same_view(now);
+        is_same.then_some(&self.raised)
+    }
+
+    /// Whether neither light, toy nor camera have changed.
+    fn is_of_same_view(&self, now: &Self) -> bool {
+        self.frame.size_px == now.frame.size_px && self.place.is_like(&now.place, self.frame.size_px)
     }
 
     /// With the marks of its picture's largest level, and the points of things.

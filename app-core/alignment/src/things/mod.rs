@@ -33,6 +33,7 @@ mod upright;
 mod wrong_plate;
 
 use std::borrow::Cow;
+use std::collections::HashSet;
 
 use glam::IVec2;
 
@@ -50,7 +51,7 @@ use found::Found;
 use grown::Grown;
 use known::Known;
 use memory::Place;
-use planes::{FoundPlane, clearer};
+use planes::{FoundPlane, is_clearer};
 pub(crate) use seeds::Colored;
 use seeds::{Seed, Seeds};
 use shade::Brightness;
@@ -88,7 +89,8 @@ pub(crate) fn find(sight: &Sight<'_>) -> (Option<Sighting>, Option<Memory>) {
     let found = |things| sight.found((&restored, &frame), &toy, things);
     let (sighting, memory) = sight.sighted(level, &frame, found(Colored::Otherwise));
     // A thing in the place's own colours counts if the toy's shadow on it shows that it stands up.
-    if sighting.is_none() && seeds::may_be_alike(&restored.compared.pixels) {
+    let may_stand = sight.lights.len() == 1 && seeds::may_be_alike(&restored.compared.pixels);
+    if sighting.is_none() && may_stand {
         let (alike, memory) = sight.sighted(level, &frame, found(Colored::Alike));
         if alike.as_ref().is_some_and(|alike| !alike.raised.is_empty()) {
             return (alike, Some(memory));
@@ -119,7 +121,7 @@ impl Sight<'_> {
     }
 
     /// The marks of a level's things; `None` if nothing is marked. And the memory for the next picture.
-    fn sighted(&self, level: &Level, frame: &Codes, found: Found) -> (Option<Sighting>, Memory) {
+    fn sighted(&self, level: &Level, frame: &Codes, found: Found<'_>) -> (Option<Sighting>, Memory) {
         let place = Place {
             intrinsics: level.intrinsics,
             world_from_camera: *self.world_from_camera,
@@ -138,8 +140,12 @@ impl Sight<'_> {
             }
             None => marks,
         };
-        let raised = self.raised(level, &found, (size_px, &marks));
+        let raised = self.raised(level, &found, (&memory, size_px, &marks));
         let memory = memory.with_marks(size_px, &marks, &raised);
+        let marks = match found.colored {
+            Colored::Otherwise => marks,
+            Colored::Alike => self.marks_of_standing(level, &found, (size_px, marks), &raised),
+        };
         let sighting = Sighting {
             size_px,
             marks,
@@ -150,7 +156,12 @@ impl Sight<'_> {
     }
 
     /// The things of a level, in these colours.
-    fn found(&self, (restored, frame): (&Restored<'_>, &Codes), toy: &Toy, things: Colored) -> Found {
+    fn found<'b>(
+        &self,
+        (restored, frame): (&'b Restored<'_>, &Codes),
+        toy: &Toy,
+        things: Colored,
+    ) -> Found<'b> {
         let Restored {
             level,
             plate,
@@ -172,7 +183,9 @@ impl Sight<'_> {
             toy.before(grown, (frame, plate), needed)
         });
         let alone = evidence.map_or(Vec::new(), |(grown, needed)| grown.alone(&needed));
-        let planes = self.planes_of.map_or(Vec::new(), |colored| {
+        // The search in doubtful colours is for things without planes.
+        let planes_of = self.planes_of.filter(|_| things == Colored::Otherwise);
+        let planes = planes_of.map_or(Vec::new(), |colored| {
             let alike = (grown.is_none() && colored == Colored::Alike)
                 .then(|| Grown::from(&seeds_of(colored), Seed::Thing, plate))
                 .flatten();
@@ -201,10 +214,10 @@ impl Sight<'_> {
             before,
             alone,
             wrong: wrong.map(|wrong| wrong_plate(&wrong, toy, size_px, &compared.pixels)),
-            in_plate: in_plate.clone(),
+            in_plate: in_plate.as_ref(),
             on_things,
             in_frame,
-            compared: compared.pixels.clone(),
+            compared: &compared.pixels,
             colored: things,
         }
     }
@@ -224,19 +237,28 @@ impl Sight<'_> {
             .map(|points| toy.beside(points, level))
             .collect();
         let shape = self.shape.merged_in_px(planes::CELL_PX, level);
+        let place = |are_things_of_points| planes::Place {
+            shape: &shape,
+            receivers: self.receivers,
+            points: &points,
+            are_things_of_points,
+        };
         let of = |things: Option<&Grown>, colored, are_things_of_points| {
-            let place = planes::Place {
-                shape: &shape,
-                receivers: self.receivers,
-                points: &points,
-                are_things_of_points,
-            };
-            sides::with_sides(&place, (level, things, colored), compared)
+            let place = place(are_things_of_points);
+            things.map_or(Vec::new(), |things| {
+                planes::find(&place, level, compared, (things, colored))
+            })
         };
         let standing = standing(shown, (&points, self.receivers), level, &compared.pixels);
-        let of_points = standing.map_or(Vec::new(), |things| of(Some(&things), Colored::Otherwise, true));
+        let of_points = of(standing.as_ref(), Colored::Otherwise, true);
+        let of_things = of(things, colored, false);
         // Points may be of a world that is a little off.
-        clearer([of_points, of(things, colored, false)])
+        let (planes, seen) = if standing.is_none() || is_clearer(&of_things, &of_points) {
+            (of_things, things.filter(|_| colored == Colored::Otherwise))
+        } else {
+            (of_points, standing.as_ref())
+        };
+        sides::with_sides(&place(false), (level, seen), compared, planes)
     }
 
     /// The evidence that each thing needs, over that of a picture by itself.
@@ -298,8 +320,30 @@ impl Sight<'_> {
             .collect()
     }
 
+    /// The marks without those of things of which none of the points is raised.
+    fn marks_of_standing(
+        &self,
+        level: &Level,
+        found: &Found<'_>,
+        (size_px, mut marks): (IVec2, Vec<Mark>),
+        raised: &[RaisedPoint],
+    ) -> Vec<Mark> {
+        let per_px = level.intrinsics.fx_px / self.pyramid.level(0).intrinsics.fx_px;
+        let thing_at = |at: IVec2| found.thing_at((at.as_dvec2() + 0.5) * per_px);
+        let of_points = places(size_px)
+            .zip(raised)
+            .filter(|(_, point)| point.height() > 0);
+        let standing: HashSet<usize> = of_points.filter_map(|(at, _)| thing_at(at)).collect();
+        for (at, mark) in places(size_px).zip(&mut marks) {
+            if thing_at(at).is_some_and(|thing| !standing.contains(&thing)) {
+                *mark = Mark::None;
+            }
+        }
+        marks
+    }
+
     /// Marks in the largest level.
-    fn marks(&self, level: &Level, found: &Found) -> (IVec2, Vec<Mark>) {
+    fn marks(&self, level: &Level, found: &Found<'_>) -> (IVec2, Vec<Mark>) {
         let largest = self.pyramid.level(0);
         let size_px = largest.frame.size_px;
         // A level omits an odd last row and column: it is half as large as the one above, not

@@ -84,18 +84,14 @@ pub(crate) struct FoundPlane {
     /// off.
     pub(crate) instead_of: Option<usize>,
     pub(crate) report: PlaneAlignment,
-    /// Contrast of its sides in the plate, in logarithms of light; 0 for an upright one.
+    /// Contrast of its sides in the plate, in logarithms of light; 0 for a listed or an upright one.
     pub(super) contrast: f64,
 }
 
-/// The planes of the first search, unless those of the second end at clearer edges.
-pub(super) fn clearer([first, second]: [Vec<FoundPlane>; 2]) -> Vec<FoundPlane> {
+/// Whether found planes end at clearer edges than others, or there are no others.
+pub(super) fn is_clearer(planes: &[FoundPlane], others: &[FoundPlane]) -> bool {
     let contrast = |planes: &[FoundPlane]| planes.iter().map(|found| found.contrast).fold(0.0, f64::max);
-    if contrast(&second) > contrast(&first) || first.is_empty() {
-        second
-    } else {
-        first
-    }
+    contrast(planes) > contrast(others) || (others.is_empty() && !planes.is_empty())
 }
 
 impl FoundPlane {
@@ -264,6 +260,10 @@ impl<'a> Search<'a> {
 
     /// The plane near a listed one that explains the shadow far better; `None` if there is none.
     pub(super) fn nearer(&self, raster: &mut Rasterizer, listed: &SeenReceiver) -> Option<Nearer> {
+        let (of_listed, of_others) = self.known_losses();
+        if of_others <= LEAST_LISTED {
+            return None;
+        }
         let table_from_plane = self.table.plane_from_camera * listed.plane_from_camera.inverse();
         let (normal, origin) = (
             table_from_plane.y_axis.truncate(),
@@ -277,8 +277,7 @@ impl<'a> Search<'a> {
         ];
         let [level, tilted] = starts.map(|heights| [(self.loss(raster, &heights), heights)]);
         let nearer = self.refined(raster, &level, &tilted)?;
-        let (of_listed, of_others) = self.known_losses();
-        let is_better = of_others > LEAST_LISTED && nearer.loss < OF_OTHERS * of_others;
+        let is_better = nearer.loss < OF_OTHERS * of_others;
         (is_better && self.is_shown(raster, &nearer)).then(|| Nearer {
             losses: [of_listed, nearer.loss],
             plane_from_camera: self.plane(&nearer.heights).plane_from_camera,

@@ -48,7 +48,8 @@ const LEAST_ALIKE: usize = 200;
 pub(crate) enum Colored {
     /// Beyond doubt: they alone show that there is a thing.
     Otherwise,
-    /// Not at all, perhaps: the thing is there if it has a plane.
+    /// Not at all, perhaps: the thing is there if it has a plane, or if the toy's shadow on it shows
+    /// that it stands up.
     Alike,
 }
 

@@ -8,9 +8,8 @@ use glam::{DMat4, DVec2, DVec3, IVec2};
 use super::extent::LEVEL;
 use super::grown::Grown;
 use super::inner::NOISIEST;
-use super::listed;
-use super::planes::{self, FoundPlane, GROUND, Place, Search};
-use super::seeds::Colored;
+use super::listed::{self, LEAST_M};
+use super::planes::{FoundPlane, GROUND, Place, Search};
 use crate::lights::{Compared, Comparison};
 use crate::picture::{Level, places};
 use crate::raster::Rasterizer;
@@ -18,8 +17,6 @@ use crate::receivers::{SeenReceiver, receiver_at};
 use crate::report::PlaneAlignment;
 use app_scene::scene::MAX_RECEIVERS;
 
-/// Least height of a level top above the receiver, in metres.
-const LEAST_M: f64 = 0.004;
 /// Largest distance in metres between a side and a receiver that it lies along.
 const ALONG_M: f64 = 0.012;
 /// Least pixels of a side in the level, and the least part of them that shows a thing: if fewer do,
@@ -40,21 +37,19 @@ struct Side {
     is_filled: bool,
 }
 
-/// Finds the planes of a level's things, and the sides of known level planes. Where a thing in the
-/// place's own colours ends is not seen, so the shadow has to prove its sides.
+/// Adds to a level's found planes the corrected listed ones, and the sides of level ones. `seen` are
+/// the things that the level shows. Where a thing in the place's own colours ends is not seen, so the
+/// shadow has to prove its sides.
 pub(super) fn with_sides(
     place: &Place<'_>,
-    (level, grown, colored): (&Level, Option<&Grown>, Colored),
+    (level, seen): (&Level, Option<&Grown>),
     comparison: &Comparison,
+    mut planes: Vec<FoundPlane>,
 ) -> Vec<FoundPlane> {
-    let mut planes = grown.map_or(Vec::new(), |grown| {
-        planes::find(place, level, comparison, (grown, colored))
-    });
     let listed = listed::corrected(place, level, comparison).into_iter();
     let is_known = |listed: &FoundPlane| planes.iter().any(|found| found.instead_of == listed.instead_of);
     let listed: Vec<FoundPlane> = listed.filter(|listed| !is_known(listed)).collect();
     planes.extend(listed);
-    let seen = grown.filter(|_| colored == Colored::Otherwise);
     let upright = upright(place, (level, seen), comparison, &planes);
     planes.extend(upright);
     planes

@@ -33,6 +33,7 @@ const LEAST_IN_FRAME: usize = 12;
 const LEAST_IN_FRAME_ALONE: usize = 400;
 /// Share of its possible pixels before the toy that must show it.
 const PART_BEFORE: f32 = 0.04;
+
 /// The toy in a level.
 pub(super) struct Toy {
     pub(super) coverage: Coverage,

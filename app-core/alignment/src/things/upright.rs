@@ -12,6 +12,7 @@ use glam::{DVec2, DVec3, IVec2, Vec3Swizzles};
 use super::codes::codes_of;
 use super::found::Found;
 use super::groups::cross;
+use super::memory::Memory;
 use super::sight::Sight;
 use crate::lights::Compared;
 use crate::median::median;
@@ -22,42 +23,47 @@ use app_scene::things::{Mark, RaisedPoint};
 
 /// Number of steps of a picture's width in which feet are looked for.
 const STEPS_A_WIDTH: i32 = 640;
-/// Steps between a thing's pixel and the next one of it below.
+/// Most steps without pixels of a thing between one of its pixels and the next one below it: marks
+/// have gaps of single pixels, and two things are further apart.
 const LARGEST_GAP: u32 = 3;
 /// Part of a thing's pixels that are in shadow, or on sides that no light reaches. With .1, .25 and
 /// .4 the shadow's RMS error is 1.89, 1.86 and 1.86 codes for a post, 6.55, 6.44 and 6.44 for a cup,
 /// and 4.54, 3.57 and 4.05 for a white mug on pale stone.
 const SHADED: f64 = 0.25;
-/// Least part of the light that a shadowed pixel of a thing loses, and the least number of such
-/// pixels of the level.
+/// Least part of the light that a shadowed pixel of a thing loses, so that noise and codes do not
+/// decide; and the least number of such pixels of the level, so that a corner of the shadow does not.
 const SHADOWED: f32 = 0.1;
 const LEAST_SHADOWED: usize = 12;
-/// Distance in pixels from a thing's outline within which its pixels may show something else.
+/// Distance in pixels from a thing's outline within which its pixels may show something else: the outline's own error and the blur of
+/// the picture.
 const WITHIN_PX: i32 = 2;
 /// Largest loss of a thing's points, over that without shadows on them: .14, .41 and .45 for those
 /// three; 1.5 for a chequered board whose front no light reaches, which one colour does not describe.
 const OF_NONE: f32 = 0.6;
-/// Largest loss of a pixel: a squared difference in plates.
+/// Largest loss of a pixel, a squared difference in plates: that of nearly half of the light, so that
+/// a highlight or a wrong pixel counts no more than a wrong shadow.
 const MOST_LOSS: f32 = 0.2;
-/// Part of the largest loss of light that is lost in the umbra, at least.
+/// Part of the largest loss of light from which on a pixel counts to the umbra, whose median loss is
+/// that of a point without the light: half of it is the middle of the penumbra.
 const UMBRA: f32 = 0.5;
 
 impl Sight<'_> {
     /// The points of things at the pixels of the largest level, which have these marks; empty if
-    /// there are none.
+    /// there are none. `now` is the memory of this picture.
     pub(super) fn raised(
         &self,
         level: &Level,
-        found: &Found,
-        (size_px, marks): (IVec2, &[Mark]),
+        found: &Found<'_>,
+        (now, size_px, marks): (&Memory, IVec2, &[Mark]),
     ) -> Vec<RaisedPoint> {
-        if let Some(known) = self.memory.and_then(|memory| memory.raised(marks)) {
-            return known.to_vec();
-        }
         // Shadows of several lights are at several places of a thing.
         let ([light], Some(table)) = (self.lights, self.receivers.first()) else {
             return Vec::new();
         };
+        let known = self.memory.and_then(|memory| memory.raised(now, size_px, marks));
+        if let Some(known) = known {
+            return known.to_vec();
+        }
         let largest = self.pyramid.level(0);
         let per_px = level.intrinsics.fx_px / largest.intrinsics.fx_px;
         let body = |(at, mark): (IVec2, &Mark)| match mark {
@@ -79,7 +85,7 @@ impl Sight<'_> {
             bodies: &bodies,
             largest,
             level,
-            compared: &found.compared,
+            compared: found.compared,
             table,
             light: light.moved(&(table.plane_from_camera * self.world_from_camera.inverse())),
         };

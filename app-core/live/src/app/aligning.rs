@@ -259,7 +259,7 @@ impl Place {
         if done.place != self.number {
             return false;
         }
-        let has_ended = done.result.is_some();
+        let has_result = done.result.is_some();
         match done.result {
             Some(Ok(alignment)) => self.apply(&done.given, &done.aligner, alignment),
             Some(Err(reason)) => {
@@ -269,7 +269,7 @@ impl Place {
             None => self.watch.forget(),
         }
         self.aligner = Some(done.aligner);
-        has_ended
+        has_result
     }
 
     /// Gives the toy's estimated pose and the lights to a recording.

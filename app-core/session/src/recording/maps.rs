@@ -50,10 +50,10 @@ impl<T> Maps<T> {
 
     /// The same of other values.
     #[must_use]
-    pub fn map<U>(self, of: impl FnMut(T) -> U + Copy) -> Maps<U> {
+    pub fn map<U>(self, of: impl Fn(T) -> U) -> Maps<U> {
         Maps {
-            depth: self.depth.map(of),
-            people: self.people.map(of),
+            depth: self.depth.map(&of),
+            people: self.people.map(&of),
         }
     }
 }

@@ -110,7 +110,7 @@ fn corners(mesh: &PlaceMesh) -> Vec<[Vec3; 3]> {
 
 #[test]
 fn maps_and_mesh_come_back_also_by_a_folder() {
-    let folder = Temporary::new("recorded-depths");
+    let folder = Temporary::new("recorded-maps");
     let [path, unpacked, again] = ["a.mcap", "folder", "b.mcap"].map(|name| folder.0.join(name));
     fs::write(&path, recorded()).unwrap();
     write(&Stored::open(&path).unwrap(), None, &unpacked).unwrap();
@@ -134,50 +134,46 @@ fn maps_and_mesh_come_back_also_by_a_folder() {
     assert_eq!(of("people/"), ["people/000000.png"]);
 }
 
-/// A recorder of before depths had a channel attached them like any other file.
-#[test]
-fn attached_depths_are_read() {
+/// Recorders attached maps like any other file before these had channels.
+fn is_read_if_attached(key: &str) {
     let mut writer = Writer::new(Vec::new(), "{}", BTreeMap::new(), Limits::default()).unwrap();
-    writer.file(0, "d.png", b"depths").unwrap();
-    writer
-        .frame(
-            0,
-            Picture::New(b"picture"),
-            r#"{"image":"a.png","depth":"d.png"}"#,
-        )
-        .unwrap();
+    writer.file(0, "map.png", b"map").unwrap();
+    let entry = format!(r#"{{"image":"a.png","{key}":"map.png"}}"#);
+    writer.frame(0, Picture::New(b"picture"), &entry).unwrap();
     let (bytes, _) = writer.finish().unwrap();
     let recording = open(&bytes).unwrap();
     assert_eq!((recording.n_frames(), recording.losses().len()), (1, 0));
-    assert_eq!(recording.read("d.png", 100).unwrap(), b"depths");
+    assert_eq!(recording.read("map.png", 100).unwrap(), b"map");
 }
 
 #[test]
-fn a_frame_whose_depths_are_lost_is_left_out_and_told() {
-    let entry = |image: &str, depth: &str| format!(r#"{{"image":"{image}","depth":"{depth}"}}"#);
+fn attached_depths_are_read() {
+    is_read_if_attached("depth");
+}
+
+#[test]
+fn attached_people_are_read() {
+    is_read_if_attached("people");
+}
+
+/// A frame with a map, its repetition a chunk later, and no frame whose map is that of one without.
+fn is_told_if_lost(maps: impl Fn(Picture<'static>) -> Maps<Picture<'static>>, key: &str) {
+    let entry = |image: &str| format!(r#"{{"image":"{image}","{key}":"a-map.png"}}"#);
     let mut writer = Writer::new(Vec::new(), "{}", BTreeMap::new(), Limits::default()).unwrap();
-    let [picture, depth] = [b"picture", b"depths "].map(|bytes| Picture::New(bytes));
-    let maps = |depth| Maps {
-        depth: Some(depth),
-        people: None,
-    };
-    let written = writer.frame_with_maps(0, picture, maps(depth), &entry("a.png", "a-d.png"));
-    let numbers = Maps {
-        depth: Some(0),
-        people: None,
-    };
+    let [picture, map] = [b"picture", b"a  map "].map(|bytes| Picture::New(bytes));
+    let numbers = maps(map).map(|_| 0);
+    let written = writer.frame_with_maps(0, picture, maps(map), &entry("a.png"));
     assert_eq!(written.unwrap(), (0, numbers));
-    // A chunk later, the depths are those of the frame before.
     let again = maps(Picture::Again(0));
-    let written = writer.frame_with_maps(2_000_000_000, picture, again, &entry("b.png", "a-d.png"));
+    let written = writer.frame_with_maps(2_000_000_000, picture, again, &entry("b.png"));
     assert_eq!(written.unwrap(), (1, numbers));
     let missing = maps(Picture::Again(1));
-    let missing = writer.frame_with_maps(3_000_000_000, picture, missing, &entry("c", "c-d"));
+    let missing = writer.frame_with_maps(3_000_000_000, picture, missing, &entry("c.png"));
     assert_eq!(missing, Err(WriteError::NoSuchPicture { sequence: 1 }));
     let (bytes, _) = writer.finish().unwrap();
     let whole = open(&bytes).unwrap();
     assert_eq!((whole.n_frames(), whole.losses()), (2, &[][..]));
-    assert_eq!(whole.read("a-d.png", 100).unwrap(), b"depths ");
+    assert_eq!(whole.read("a-map.png", 100).unwrap(), b"a  map ");
     assert_eq!(whole.read("b.png", 100).unwrap(), b"picture");
 
     let mut damaged = bytes.clone();
@@ -193,6 +189,24 @@ fn a_frame_whose_depths_are_lost_is_left_out_and_told() {
         .iter()
         .any(|loss| matches!(loss, Loss::Pictures { n_frames: 1 }));
     assert!(lost, "{:?}", left.losses());
+}
+
+#[test]
+fn a_frame_whose_depths_are_lost_is_left_out_and_told() {
+    let maps = |depth| Maps {
+        depth: Some(depth),
+        people: None,
+    };
+    is_told_if_lost(maps, "depth");
+}
+
+#[test]
+fn a_frame_whose_people_are_lost_is_left_out_and_told() {
+    let maps = |people| Maps {
+        depth: None,
+        people: Some(people),
+    };
+    is_told_if_lost(maps, "people");
 }
 
 #[test]

@@ -1,0 +1,48 @@
+//! The grain of a textured picture, beside a plate of the same view.
+
+use app_core::grain::Grain;
+use app_core::scene::Image;
+use app_scene::geometry::color::linear_from_srgb;
+use reference::grain::grain_at;
+
+const SIDE_PX: u32 = 400;
+const GREY: f64 = 120.0;
+
+/// A texture about a grey, with noise of a standard deviation, all in codes. The pictures differ by
+/// their number.
+fn picture(texture: impl Fn(f64, f64) -> f64, deviation: f64, number: u32) -> Image {
+    let mut image = Image {
+        width_px: SIDE_PX,
+        height_px: SIDE_PX,
+        rgba8: vec![255; (4 * SIDE_PX * SIDE_PX) as usize],
+    };
+    for (index, pixel) in (0..).zip(image.rgba8.chunks_mut(4)) {
+        let [x, y] = [index % SIDE_PX, index / SIDE_PX];
+        let noise = grain_at([x.cast_signed(), y.cast_signed()], number, 0.0, 0.0);
+        let shown = GREY + texture(f64::from(x), f64::from(y));
+        for (code, noise) in pixel.iter_mut().zip(noise) {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
+            let noisy = (shown + deviation * noise).round() as u8;
+            *code = noisy;
+        }
+    }
+    image
+}
+
+/// Standard deviation in codes of a grain, at the grey.
+fn codes(grain: &Grain) -> f64 {
+    let [light, above] = [GREY, GREY + 1.0].map(|code| {
+        #[allow(clippy::cast_possible_truncation, reason = "a code")]
+        let code = code as f32;
+        f64::from(linear_from_srgb(code / 255.0))
+    });
+    grain.frame.variance(light).sqrt() / (above - light)
+}
+
+#[test]
+fn noise_on_a_fine_periodic_texture_is_found() {
+    let squares = |x: f64, y: f64| if (x + y) % 4.0 < 2.0 { 4.0 } else { -4.0 };
+    let [frame, plate] = [(1.5, 1), (0.0, 2)].map(|(deviation, number)| picture(squares, deviation, number));
+    let found = codes(&Grain::measured(&frame, &plate).unwrap());
+    assert!((found - 1.5).abs() < 0.2, "{found:.2} codes");
+}
