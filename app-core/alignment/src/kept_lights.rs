@@ -179,18 +179,17 @@ impl KeptLights {
         self.errors.is_some() || matches!(self.discovered, Some(Ok(_)))
     }
 
-    /// Whether these are lamps that explain the shadows of the latest view.
-    pub(super) fn do_explain(&self) -> bool {
+    /// Whether these are lamps that were estimated, and that explain the shadows of the latest view.
+    pub(super) fn explain_shadows(&self) -> bool {
         let is_explained =
             |latest: Watched| latest.shadows >= LEAST_SHADOWS && latest.unexplained <= MOST_UNEXPLAINED;
-        !self.is_assumed() && !self.is_long && self.latest.is_some_and(is_explained)
+        let are_lamps = self.applied.is_some() && self.are_found() && !self.is_assumed() && !self.is_long;
+        are_lamps && self.latest.is_some_and(is_explained)
     }
 
-    /// With these lights in place of estimates; a list that stays is not changed.
-    pub(super) fn moved_to(&mut self, lights: Arc<[Light]>) {
-        if self.applied.is_some() {
-            self.applied = Some(lights);
-        }
+    /// With these lights in place of the same estimated ones.
+    pub(super) fn move_to(&mut self, lights: Arc<[Light]>) {
+        self.applied = Some(lights);
     }
 
     /// Adds another view, and returns whether it needs other lights.

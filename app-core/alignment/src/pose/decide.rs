@@ -138,14 +138,14 @@ impl Search<'_> {
             free.placement.motion.turn_of(plane.normal).dot(plane.normal) >= UPRIGHT_RAD.cos()
         };
         let on_lowest = || {
-            let ground = ground.filter(|ground| is_upright(&ground.plane))?;
+            let ground = ground.filter(|ground| !ground.is_certain && is_upright(&ground.plane))?;
             Standing::on_lowest(shape, ground.plane)
         };
         let held = standing.clone().or_else(on_lowest);
         let ground = held.as_ref().zip(ground);
         let by_codes = self.compared(seen, free, ground);
-        let is_told = by_codes.is_better() || by_codes.settled.is_met(seen.optics);
-        let best = if is_told {
+        let is_found_by_codes = by_codes.is_better() || by_codes.settled.is_met(seen.optics);
+        let best = if is_found_by_codes {
             by_codes
         } else {
             let by_area = self.by_area(seen, &start, ground);
