@@ -2,11 +2,14 @@
 
 use std::sync::Arc;
 
+use glam::DMat4;
+
 use super::Aligner;
 use super::kept_lights::KeptLights;
 use super::lights::{Joined, OfOutline, joined};
 use super::photograph::{MOST_OUTLINE_PX, Photograph, apart};
-use super::pose::LEAST_EVIDENCE;
+use super::pose::{LEAST_EVIDENCE, stand};
+use super::report::Stand;
 use super::view::Seen;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, LightUncertainty, PoseUncertainty, Scene, Uncertainty};
@@ -70,20 +73,30 @@ impl Aligner {
         }
         let camera = seen.input.camera.world_from_camera;
         let world_from_object = camera * motion * camera.inverse() * seen.input.world_from_object;
-        lights.move_to(found.into());
+        let middle = self.scene.toy.bounds_of_pose(&self.scene.physical_pose)?;
+        let middle = 0.5 * (middle.min + middle.max).as_dvec3();
+        let stand = photograph.stand(&self.scene, &world_from_object)?;
+        if let Some(report) = &mut seen.view.report {
+            (report.moved_m, report.turned_rad) = apart(&seen.view.given, &world_from_object, middle);
+            report.stand = stand.or(report.stand);
+        }
+        lights.move_to(found.into(), world_from_object.transform_point3(middle));
+        // The shadows count once.
         seen.view.covariance = None;
         seen.view.world_from_object = world_from_object;
         seen.input.world_from_object = world_from_object;
-        if let Some(report) = &mut seen.view.report {
-            let middle = self.scene.toy.bounds_of_pose(&self.scene.physical_pose)?;
-            let middle = 0.5 * (middle.min + middle.max).as_dvec3();
-            (report.moved_m, report.turned_rad) = apart(&seen.view.given, &world_from_object, middle);
-        }
         Ok(())
     }
 }
 
 impl Photograph {
+    /// The toy's position on its ground; `None` if it floats.
+    fn stand(&self, scene: &Scene, world_from_object: &DMat4) -> Result<Option<Stand>, ToyError> {
+        let shape = self.shape(scene, world_from_object)?;
+        let ground = self.ground_under(scene, &shape);
+        Ok(ground.and_then(|ground| stand(&shape, ground.plane)))
+    }
+
     /// A step of pose and lights by outline and shadows; `None` if the shadows show none.
     fn joined(
         &self,

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::lights::Watched;
 use super::photograph::{EstimatedLights, FoundLights};
 use super::report::{AssumedLight, LightAlignment};
@@ -187,8 +189,17 @@ impl KeptLights {
         are_lamps && self.latest.is_some_and(is_explained)
     }
 
-    /// With these lights in place of the same estimated ones.
-    pub(super) fn move_to(&mut self, lights: Arc<[Light]>) {
+    /// With these lights in place of the same estimated ones, as seen from the toy at a place.
+    pub(super) fn move_to(&mut self, lights: Arc<[Light]>, place_in_world: DVec3) {
+        for ((report, given), light) in self.report.iter_mut().zip(&*self.given).zip(&*lights) {
+            report.move_to([given, light], place_in_world);
+        }
+        if let Some(Ok(found)) = &mut self.discovered {
+            for (found, light) in found.iter_mut().zip(&*lights) {
+                found.light = *light;
+                found.seen_from(place_in_world);
+            }
+        }
         self.applied = Some(lights);
     }
 
@@ -222,6 +233,22 @@ impl KeptLights {
     pub(super) fn doubt(&self) -> Option<f64> {
         let (then, latest) = (self.explained?, self.latest?);
         (!is_as_well_explained(latest, then)).then_some(latest.unexplained)
+    }
+}
+
+impl LightAlignment {
+    /// With another estimate of the light, as seen from a place: `[given, estimate]`.
+    fn move_to(&mut self, [given, light]: [&Light; 2], place_in_world: DVec3) {
+        let both = [given, light];
+        if let [Some(given), Some(light)] = both.map(|light| light.direction_from(place_in_world)) {
+            self.turned_rad = given.angle_between(light);
+        }
+        if let [Some(given_m), Some(light_m)] = both.map(|light| light.distance_m_from(place_in_world)) {
+            self.distance_ratio = light_m / given_m;
+        }
+        if let [Some(given), Some(light)] = both.map(|light| light.slope_from(place_in_world)) {
+            self.size_ratio = (given > 0.0).then_some(light / given);
+        }
     }
 }
 

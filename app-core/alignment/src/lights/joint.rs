@@ -25,8 +25,11 @@ use app_scene::scene::{Light, LightUncertainty};
 const N_POSE: usize = 6;
 /// The level that is compared: the last of the search for lights.
 const LEVEL: usize = 1;
-/// Largest loss after the step, over that before: as for lights alone.
-const GAIN: f64 = 0.96;
+/// Largest loss after the step, over that before.
+///
+/// Measured: .82 to .97 in soft and ideal pictures, .990 to .993 in a phone's, whose noise is most of the loss; steps
+/// that left more than .997 changed nothing that shows.
+const GAIN: f64 = 0.995;
 
 /// A step of the toy, and the lights after it.
 pub(crate) struct Joined {
