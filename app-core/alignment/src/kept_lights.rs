@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::lights::Watched;
 use super::photograph::{EstimatedLights, FoundLights};
 use super::report::{AssumedLight, LightAlignment};
@@ -179,18 +181,26 @@ impl KeptLights {
         self.errors.is_some() || matches!(self.discovered, Some(Ok(_)))
     }
 
-    /// Whether these are lamps that explain the shadows of the latest view.
-    pub(super) fn do_explain(&self) -> bool {
+    /// Whether these are lamps that were estimated, and that explain the shadows of the latest view.
+    pub(super) fn explain_shadows(&self) -> bool {
         let is_explained =
             |latest: Watched| latest.shadows >= LEAST_SHADOWS && latest.unexplained <= MOST_UNEXPLAINED;
-        !self.is_assumed() && !self.is_long && self.latest.is_some_and(is_explained)
+        let are_lamps = self.applied.is_some() && self.are_found() && !self.is_assumed() && !self.is_long;
+        are_lamps && self.latest.is_some_and(is_explained)
     }
 
-    /// With these lights in place of estimates; a list that stays is not changed.
-    pub(super) fn moved_to(&mut self, lights: Arc<[Light]>) {
-        if self.applied.is_some() {
-            self.applied = Some(lights);
+    /// With these lights in place of the same estimated ones, as seen from the toy at a place.
+    pub(super) fn move_to(&mut self, lights: Arc<[Light]>, place_in_world: DVec3) {
+        for ((report, given), light) in self.report.iter_mut().zip(&*self.given).zip(&*lights) {
+            report.move_to([given, light], place_in_world);
         }
+        if let Some(Ok(found)) = &mut self.discovered {
+            for (found, light) in found.iter_mut().zip(&*lights) {
+                found.light = *light;
+                found.seen_from(place_in_world);
+            }
+        }
+        self.applied = Some(lights);
     }
 
     /// Adds another view, and returns whether it needs other lights.
@@ -223,6 +233,22 @@ impl KeptLights {
     pub(super) fn doubt(&self) -> Option<f64> {
         let (then, latest) = (self.explained?, self.latest?);
         (!is_as_well_explained(latest, then)).then_some(latest.unexplained)
+    }
+}
+
+impl LightAlignment {
+    /// With another estimate of the light, as seen from a place: `[given, estimate]`.
+    fn move_to(&mut self, [given, light]: [&Light; 2], place_in_world: DVec3) {
+        let both = [given, light];
+        if let [Some(given), Some(light)] = both.map(|light| light.direction_from(place_in_world)) {
+            self.turned_rad = given.angle_between(light);
+        }
+        if let [Some(given_m), Some(light_m)] = both.map(|light| light.distance_m_from(place_in_world)) {
+            self.distance_ratio = light_m / given_m;
+        }
+        if let [Some(given), Some(light)] = both.map(|light| light.slope_from(place_in_world)) {
+            self.size_ratio = (given > 0.0).then_some(light / given);
+        }
     }
 }
 

@@ -5,11 +5,12 @@
 //! its texture. Frame against plate is the best segmentation there is: the **outline** of the toy gives its pose,
 //! and its feet stand on the table (`pose`); the outline of its **shadow**, a second view of the toy from the
 //! light, gives the light (`lights`). If the outline shows that the toy differs from its **model**, the model is
-//! displaced to match it (`adapted`). Both papers name misregistration as their largest error and leave it there.
+//! displaced to match it (`adapted`). Outline and shadow then correct pose and light together (`joint_pose`). Both
+//! papers name misregistration as their largest error and leave it there.
 //!
 //! ```text
 //! frame, plates ─► camera ─► pyramid ─┐
-//! physical pose ─► shape ─────────────┴► pose ─► model ─► lights ─► things ─► Alignment
+//! physical pose ─► shape ─────────────┴► pose ─► model ─► lights ─► things ─► pose and lights ─► Alignment
 //! ```
 //!
 //! If the receiver below the toy reflects it, the reflection is estimated as well, once per session, and removed
@@ -238,7 +239,8 @@ impl Aligner {
     /// then explained better by more than noise and the model's own errors: the table must match more of its plates,
     /// the more the camera moves; the picture of the outline must be e^6 times as likely, with neighbouring pixels
     /// counted once; the loss of the shadows must fall by a twenty-fifth and to less than a tenth of the loss without
-    /// lights, and a light must move visibly. If the picture shows the toy nowhere near, the input's pose stays.
+    /// lights, and a light must move visibly. Once pose and lights are both corrected, outline and shadow correct them
+    /// together. If the picture shows the toy nowhere near, the input's pose stays.
     ///
     /// # Errors
     /// When a value of the scene or of the input is invalid, a picture is not of the scene's size,

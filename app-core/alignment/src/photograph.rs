@@ -123,7 +123,7 @@ impl Photograph {
     }
 
     /// The ground that a toy may stand on; `None` if it floats.
-    fn ground_under(&self, scene: &Scene, shape: &Shape) -> Option<pose::Ground> {
+    pub(super) fn ground_under(&self, scene: &Scene, shape: &Shape) -> Option<pose::Ground> {
         if scene.uncertainty.are_receivers_guessed {
             return None;
         }
@@ -444,7 +444,7 @@ pub(super) struct FoundLights {
 
 impl EstimatedLight {
     /// Adds their direction, distance and size as seen from a place.
-    fn seen_from(&mut self, place_in_world: DVec3) {
+    pub(super) fn seen_from(&mut self, place_in_world: DVec3) {
         let direction = self.light.direction_from(place_in_world);
         self.direction_in_world = direction.unwrap_or(self.direction_in_world);
         self.distance_m = self.light.distance_m_from(place_in_world);

@@ -7,7 +7,7 @@ use app_core::alignment::{Aligner, Alignment, AlignmentWarning};
 use app_core::frame::FrameInput;
 use app_core::scene::{Image, Light, Scene};
 use app_scene::geometry::color::{linear_of_codes, srgb_from_linear};
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DQuat, DVec3};
 
 use super::bundled::{SESSION, middle};
 
@@ -242,17 +242,63 @@ fn a_toy_that_is_given_on_one_foot_keeps_its_size_and_height() {
     }
 }
 
+/// A start in a soft picture, with a listed light five degrees off.
+fn soft_start() -> FrameInput {
+    let start = disturbed(Camera::Soft(2.0), DVec3::new(2.0, 0.0, -2.0), (DVec3::Y, 1.5));
+    let Light::Sphere {
+        position_in_world,
+        radius_m,
+    } = SESSION.0.lights[0]
+    else {
+        unreachable!("the bundled session has a bulb")
+    };
+    let turned = Light::Sphere {
+        position_in_world: DQuat::from_rotation_y(5_f64.to_radians()) * position_in_world,
+        radius_m,
+    };
+    start.with_lights(Some(vec![turned].into()))
+}
+
 /// A soft outline says little about the distance. The poses of more lights than alignment uses are the outline's alone.
 #[test]
 fn the_shadow_says_how_far_away_a_toy_that_is_out_of_focus_is() {
-    let start = disturbed(Camera::Soft(2.0), DVec3::new(2.0, 0.0, -2.0), (DVec3::Y, 1.5));
-    let by_outline = align(SESSION.0.clone(), &start);
-    let with_shadow = align(SESSION.0.clone(), &start.with_lights(None));
+    let start = soft_start();
+    let by_outline = align(SESSION.0.clone(), &too_many_lights(&start));
+    let with_shadow = align(SESSION.0.clone(), &start);
+    assert!(with_shadow.lights.is_some());
     let [by_outline_mm, with_shadow_mm] = [by_outline, with_shadow].map(|found| off_mm(&found)[0]);
     assert!(
         with_shadow_mm < 0.6 * by_outline_mm,
         "{with_shadow_mm} mm, {by_outline_mm} mm by the outline alone"
     );
+}
+
+/// The pose is kept that outline and shadow found together, and so are the lights.
+#[test]
+fn another_picture_does_not_undo_what_the_shadow_says() {
+    let start = soft_start();
+    let mut aligner = Aligner::new(SESSION.0.clone());
+    let first = aligner.align(&start).unwrap();
+    let mut image = Image::clone(start.image.rgba());
+    for code in image.rgba8.iter_mut().step_by(7) {
+        *code ^= 1;
+    }
+    let mut next = start.clone();
+    next.image = Arc::new(image).into();
+    let second = aligner.align(&next).unwrap();
+    assert_eq!(second.world_from_object, first.world_from_object);
+    assert_eq!(second.lights, first.lights);
+}
+
+/// Its feet are not those that it would have as inclined as it is given.
+#[test]
+fn a_toy_that_certainly_stands_is_put_upright() {
+    let start = disturbed(Camera::Ideal, DVec3::ZERO, (DVec3::X, 10.0));
+    let found = align(SESSION.0.clone().with_resting(Some(true)), &start);
+    let up = |pose: &DMat4| pose.y_axis.truncate().normalize();
+    let lean_rad = up(&found.world_from_object).angle_between(up(&SESSION.1.world_from_object));
+    assert!(lean_rad.to_degrees() < 0.3, "{lean_rad}");
+    assert!(off_mm(&found)[0] < 0.3, "{:?}", off_mm(&found));
 }
 
 #[test]

@@ -46,7 +46,7 @@ use cast::flattened;
 pub(crate) use classes::{Compared, Comparison, compare};
 pub(super) use follow::{Around, Followed, View};
 pub(super) use initial_light::{Hints, InitialLight};
-pub(super) use joint::{Joined, joined};
+pub(super) use joint::{Joined, OfOutline, joined};
 use lamp::{Lamp, N_PARTS, disc};
 pub(crate) use on_plane::OnPlane;
 use prior::Prior;

@@ -89,7 +89,7 @@ impl Shadows<'_> {
     ) -> [Slope; N_PARTS] {
         let disc = self.disc(lamp);
         let penumbra_px = self.penumbra_px(lamp);
-        let turn_rad = (OF_PENUMBRA * 0.5 * penumbra_px).max(LEAST_PX) / self.px_per_rad;
+        let turn_rad = difference_px(penumbra_px) / self.px_per_rad;
         [0, 1, INVERSE_DISTANCE, SPREAD].map(|part| {
             let is_constrained = part != SPREAD || penumbra_px >= 0.999 * LEAST_PENUMBRA_PX;
             if !is_constrained || prior.holds(part) {
@@ -216,8 +216,13 @@ impl System {
     }
 }
 
+/// Length of differences on either side, in pixels.
+pub(super) fn difference_px(penumbra_px: f64) -> f64 {
+    (OF_PENUMBRA * 0.5 * penumbra_px).max(LEAST_PX)
+}
+
 /// A step within the range in which the model is nearly linear; a near lamp stays near.
-fn bounded(lamp: &Lamp, prior: &Prior, step: [f64; N_PARTS], radius_m: f64) -> [f64; N_PARTS] {
+pub(super) fn bounded(lamp: &Lamp, prior: &Prior, step: [f64; N_PARTS], radius_m: f64) -> [f64; N_PARTS] {
     let growth = (LONGEST_GROWTH * lamp.spread).max(LEAST_GROWTH);
     let nearing = LONGEST_NEARING * lamp.inverse_distance.max(USUAL_INVERSE_DISTANCE / radius_m);
     let receding = if prior.is_near() {

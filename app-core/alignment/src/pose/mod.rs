@@ -45,14 +45,15 @@ use motion::{Held, Measured, solve};
 use odds::Odds;
 use paint::{Lit, Shaded};
 use placement::Placement;
-use settle::{LEAST_EVIDENCE, STEP};
+use settle::STEP;
 use sides::Beside;
 
 pub(super) use paint::{Paint, Surfel};
 pub use regions::ViewDirection;
 pub(super) use regions::{Standing, TINY_PIXELS, changed, guesses, standing_guesses};
 pub(super) use resting::find_resting;
-pub(super) use standing::{Ground, Plane, feet};
+pub(super) use settle::LEAST_EVIDENCE;
+pub(super) use standing::{Ground, Plane, feet, stand};
 
 /// Reach of the learned colours around the toy, over the reach of lines.
 const LEARNED_AROUND: i32 = 3;

@@ -17,7 +17,7 @@ use app_scene::scene::Intrinsics;
 ///
 /// Correct poses of disturbed starts have 10 and more, exact poses compared with estimates from
 /// them at most 3.
-pub(super) const LEAST_EVIDENCE: f64 = 6.0;
+pub(crate) const LEAST_EVIDENCE: f64 = 6.0;
 /// Standard deviation of the offset of the whole outline, in pixels: by a halo, or a model that is
 /// too thin.
 pub(super) const OFFSET_PX: f64 = 0.1;

@@ -151,6 +151,11 @@ impl Standing {
     }
 }
 
+/// The position of a toy on a plane; `None` if it does not stand there.
+pub(crate) fn stand(shape: &Shape, plane: Plane) -> Option<Stand> {
+    Standing::on(shape, plane).map(|standing| standing.stand(|point| point))
+}
+
 /// The feet of a toy that stands on a guessed plane; `None` if it would have to be inclined too
 /// far.
 pub(crate) fn feet(shape: &Shape, plane: &Plane) -> Option<[DVec3; 3]> {
