@@ -112,7 +112,7 @@ fn receiver_equation(seen: Observation) -> Equation {
   var eq: Equation;
   if all(seen.weight == vec3f(0.0)) || receiver_of(seen.point) != step.receiver { return eq; }
   let b = seen.plate;
-  let total = plate_falloff(seen.point);
+  var total = open_sky(seen.point) * ambient_fraction(step.receiver);
   eq.value = seen.frame / fit.gain.rgb - seen.reflected;
   eq.columns[0] = b * seen.ambient;
   eq.columns[1] = b * bounced(seen.ambient);
@@ -124,7 +124,13 @@ fn receiver_equation(seen: Observation) -> Equation {
     // outlier.
     let lit = (1.0 - seen.clipped) * seen.visibility[i];
     let visible = fit.intensity[i].rgb * lit - seen.ambient;
-    eq.columns[2u + i] = b * falloff(i, seen.point) * visible / total;
+    let here = falloff(i, seen.point);
+    total += fit.receivers[step.receiver].direct_fraction[i].rgb * here;
+    eq.columns[2u + i] = b * here * visible;
+  }
+  for (var i = 0u; i < MAX_LIGHTS; i++) {
+    if i >= globals.n_lights { continue; }
+    eq.columns[2u + i] /= total;
     predicted += fit.receivers[step.receiver].direct_fraction[i].rgb * eq.columns[2u + i];
   }
   if has_no_light() { eq.columns[UNSHADED_COLUMN] = eq.value - b; }

@@ -45,7 +45,7 @@ const RECEIVER_LIGHT_WEIGHT: f32 = 0.01;
 const PRIOR_BOUNCE: f32 = 0.27;
 // Direct fraction of all lights together, half of the plate's radiance; each as if of equal intensity at one metre.
 const PRIOR_DIRECT_FRACTION: f32 = 0.5;
-// Direct fractions sum to less than 1, since some light is always ambient: keeps plate_falloff positive.
+// Direct fractions sum to less than 1, since some light is always ambient: with LEAST_SKY it keeps plate_falloff positive.
 const MAX_DIRECT_FRACTION: f32 = 0.98;
 const MAX_BOUNCE: f32 = 1.0;
 

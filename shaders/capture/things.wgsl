@@ -8,7 +8,7 @@
 // Reads: validity, marks of things, which belong to the picture in which they were found and are
 // transferred by the first receiver's plane.
 // Writes: the same mask, but r is 0 on a thing, and b is 1 if its pixel is clear of the toy; a is
-// THING or BEFORE_TOY, for which g is 0 as well. The plate's colour and alpha are multiplied: by 0
+// THING or BEFORE_TOY, for which g is 0 as well, less BEFORE_THING on a pixel of another thing. The plate's colour and alpha are multiplied: by 0
 // in a wrong part.
 // CPU reference: tests/reference/src/things.rs.
 
@@ -40,10 +40,14 @@ fn is_beside_thing_before_toy(region_px: vec2f) -> bool {
 fn fs_mark(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let marks = textureLoad(validity, vec2u(position.xy), 0);
   let code = code_at(position.xy);
-  if code == CODE_BEFORE_TOY { return vec4f(0.0, 0.0, marks.r, BEFORE_TOY); }
+  // A pixel that is marked already is evidence of nothing: its own mark tells whether it is clear.
+  let is_second = is_thing(marks);
+  let clear = select(marks.r, marks.b, is_second);
+  let less = select(0.0, BEFORE_THING, is_second);
+  if code == CODE_BEFORE_TOY { return vec4f(0.0, 0.0, clear, BEFORE_TOY - less); }
   var of_toy = marks.g;
   if of_toy == 1.0 && is_beside_thing_before_toy(position.xy) { of_toy = 0.0; }
-  if code == CODE_THING || code == CODE_HIDDEN_THING { return vec4f(0.0, of_toy, marks.r, THING); }
+  if code == CODE_THING || code == CODE_HIDDEN_THING { return vec4f(0.0, of_toy, clear, THING - less); }
   return vec4f(marks.r, of_toy, marks.ba);
 }
 

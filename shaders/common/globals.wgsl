@@ -20,6 +20,8 @@ struct ReceiverPlane {
   _pad: vec2f,
   // Bounds of the receiver: smallest x and z, then largest.
   rect: vec4f,
+  // 1 for each receiver above which the middle of this one is.
+  stands_on: vec4f,
 }
 
 struct Globals {

@@ -1,7 +1,7 @@
 // The picture in layers: clean plate, shadow ratio, toy and masks.
 //
-// The importing shader declares `receiver`, `before_toy`, `composed`, `drawing`, `visibility`, `ambient` and
-// `linear_sampler`.
+// The importing shader declares `receiver`, `before_toy`, `composed`, `drawing`, `visibility`,
+// `ambient` and `linear_sampler`.
 
 //#import common/drawn_toy
 //#import common/frame

@@ -24,7 +24,7 @@ fn ambient_fraction(receiver: u32) -> vec3f {
 }
 
 // Irradiance of the plate at a receiver point relative to the reference point, if the ambient light
-// were even. It is positive, since the direct fractions sum to less than 1.
+// were even. It is positive, since the direct fractions sum to less than 1 and some sky is open.
 fn plate_falloff(point: ReceiverPoint) -> vec3f {
   let receiver = receiver_of(point);
   var total = open_sky(point) * ambient_fraction(receiver);

@@ -3,16 +3,41 @@
 //
 // What stands on a receiver, such as a book, is known by its top, which is another receiver. The top
 // is opaque: between a point and a light it hides the light, and no further shadow falls there. And
-// the faces below its edges hide a part of the sky. Walls hide nothing: they may have a window.
+// the faces below its edges hide a part of the sky. What lies on another thing hides only what that
+// one leaves. Walls hide nothing: they may have a window.
 // CPU reference: tests/reference/src/model.rs. Source: Nishita and Nakamae 1985 (Lambert's formula).
 
 //#import common/globals
 
 const INVERSE_PI: f32 = 0.31830989;
 // Least radius of a light's disc, projected onto a top, in metres: a pixel shows no sharper edge.
-const SHARPEST_M = vec2f(5e-4);
-// Least cosine between a receiver and the top of what stands on it.
+const SHARPEST_M: f32 = 5e-4;
+// Least cosine between a receiver and the top of what stands on it: a ramp of up to 60 degrees has a
+// top, and what is steeper is taken for a wall.
 const STANDS: f32 = 0.5;
+// Least part of the sky: in the narrowest gap some of its light arrives by reflection, and a plate
+// without any light has no shares of it.
+const LEAST_SKY: f32 = 0.02;
+
+// The number of receivers, and 0 instead of 1: then none hides anything from another.
+fn n_tops() -> u32 {
+  return select(0u, globals.n_receivers, globals.n_receivers > 1u);
+}
+
+// `hidden` with the part that receiver `k` hides.
+fn with_part(hidden: vec4f, k: u32, part: f32) -> vec4f {
+  return select(hidden, vec4f(part), vec4u(0u, 1u, 2u, 3u) == vec4u(k));
+}
+
+// What receivers hide together: each adds what those below it do not hide.
+fn hidden_by_all(hidden: vec4f) -> f32 {
+  var sum = 0.0;
+  for (var k = 0u; k < MAX_RECEIVERS; k++) {
+    let below = hidden * globals.receivers[k].stands_on;
+    sum += max(hidden[k] - max(max(below.x, below.y), max(below.z, below.w)), 0.0);
+  }
+  return sum;
+}
 
 // Part of the area of a disc on one side of lines at distances `t` from its centre, in radii.
 fn disc_parts(t: vec2f) -> vec2f {
@@ -30,7 +55,7 @@ fn hidden_by(k: u32, i: u32, here: vec3f) -> f32 {
   let at = here.xz + part * to_light.xz;
   // Half the axes of the light's disc, projected onto the plane from the point.
   let slope = to_light.xz / to_light.y;
-  let radius = max(part * globals.light_radii[i] * sqrt(1.0 + slope * slope), SHARPEST_M);
+  let radius = max(part * globals.light_radii[i] * sqrt(1.0 + slope * slope), vec2f(SHARPEST_M));
   let rect = globals.receivers[k].rect;
   let low = (at - rect.xy) / radius;
   let high = (rect.zw - at) / radius;
@@ -50,12 +75,13 @@ fn unhidden(i: u32, point: ReceiverPoint) -> f32 {
   let turn = anchor_turn(own);
   let from_origin = vec3f(point.x, 0.0, point.y) - globals.receivers[own].plane_from_anchor[3].xyz;
   let in_anchor = vec4f(turn * from_origin, 1.0);
-  var left = 1.0;
-  for (var k = 0u; k < globals.n_receivers; k++) {
+  var hidden = vec4f(0.0);
+  for (var k = 0u; k < n_tops(); k++) {
     if k == own || dot(anchor_turn(k)[1], turn[1]) < STANDS { continue; }
-    left -= hidden_by(k, i, (globals.receivers[k].plane_from_anchor * in_anchor).xyz);
+    let here = (globals.receivers[k].plane_from_anchor * in_anchor).xyz;
+    hidden = with_part(hidden, k, hidden_by(k, i, here));
   }
-  return max(left, 0.0);
+  return max(1.0 - hidden_by_all(hidden), 0.0);
 }
 
 // Irradiance of light `i` at a receiver point relative to that at the receiver's reference point in
@@ -101,8 +127,8 @@ fn corner(rect: vec4f, index: u32) -> vec3f {
   return vec3f(at.x, 0.0, at.y);
 }
 
-// The same of what stands below a rectangle: its faces that are turned to the point. The matrix
-// leads from the rectangle's space to directions from the point.
+// The part of the sky that the faces below a rectangle hide, of those that are turned to the point.
+// The matrix leads from the rectangle's space to directions from the point.
 fn hidden_by_thing(rect: vec4f, turn: mat3x3f, origin: vec3f) -> f32 {
   let middle = turn * vec3f(0.5 * (rect.x + rect.z), 0.0, 0.5 * (rect.y + rect.w)) + origin;
   var hidden = 0.0;
@@ -118,7 +144,7 @@ fn hidden_by_thing(rect: vec4f, turn: mat3x3f, origin: vec3f) -> f32 {
   return hidden;
 }
 
-// Part of the sky that is open above a point. The faces that hide the rest count as dark: the toy's
+// Part of the sky that is open above a point, LEAST_SKY at least. The faces that hide the rest count as dark: the toy's
 // shadow on a receiver beside a lit face is on the face, too. With .7 and 1.3 of their part, the
 // RMS error of the shadow beside two listed books is .59 and .57 for .56 codes, and 1.36 and 1.40
 // for 1.33.
@@ -126,12 +152,13 @@ fn open_sky(point: ReceiverPoint) -> f32 {
   let own = receiver_of(point);
   let own_turn = transpose(anchor_turn(own));
   let own_origin = globals.receivers[own].plane_from_anchor[3].xyz;
-  var left = 1.0;
-  for (var k = 0u; k < globals.n_receivers; k++) {
+  var hidden = vec4f(0.0);
+  for (var k = 0u; k < n_tops(); k++) {
+    if k == own { continue; }
     let turn = own_turn * anchor_turn(k);
-    if k == own || turn[1].y < STANDS { continue; }
+    if turn[1].y < STANDS { continue; }
     let origin = own_origin - turn * globals.receivers[k].plane_from_anchor[3].xyz - vec3f(point.x, 0.0, point.y);
-    left -= hidden_by_thing(globals.receivers[k].rect, turn, origin);
+    hidden = with_part(hidden, k, hidden_by_thing(globals.receivers[k].rect, turn, origin));
   }
-  return max(left, 0.0);
+  return max(1.0 - hidden_by_all(hidden), LEAST_SKY);
 }

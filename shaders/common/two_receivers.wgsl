@@ -7,6 +7,7 @@
 
 //#import common/globals
 //#import common/model
+//#import common/relit
 //#import common/spread
 
 // Distance of the places around a pixel's centre at which the other receiver is looked for, along
@@ -46,7 +47,7 @@ fn part_of_other(at: vec2f, there: vec2f, own: u32) -> vec3f {
   if receiver_of(receiver_point(there)) == own || receiver_of(receiver_point(here)) != own { return vec3f(0.0); }
   let b_there = textureLoad(plate, vec2u(there), 0);
   let b_here = textureLoad(plate, vec2u(here), 0);
-  if b_there.a == 0.0 || b_here.a == 0.0 { return vec3f(0.0); }
+  if b_there.a == 0.0 || b_here.a == 0.0 || is_relit(b_there) || is_relit(b_here) { return vec3f(0.0); }
   let differs = b_there.rgb - b_here.rgb;
   let square = dot(differs, differs);
   if square <= TELLS * dot(b_there.rgb, b_there.rgb) { return vec3f(0.0); }

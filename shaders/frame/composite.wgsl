@@ -71,9 +71,6 @@ override HAS_EDGES: bool = false;
 // COVERED_POSITION for each position that the shown toy covers.
 @group(3) @binding(7) var covered: texture_2d<f32>;
 
-// Change of the model, in plates, up to which a visible pixel keeps its residual, and its end.
-const KEEP_ALL: f32 = 0.02;
-const KEEP_NONE: f32 = 0.15;
 // Change of the model at which the pooled residual is halved.
 const RESIDUAL_HALF: f32 = 0.5;
 // Deviation from the model, in plates, up to which a pixel is not affected by the colour of a moved
@@ -100,6 +97,13 @@ fn strengthened(open: vec3f, left: vec3f, strength: f32) -> vec3f {
   let part = select(vec3f(1.0), left / open, open > vec3f(0.0));
   // Light that the toy reflects onto the table is not a shadow.
   return open * pow(clamp(part, vec3f(0.0), vec3f(1.0)), vec3f(strength)) * max(part, vec3f(1.0));
+}
+
+// What is shown of a thing in the toy's shadow: a mixture of the frame `f` and the photographed plate.
+fn relit(b: vec4f, f: vec3f) -> vec3f {
+  let color = fit.gain.rgb * b.rgb;
+  if HAS_GRAIN { missing = missing_beside(color, kept_part(b), f, vec4f(b.rgb, 1.0), fit.gain.rgb); }
+  return color;
 }
 
 // The receiver's colour. `change` becomes that of the model since the frame `f`, with the weight of
@@ -138,10 +142,9 @@ fn receiver(
   // toy's shadow all that is shown.
   if is_thing(evident) {
     *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.b);
-    let own = select(evident.b, 0.0, is_relit(b));
-    let color = mix(lit, f, own);
-    let noisy = vec4f(b.rgb, select(b.a, 1.0, is_relit(b)));
-    if HAS_GRAIN { missing = missing_beside(color, own, f, noisy, fit.gain.rgb); }
+    if is_relit(b) { return relit(b, f); }
+    let color = mix(lit, f, evident.b);
+    if HAS_GRAIN { missing = missing_beside(color, evident.b, f, b, fit.gain.rgb); }
     return color;
   }
   // Beyond the receivers only the real toy is removed.
@@ -194,7 +197,8 @@ fn receiver(
 // A thing before the toy, in the toy's shadow or not.
 fn before_toy(texel: vec2i, f: vec3f) -> vec3f {
   let b = textureLoad(plate, texel, 0);
-  return select(f, fit.gain.rgb * b.rgb, is_relit(b));
+  if !is_relit(b) { return f; }
+  return relit(b, f);
 }
 
 // Difference of a texel of the toy box from the camera's picture, 0 to 1.
@@ -216,7 +220,9 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let texel = vec2u(position.xy);
   let frame_color = frame_at(vec2i(texel));
   let evident = marks_at(vec2i(texel));
-  if is_before_toy(evident) { return vec4f(before_toy(vec2i(texel), frame_color), 1.0); }
+  if is_before_toy(evident) {
+    return vec4f(grained_toy(before_toy(vec2i(texel), frame_color), vec2i(texel), 0.0), 1.0);
+  }
   let in_box = box_texel(vec2i(texel));
   let toy = toy_layer(in_box, n_draws);
   if toy.a == 1.0 {

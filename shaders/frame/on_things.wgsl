@@ -4,31 +4,33 @@
 // where the ray from the light through the point meets it. So the receiver's visibilities tell the
 // thing's, too. (They are wrong if the toy is behind the thing, as the light sees it.)
 //
-//   out = gain plate (1 - sum s (1 - intensity V'))     where V' differs from V nearby
+//   out = gain plate (1 - sum s (1 - intensity V'))     where V' differs from V nearby, or where the
+//                                                      real toy hides the thing
 //   out = frame                                        elsewhere
 //
 // s is a light's share of the point's light in the plate: the marks have the sum of all, which is
-// divided as on the receiver.
+// divided as on the receiver, up to all of the light in a channel.
 //
-// Reads: frame, plate, visibilities of both poses, marks of things with heights. Writes: the plate;
-// at a thing in the toy's shadow what is shown there, over the gain, with alpha RELIT.
+// Reads: frame, plate, validity, visibilities of both poses, marks of things with heights. Writes:
+// the plate; at a thing in the toy's shadow what is shown there, over the gain, with the alpha of
+// `relit`. Where something else hides the thing, such as a person, the plate stays.
 // CPU reference: tests/reference/src/on_things.rs.
 
 //#import common/channels
 //#import common/fit
 //#import common/frame
 //#import common/fullscreen
+//#import common/marks
 //#import common/relit
 //#import common/thing_marks
 
 @group(1) @binding(2) var plate: texture_2d<f32>;
 @group(1) @binding(3) var physical_visibility: texture_2d<f32>;
 @group(1) @binding(4) var visibility: texture_2d<f32>;
+@group(1) @binding(5) var validity: texture_2d<f32>;
 
-// Change of the model, in plates, up to which a pixel stays, and from which it is made.
-const KEEP_ALL: f32 = 0.02;
-const KEEP_NONE: f32 = 0.15;
-// Distance in pixels at which a change of the visibility counts, too: heights are inexact.
+// Distance in pixels at which a change of the visibility counts, too: a height that is off moves the
+// place at which the receiver is looked up, and a penumbra with it.
 const NEARBY_PX: f32 = 3.0;
 const FAR_PX: f32 = 100.0;
 
@@ -96,22 +98,28 @@ fn fs_shade(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let below = seen_below(position.xy);
   let eye = globals.camera_in_anchor;
   if !is_raised || b.a < 1.0 || below.z == 0.0 || of_thing.x >= eye.y { return b; }
+  let marks = marks_at(vec2i(texel));
+  if is_before_thing(marks) { return b; }
   let point = mix(vec3f(below.x, 0.0, below.y), eye, of_thing.x / eye.y);
   var total = vec3f(0.0);
   for (var i = 0u; i < globals.n_lights; i++) { total += fit.receivers[0].direct_fraction[i].rgb; }
   let mean = (total.r + total.g + total.b) / 3.0;
   if mean <= 0.0 { return b; }
+  let of_all = min(of_thing.y * total / mean, vec3f(1.0));
+  let scale = select(vec3f(0.0), of_all / total, total > vec3f(0.0));
   var left = vec3f(1.0);
   var change = vec3f(0.0);
   for (var i = 0u; i < globals.n_lights; i++) {
-    let share = of_thing.y * fit.receivers[0].direct_fraction[i].rgb / mean;
+    let share = scale * fit.receivers[0].direct_fraction[i].rgb;
     let seen = visible_around(i, shadow_px(i, point));
     left -= share * (1.0 - fit.intensity[i].rgb * seen.y);
     change += share * fit.intensity[i].rgb * seen.z;
   }
-  let made = smoothstep(KEEP_ALL, KEEP_NONE, largest(change));
+  // The frame shows the real toy or its rim there, if that is not behind the thing.
+  let hidden = select(0.0, 1.0 - marks.b, code == CODE_THING);
+  let made = max(smoothstep(KEEP_ALL, KEEP_NONE, largest(change)), hidden);
   if made == 0.0 { return b; }
   let f = frame_at(vec2i(texel));
   let shown = mix(f / fit.gain.rgb, b.rgb * max(left, vec3f(0.0)), made);
-  return vec4f(shown, RELIT);
+  return vec4f(shown, RELIT + RELIT_RANGE * made);
 }

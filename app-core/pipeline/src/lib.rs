@@ -31,6 +31,7 @@ const SHARED: &[&Mirrors] = &[
     &model::frame::coverage::COVERED,
     &passes::specular::GLOSS,
     &model::lighting::self_shadow::SELF_SHADOW_MAPS,
+    &model::readback::PLATE_LIGHT,
     &model::state::grids::GRID,
     &model::state::solution::FIT,
     &model::state::tints::BETWEEN_TINTS,

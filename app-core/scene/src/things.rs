@@ -44,8 +44,8 @@ pub struct RaisedPoint {
 }
 
 impl RaisedPoint {
-    /// A point at a height in metres, up to .65, and the lights' share of its light in the plate,
-    /// from 0 to 1.
+    /// A point at a height in metres and the lights' share of its light in the plate, from 0 to 1.
+    /// No point if it is higher than .655 m, the highest code.
     #[must_use]
     #[allow(
         clippy::cast_possible_truncation,
@@ -54,8 +54,11 @@ impl RaisedPoint {
     )]
     pub fn new(height_m: f64, of_lights: f32) -> Self {
         let height = (height_m / f64::from(HEIGHT_STEP_M)).round();
+        if height > f64::from(u16::MAX) {
+            return Self::default();
+        }
         Self {
-            height: height.clamp(0.0, f64::from(u16::MAX)) as u16,
+            height: height.max(0.0) as u16,
             of_lights: (255.0 * of_lights).round().clamp(0.0, 255.0) as u8,
         }
     }

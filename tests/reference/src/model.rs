@@ -95,6 +95,8 @@ fn hidden_sky(at: DVec2, own_from_rect: &DMat4, rect: &PlaneRect) -> f64 {
     hidden
 }
 
+/// Least part of the sky.
+const LEAST_SKY: f64 = 0.02;
 /// Least radius of a light's disc, projected onto a top.
 const SHARPEST_M: f64 = 5e-4;
 
@@ -143,6 +145,17 @@ impl ReceiverPlane {
         irradiance(in_plane) / irradiance(self.reference_in_plane)
     }
 
+    /// Whether the middle of another receiver is above this one.
+    fn is_below_middle_of(&self, other: &Self) -> bool {
+        let middle = 0.5 * (other.rect.min + other.rect.max);
+        let in_anchor = other
+            .plane_from_anchor
+            .inverse()
+            .transform_point3(DVec3::new(middle.x, 0.0, middle.y));
+        let here = self.plane_from_anchor.transform_point3(in_anchor);
+        !std::ptr::eq(self, other) && here.y > 0.0 && self.rect.holds(DVec2::new(here.x, here.z))
+    }
+
     /// The part of light `i`, with a disc of a radius, that the receiver hides from a point of its
     /// space: over each axis, the part of the disc's shadow that its two edges enclose.
     #[must_use]
@@ -172,20 +185,45 @@ impl Region {
         let own = self.plane_of(point);
         let from = DVec3::new(point.in_plane.x, 0.0, point.in_plane.y);
         let in_anchor = own.plane_from_anchor.inverse().transform_point3(from);
-        let hidden = self.tops(point.receiver).map(|(_, plane)| {
+        let hidden = self.hidden_by_all(point.receiver, |_, plane| {
             let here = plane.plane_from_anchor.transform_point3(in_anchor);
             plane.hidden(i, here, self.light_radii[i])
         });
-        own.open_falloff(i, point.in_plane) * (1.0 - hidden.sum::<f64>()).max(0.0)
+        own.open_falloff(i, point.in_plane) * (1.0 - hidden).max(0.0)
     }
 
     /// Part of the sky that the faces below other receivers leave at a point, by integration over
     /// azimuths: a face of elevation e hides sin^2 e.
     #[must_use]
     pub fn open_sky(&self, point: ReceiverPoint) -> f64 {
-        let tops = self.tops(point.receiver);
-        let hidden = tops.map(|(own_from_top, top)| hidden_sky(point.in_plane, &own_from_top, &top.rect));
-        (1.0 - hidden.sum::<f64>()).max(0.0)
+        let hidden = self.hidden_by_all(point.receiver, |own_from_top, top| {
+            hidden_sky(point.in_plane, own_from_top, &top.rect)
+        });
+        (1.0 - hidden).max(LEAST_SKY)
+    }
+
+    /// The part of a point's sky that one top hides by itself.
+    #[must_use]
+    pub fn sky_hidden_by(&self, top: &ReceiverPlane, point: ReceiverPoint) -> f64 {
+        let own_from_anchor = self.plane_of(point).plane_from_anchor;
+        let own_from_top = own_from_anchor * top.plane_from_anchor.inverse();
+        hidden_sky(point.in_plane, &own_from_top, &top.rect)
+    }
+
+    /// What the tops of things on a receiver hide together: of what lies on another thing counts
+    /// what that one leaves.
+    fn hidden_by_all(&self, receiver: usize, hidden: impl Fn(&DMat4, &ReceiverPlane) -> f64) -> f64 {
+        let tops: Vec<_> = self
+            .tops(receiver)
+            .map(|(own_from_top, top)| (top, hidden(&own_from_top, top)))
+            .collect();
+        let added = tops.iter().map(|(top, part)| {
+            let below = tops.iter().filter(|(below, _)| below.is_below_middle_of(top));
+            below
+                .fold(*part, |left, (_, below)| left.min(part - below))
+                .max(0.0)
+        });
+        added.sum()
     }
 
     /// The other receivers that are no walls of one, each with the matrix from its space.

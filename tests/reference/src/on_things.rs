@@ -4,10 +4,10 @@ use glam::{DVec2, DVec3, DVec4, UVec2};
 
 use super::model::{Pictures, Region, Solution, centre_px};
 use super::raster::Raster;
-use super::things::{BEFORE_TOY, THING, Things};
+use super::things::{ALPHAS, BEFORE_THING, BEFORE_TOY, THING, Things};
 
-/// Alpha of a pixel that is shown as it is.
-pub const RELIT: f64 = 0.5;
+/// Alphas of a pixel that is shown as it is: the least and the most of it is made.
+pub const RELIT: [f64; 2] = [0.5, 0.75];
 /// Metres per step of a height.
 const HEIGHT_STEP_M: f64 = 1e-5;
 /// Change, in plates, over which a pixel becomes a made one.
@@ -20,6 +20,8 @@ const NEARBY_PX: f64 = 3.0;
 pub struct Shaded<'a> {
     /// Marks with heights.
     pub things: &'a Things,
+    /// Marks of the frame.
+    pub validity: &'a Raster<DVec4>,
     /// Alpha of the plate.
     pub photographed: &'a Raster<f64>,
     /// Visibility of each light with the shown toy.
@@ -43,12 +45,17 @@ pub fn on_things(
     };
     let fractions = &solution.receivers[0].direct_fractions;
     let mean = fractions.iter().sum::<DVec3>().element_sum() / 3.0;
-    if plate.w < 1.0 || mean <= 0.0 {
+    let marks = shaded.validity.at(texel);
+    let is_hidden = ALPHAS
+        .iter()
+        .any(|alpha| (marks.w - alpha + BEFORE_THING).abs() < 0.01);
+    if plate.w < 1.0 || mean <= 0.0 || is_hidden {
         return plate;
     }
+    let total = of_lights * fractions.iter().sum::<DVec3>() / mean;
     let (mut left, mut change) = (DVec3::ONE, DVec3::ZERO);
     for (i, (fraction, intensity)) in fractions.iter().zip(&solution.intensities).enumerate() {
-        let share = of_lights * *fraction / mean;
+        let share = of_lights * *fraction / mean / total.max(DVec3::ONE);
         let visible = |offset_px: DVec2| {
             let at = shadow_px(region, i, point).map(|at| at + offset_px);
             [&pictures.visibility, shaded.shown]
@@ -63,14 +70,16 @@ pub fn on_things(
         change += share * *intensity * changes.into_iter().fold(0.0, f64::max);
     }
     let part = ((change.max_element() - KEEP[0]) / (KEEP[1] - KEEP[0])).clamp(0.0, 1.0);
-    let made = part * part * (3.0 - 2.0 * part);
+    let is_behind_toy = shaded.things.at(centre_px(texel)) == THING;
+    let behind_toy = if is_behind_toy { 1.0 - marks.z } else { 0.0 };
+    let made = (part * part * (3.0 - 2.0 * part)).max(behind_toy);
     if made == 0.0 {
         return plate;
     }
     let lit = plate.truncate() * left.max(DVec3::ZERO);
     (pictures.frame.at(texel) / solution.gain)
         .lerp(lit, made)
-        .extend(RELIT)
+        .extend(RELIT[0] + made * (RELIT[1] - RELIT[0]))
 }
 
 /// The point of a thing in anchor space, and the lights' share of its light; `None` if there is none.

@@ -16,7 +16,9 @@ pub const SHADED_PLATE: u8 = 4;
 /// Code of a thing that the toy hides.
 pub const HIDDEN_THING: u8 = 5;
 /// Alpha of the marks of things, in the same order.
-const ALPHAS: [f64; 2] = [0.8, 0.6];
+pub(super) const ALPHAS: [f64; 2] = [0.8, 0.6];
+/// Less of the alpha on a pixel of another thing.
+pub(super) const BEFORE_THING: f64 = 0.4;
 /// Distance over which a pixel of the toy mixes with a thing in front of it, in pixels along each
 /// side.
 const MIXED_PX: f64 = 2.0;
@@ -64,9 +66,16 @@ pub fn mark(things: &Things, validity: &Raster<DVec4>, texel: UVec2) -> DVec4 {
     } else {
         marks.y
     };
+    let codes = [ALPHAS, ALPHAS.map(|alpha| alpha - BEFORE_THING)];
+    let is_marked = codes
+        .as_flattened()
+        .iter()
+        .any(|alpha| (marks.w - alpha).abs() < 0.01);
+    let clear = if is_marked { marks.z } else { marks.x };
+    let alphas = codes[usize::from(is_marked)];
     match things.at(at) {
-        THING | HIDDEN_THING => DVec4::new(0.0, of_toy, marks.x, ALPHAS[0]),
-        BEFORE_TOY => DVec4::new(0.0, 0.0, marks.x, ALPHAS[1]),
+        THING | HIDDEN_THING => DVec4::new(0.0, of_toy, clear, alphas[0]),
+        BEFORE_TOY => DVec4::new(0.0, 0.0, clear, alphas[1]),
         _ => DVec4::new(marks.x, of_toy, marks.z, marks.w),
     }
 }

@@ -216,24 +216,26 @@ fn check_toy(run: &Run, glossy: Option<&Glossy>, allowed: f64) {
     Errors::between(pairs).check_all(&format!("{}, toy", run.stand.setup.name), allowed);
 }
 
-/// The map is computed in 32 bits from the fit that the references also use.
 #[test]
 fn share_of_the_lights_over_the_receiver() {
-    for run in runs() {
-        let size = run.direct_fraction.size();
-        let scale = run.region.size_px.as_dvec2() / size.as_dvec2();
-        let expected = Raster::from_fn(size, |texel| {
-            let Some(point) = run.region.receiver_point(centre_px(texel) * scale) else {
-                return DVec3::ZERO;
-            };
-            let lights = 0..run.region.lights.len();
-            lights
-                .map(|i| run.solution.light_fraction(&run.region, i, point))
-                .sum()
-        });
-        for (actual, expected) in run.direct_fraction.texels().iter().zip(expected.texels()) {
-            let error = (actual - expected).abs().max_element();
-            assert!(error < 1e-4, "{}: {actual}, not {expected}", run.stand.setup.name);
-        }
+    runs().iter().for_each(check_shares);
+}
+
+/// The map is computed in 32 bits from the fit that the references also use.
+fn check_shares(run: &Run) {
+    let size = run.direct_fraction.size();
+    let scale = run.region.size_px.as_dvec2() / size.as_dvec2();
+    let expected = Raster::from_fn(size, |texel| {
+        let Some(point) = run.region.receiver_point(centre_px(texel) * scale) else {
+            return DVec3::ZERO;
+        };
+        let lights = 0..run.region.lights.len();
+        lights
+            .map(|i| run.solution.light_fraction(&run.region, i, point))
+            .sum()
+    });
+    for (actual, expected) in run.direct_fraction.texels().iter().zip(expected.texels()) {
+        let error = (actual - expected).abs().max_element();
+        assert!(error < 1e-4, "{}: {actual}, not {expected}", run.stand.setup.name);
     }
 }

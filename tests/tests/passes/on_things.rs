@@ -39,11 +39,21 @@ fn shown(scene: &Scrambled) -> Raster<DVec4> {
     })
 }
 
+/// Marks of things, some of which hide another one.
+fn validity(size: UVec2) -> Raster<DVec4> {
+    Raster::from_fn(size, |at| {
+        let alpha = [0.8, 0.6, 0.8, 0.4, 0.2][(at.x / 7 + at.y / 11) as usize % 5];
+        DVec4::new(0.0, 0.0, number(at / 6, 91).round(), alpha)
+    })
+}
+
 /// Errors of the plate with things that `source` makes.
 fn errors(source: &str) -> Errors {
-    let (device, scene) = (Device::shared(), Scrambled::new());
+    let (device, mut scene) = (Device::shared(), Scrambled::new());
+    // A warm light, whose share in red would be more than all of the light.
+    scene.solution.receivers[0].direct_fractions[0] = DVec3::new(0.64, 0.38, 0.2);
     let size = scene.rect.size_px;
-    let (things, shown) = (things(size), shown(&scene));
+    let (things, shown, validity) = (things(size), shown(&scene), validity(size));
     let columns = [0, 1, 2].map(|index| things.codes_px_from_region_px.as_mat3().col(index).extend(0.0));
     let of_codes = |codes: [u8; 4]| DVec4::from_array(codes.map(|code| f64::from(code) / 255.0));
     let maps = [
@@ -51,6 +61,7 @@ fn errors(source: &str) -> Errors {
         device.map(&scene.plate),
         device.map(&scene.visibility),
         device.map(&shown),
+        device.map(&validity),
     ];
     let view = device.uniform(&columns.map(|column| column.to_array()));
     let mut own = buffers(0, std::slice::from_ref(&view));
@@ -60,6 +71,7 @@ fn errors(source: &str) -> Errors {
     let photographed = scene.plate.map(|texel| texel.w);
     let shaded = Shaded {
         things: &things,
+        validity: &validity,
         photographed: &photographed,
         shown: &shown,
         camera_in_anchor: DVec3::from(scene.stand.globals(&scene.rect).camera_in_anchor.map(f64::from)),
@@ -68,8 +80,15 @@ fn errors(source: &str) -> Errors {
     let expected = Raster::from_fn(size, |texel| {
         on_things(&scene.region, &pictures, &scene.solution, &shaded, texel)
     });
-    let n_relit = expected.texels().iter().filter(|texel| texel.w == RELIT).count();
-    assert!(n_relit > 500, "{n_relit} pixels are in a shadow");
+    let is_in = |texel: &&DVec4| texel.w > RELIT[0] && texel.w < RELIT[1];
+    let n_relit = expected.texels().iter().filter(is_in).count();
+    assert!(n_relit > 100, "{n_relit} pixels are in part in a shadow");
+    let n_hidden = expected
+        .texels()
+        .iter()
+        .filter(|texel| texel.w == RELIT[1])
+        .count();
+    assert!(n_hidden > 500, "{n_hidden} pixels are made");
     Errors::between(pairs_of(&actual, &expected))
 }
 
@@ -92,6 +111,13 @@ fn a_fault_in_the_shadow_on_things_is_found() {
         ("!= 0u { return vec2f(1.0)", "!= 1u { return vec2f(1.0)"),
         ("mix(f / fit.gain.rgb", "mix(f"),
         ("(256.0 * codes.x", "(255.0 * codes.x"),
+        (
+            "min(of_thing.y * total / mean, vec3f(1.0))",
+            "of_thing.y * total / mean",
+        ),
+        ("1.0 - marks.b", "0.0"),
+        ("if is_before_thing(marks) { return b; }", ""),
+        ("RELIT_RANGE * made", "RELIT_RANGE"),
     ];
     check_faults("on_things", &faults, ALLOWED, errors);
 }

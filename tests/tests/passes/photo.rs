@@ -20,12 +20,16 @@ const N_POINTS: usize = 64;
 
 /// The solution with which the pictures are made.
 pub(crate) fn truth(n_lights: usize) -> Solution {
-    // Fractions on the table, then on the wall, which has the second light behind it.
+    // Fractions on the table, then on the wall, which has the second light behind it, and on others.
+    let of_wall = [DVec3::new(0.7, 0.66, 0.58), DVec3::ZERO];
     let direct_fractions = [
         [DVec3::new(0.34, 0.38, 0.44), DVec3::new(0.24, 0.2, 0.14)],
-        [DVec3::new(0.7, 0.66, 0.58), DVec3::ZERO],
+        of_wall,
+        of_wall,
+        of_wall,
     ];
-    let bounces = [DVec3::new(0.25, 0.15, 0.08), DVec3::new(0.1, 0.18, 0.22)];
+    let of_others = DVec3::new(0.1, 0.18, 0.22);
+    let bounces = [DVec3::new(0.25, 0.15, 0.08), of_others, of_others, of_others];
     let receivers = bounces
         .iter()
         .zip(direct_fractions)
@@ -186,7 +190,7 @@ impl Photo {
 fn smooth(point: ReceiverPoint) -> DVec3 {
     let at = point.in_plane;
     let colors = [DVec3::new(0.42, 0.36, 0.3), DVec3::new(0.3, 0.34, 0.4)];
-    colors[point.receiver] * (1.0 + 0.2 * (25.0 * at.x).sin() * (21.0 * at.y).cos())
+    colors[point.receiver.min(1)] * (1.0 + 0.2 * (25.0 * at.x).sin() * (21.0 * at.y).cos())
 }
 
 /// A pattern similar to wood: grain, knots and speckle.
@@ -195,13 +199,13 @@ fn wood(point: ReceiverPoint) -> DVec3 {
     let grain = (170.0 * at.x + 2.0 * (31.0 * at.y).sin()).sin();
     let speckle = (9000.0 * at.x).sin() * (8000.0 * at.y).sin();
     let colors = [DVec3::new(0.55, 0.42, 0.3), DVec3::new(0.35, 0.4, 0.45)];
-    colors[point.receiver] * (1.0 + 0.22 * grain + 0.08 * speckle)
+    colors[point.receiver.min(1)] * (1.0 + 0.22 * grain + 0.08 * speckle)
 }
 
 /// A faint light that is not listed.
 fn faint_light(point: ReceiverPoint) -> DVec3 {
     let middles = [DVec2::new(0.08, 0.03), DVec2::new(-0.03, 0.01)];
-    let from_middle = point.in_plane - middles[point.receiver];
+    let from_middle = point.in_plane - middles[point.receiver.min(1)];
     0.012 * (-from_middle.length_squared() / 0.002).exp() * DVec3::new(1.0, 0.4, -0.5)
 }
 

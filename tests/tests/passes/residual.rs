@@ -1,13 +1,15 @@
 //! `residual` with `fill`, for the light that the device fitted.
 
 use reference::fill::fill;
+use reference::model::{ReceiverPoint, centre_px};
+use reference::raster::texels_of;
 use reference::residual::pool;
 
 use crate::device::Device;
 use crate::errors::{Errors, channels};
 use crate::photo::photograph;
 use crate::run::{Run, runs};
-use crate::setups::BOOK;
+use crate::setups::{BOOK, PILE};
 use crate::stand::Stand;
 
 #[test]
@@ -21,6 +23,31 @@ fn beside_a_book() {
     let (device, stand) = (Device::shared(), Stand::new(BOOK));
     let pictures = photograph(&stand);
     check_residuals(&Run::new(stand, pictures, &device.decoded()).unwrap());
+}
+
+/// What several books hide is not added up: some of the sky is left, and no share of no light.
+#[test]
+fn beside_a_pile_of_books() {
+    let (device, stand) = (Device::shared(), Stand::new(PILE));
+    let pictures = photograph(&stand);
+    let run = Run::new(stand, pictures, &device.decoded()).unwrap();
+    let points = texels_of(run.region.size_px).filter_map(|at| run.region.receiver_point(centre_px(at)));
+    let sum = |point: &ReceiverPoint| {
+        let tops = run.region.receivers[1..].iter();
+        tops.map(|top| run.region.sky_hidden_by(top, *point)).sum::<f64>()
+    };
+    let n_dark = points
+        .filter(|point| point.receiver == 0 && run.region.falloff(0, *point) == 0.0 && sum(point) > 1.0);
+    assert!(n_dark.count() > 20, "all points see a light, or too much sky");
+    // The books between are hardly seen: their fits are not compared.
+    assert!(
+        run.solution
+            .receivers
+            .iter()
+            .all(|receiver| receiver.bounce.is_finite())
+    );
+    let mut shares = run.direct_fraction.texels().iter();
+    assert!(shares.all(|share| share.is_finite()));
 }
 
 pub(crate) fn check_residuals(run: &Run) {

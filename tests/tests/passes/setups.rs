@@ -25,6 +25,8 @@ pub(crate) enum Beside {
     Wall,
     /// A book, of which the top is a receiver: it hides light and sky from the table.
     Book,
+    /// Three equal books, each lying on another.
+    Pile,
 }
 
 impl Setup {
@@ -97,6 +99,12 @@ pub(crate) const BOOK: Setup = Setup {
     lights: &[BULB],
     beside: Beside::Book,
     ..NEAR
+};
+/// The table beside the pile sees none of the light, and little of the sky.
+pub(crate) const PILE: Setup = Setup {
+    name: "pile",
+    beside: Beside::Pile,
+    ..BOOK
 };
 /// Ambient light alone.
 pub(crate) const NO_LIGHT: Setup = Setup {

@@ -218,18 +218,21 @@ fn receivers(world_from_table: &DMat4, beside: Beside) -> Vec<Receiver> {
         half_extent_m,
         surface: Surface::Textured,
     };
-    let table_from_book =
-        DMat4::from_rotation_translation(DQuat::from_rotation_y(0.3), DVec3::new(-0.11, 0.025, 0.03));
-    let book = Receiver {
-        name: "book".to_owned(),
-        world_from_plane: *world_from_table * table_from_book,
-        half_extent_m: DVec2::new(0.045, 0.06),
-        surface: Surface::Textured,
+    let book = |height_m: f64| {
+        let middle = DVec3::new(-0.11, height_m, 0.03);
+        let table_from_book = DMat4::from_rotation_translation(DQuat::from_rotation_y(0.3), middle);
+        Receiver {
+            name: "book".to_owned(),
+            world_from_plane: *world_from_table * table_from_book,
+            half_extent_m: DVec2::new(0.045, 0.06),
+            surface: Surface::Textured,
+        }
     };
     match beside {
         Beside::Nothing => vec![table],
         Beside::Wall => vec![table, wall],
-        Beside::Book => vec![table, book],
+        Beside::Book => vec![table, book(0.025)],
+        Beside::Pile => vec![table, book(0.03), book(0.06), book(0.09)],
     }
 }
 

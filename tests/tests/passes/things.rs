@@ -38,7 +38,10 @@ const MOST: f64 = 255.0;
 fn errors(source: &str) -> Errors {
     let (device, things) = (Device::shared(), things());
     let size = UVec2::new(123, 101);
-    let validity = numbers(size, 3).map(|texel: DVec4| texel.map(f64::round));
+    // Some pixels are marked already.
+    let alpha = |at: UVec2| [1.0, 0.8, 0.6][(at.x / 5 + at.y / 3) as usize % 3];
+    let numbers: Raster<DVec4> = numbers(size, 3);
+    let validity = Raster::from_fn(size, |at| numbers.at(at).truncate().round().extend(alpha(at)));
     let columns = [0, 1, 2].map(|index| things.codes_px_from_region_px.as_mat3().col(index).extend(0.0));
     let of_codes = |codes: [u8; 4]| DVec4::from_array(codes.map(|code| f64::from(code) / 255.0));
     let maps = [device.map(&things.codes.map(of_codes)), device.map(&validity)];
@@ -66,7 +69,12 @@ fn a_fault_in_marking_things_is_found() {
     let faults = [
         ("CODE_BEFORE_TOY: u32 = 2u", "CODE_BEFORE_TOY: u32 = 3u"),
         ("MIXED_PX: f32 = 2.0", "MIXED_PX: f32 = 1.0"),
-        ("of_toy, marks.r, THING", "of_toy, marks.b, THING"),
+        ("of_toy, clear, THING - less", "of_toy, marks.b, THING - less"),
+        ("clear, BEFORE_TOY - less", "marks.r, BEFORE_TOY - less"),
+        (
+            "vec4f(0.0, 0.0, clear, BEFORE_TOY - less)",
+            "vec4f(0.0, 0.0, clear, BEFORE_TOY)",
+        ),
         ("floor(at.xy / at.z)", "round(at.xy / at.z)"),
         ("of_toy = 0.0", "of_toy = 1.0"),
         ("return vec4f(mark.gba, 1.0)", "return vec4f(1.0)"),

@@ -3,6 +3,7 @@
 use glam::{DMat4, DVec2, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::gpu::context::{Gpu, GpuError};
+use crate::gpu::shader::{Mirrors, mirrors};
 use crate::gpu::texture::Texture;
 use crate::model::Model;
 use crate::model::capture::appearance::source_texel;
@@ -12,8 +13,14 @@ use crate::model::frame::coverage::{COVERED_CODES, N_POSITIONS};
 use crate::model::state::solution::Fit;
 use crate::passes::globals::{Globals, ReceiverPlane};
 use crate::readback::{FloatMap, Map, read_texture};
-use app_scene::geometry::opaque::{hidden_light, hidden_sky, is_top};
-use app_scene::scene::Image;
+use app_scene::geometry::opaque::{LEAST_SKY, SHARPEST_M, STANDS, hidden_light, hidden_sky, is_top};
+use app_scene::scene::{Image, MAX_RECEIVERS};
+
+/// What the tops of things hide, as shaders have it.
+pub(crate) const PLATE_LIGHT: Mirrors = mirrors!(
+    "common/plate_light",
+    constants: [LEAST_SKY, SHARPEST_M, STANDS]
+);
 
 impl Model {
     /// Waits for the device and returns a map.
@@ -179,33 +186,44 @@ fn direct_fraction_at(globals: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
 /// Part of a light that the other receivers leave at a point of one.
 fn unhidden(globals: &Globals, light: usize, (own, in_plane): (usize, Vec2)) -> f32 {
     let from = Vec3::new(in_plane.x, 0.0, in_plane.y).as_dvec3();
-    let hidden = tops(globals, own).map(|(own_from_top, top)| {
+    let hidden = hidden_by_all(globals, own, |own_from_top, top| {
         let here = own_from_top.inverse().transform_point3(from);
         let centre = Vec4::from_array(top.lights[light]).as_dvec4();
         hidden_light(here, centre, f64::from(globals.light_radii[light]), ends(top))
     });
-    #[allow(clippy::cast_possible_truncation, reason = "a part, to 7 digits")]
-    let left = (1.0 - hidden.sum::<f64>()).max(0.0) as f32;
-    left
+    (1.0 - hidden).max(0.0)
 }
 
 /// Part of the sky that the other receivers leave at a point of one.
 fn open_sky(globals: &Globals, (own, in_plane): (usize, Vec2)) -> f32 {
-    let hidden = tops(globals, own)
-        .map(|(own_from_top, top)| hidden_sky(in_plane.as_dvec2(), &own_from_top, ends(top)));
-    #[allow(clippy::cast_possible_truncation, reason = "a part, to 7 digits")]
-    let left = (1.0 - hidden.sum::<f64>()).max(0.0) as f32;
-    left
+    let hidden = hidden_by_all(globals, own, |own_from_top, top| {
+        hidden_sky(in_plane.as_dvec2(), own_from_top, ends(top))
+    });
+    (1.0 - hidden).max(LEAST_SKY)
 }
 
-/// The receivers that may be tops of what stands on one of them, each with the matrix from its space
-/// to that one's.
-fn tops(globals: &Globals, own: usize) -> impl Iterator<Item = (DMat4, &ReceiverPlane)> {
+/// What the tops of things on a receiver hide together: each adds what those below it do not hide.
+/// `hidden` is the part of one, from the matrix from its space to the receiver's.
+fn hidden_by_all(globals: &Globals, own: usize, hidden: impl Fn(&DMat4, &ReceiverPlane) -> f64) -> f32 {
     let own_from_anchor = plane_from_anchor(&globals.receivers[own]);
+    let mut parts = [0.0; MAX_RECEIVERS];
     let receivers = globals.receivers.iter().take(globals.n_receivers as usize);
-    let others = receivers.enumerate().filter(move |(index, _)| *index != own);
-    let turned = others.map(move |(_, other)| (own_from_anchor * plane_from_anchor(other).inverse(), other));
-    turned.filter(|(own_from_other, _)| is_top(own_from_other))
+    for (index, (part, other)) in parts.iter_mut().zip(receivers).enumerate() {
+        let own_from_other = own_from_anchor * plane_from_anchor(other).inverse();
+        if index != own && is_top(&own_from_other) {
+            *part = hidden(&own_from_other, other);
+        }
+    }
+    let added = parts.iter().zip(&globals.receivers).map(|(part, receiver)| {
+        let below = parts.iter().zip(receiver.stands_on);
+        let most = below
+            .map(|(part, below)| part * f64::from(below))
+            .fold(0.0, f64::max);
+        (part - most).max(0.0)
+    });
+    #[allow(clippy::cast_possible_truncation, reason = "a part, to 7 digits")]
+    let all = added.sum::<f64>() as f32;
+    all
 }
 
 fn plane_from_anchor(receiver: &ReceiverPlane) -> DMat4 {

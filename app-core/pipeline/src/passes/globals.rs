@@ -1,6 +1,6 @@
 //! Uniforms shared by all passes: region, receivers, lights.
 
-use glam::{DMat3, DMat4, DVec2, Mat3, Mat4, Vec3, Vec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, Mat3, Mat4, Vec3, Vec4};
 
 use crate::geometry::anchored::AnchoredReceiver;
 use crate::geometry::rect::{PixelRect, PlaneRect};
@@ -33,6 +33,7 @@ shared_struct! {
         pub reference_in_plane: [f32; 2],
         pub _pad: [f32; 2],
         pub rect: [f32; 4],
+        pub stands_on: [f32; MAX_RECEIVERS],
     }
 }
 
@@ -267,7 +268,26 @@ fn receiver_plane(
         reference_in_plane: reference.as_vec2().to_array(),
         _pad: [0.0; 2],
         rect: [min.x, min.y, max.x, max.y].map(narrowed),
+        stands_on: stands_on(receiver, layout.receivers),
     }
+}
+
+/// 1 for each of the receivers above which the middle of one is.
+fn stands_on(receiver: &AnchoredReceiver, receivers: &[AnchoredReceiver]) -> [f32; MAX_RECEIVERS] {
+    let PlaneRect { min, max } = receiver.rect;
+    let middle = 0.5 * (min + max);
+    let in_world = receiver
+        .world_from_plane
+        .transform_point3(DVec3::new(middle.x, 0.0, middle.y));
+    let mut slots = [0.0; MAX_RECEIVERS];
+    for (slot, below) in slots.iter_mut().zip(receivers) {
+        let here = below.world_from_plane.inverse().transform_point3(in_world);
+        let is_other = !std::ptr::eq(below, receiver);
+        if is_other && here.y > 0.0 && below.rect.holds(DVec2::new(here.x, here.z)) {
+            *slot = 1.0;
+        }
+    }
+    slots
 }
 
 /// Bits of the receivers; bit k is 1 if receiver k is seen from behind.

@@ -1,7 +1,10 @@
 //! The things in a picture, and the warnings about them.
 
 use super::Stage;
+use super::footprint::Footprint;
 use crate::frame::warning::{Thing, Warning};
+use crate::geometry::displacement::is_same_view;
+use crate::geometry::view::View;
 use crate::gpu::Gpu;
 use crate::passes::thing_marks::Things;
 use crate::preset::Settings;
@@ -17,6 +20,17 @@ impl Stage {
         if !is_known {
             self.things = given.map(|given| Things::new(gpu, given));
         }
+    }
+
+    /// Whether shadows fall on things in a view: it must be that of their picture and of a plate,
+    /// since both are transferred by a receiver's plane, which the things are not on.
+    pub(super) fn has_raised_things(&self, footprint: &Footprint) -> bool {
+        let things = self.things.as_ref().filter(|things| things.has_raised());
+        things.is_some_and(|things| {
+            let of_marks = View::new(self.size_px(), things.given().camera());
+            let views = [&of_marks, &footprint.view];
+            footprint.choice.is_same_view && is_same_view(views, &footprint.corners_in_world)
+        })
     }
 
     /// Warnings about things beside the toy in the pictures.

@@ -295,7 +295,7 @@ impl Stage {
             is_plate_complete: self.is_plate_complete(footprint, &region)
                 && !self.things.as_ref().is_some_and(Things::is_plate_wrong),
             has_things: self.things.is_some() || self.people.marks().is_some(),
-            has_raised_things: self.things.as_ref().is_some_and(Things::has_raised),
+            has_raised_things: self.has_raised_things(footprint),
             are_plates_scaled: footprint.plate_views.are_scaled(),
             sharpness: self.sharpness,
             is_softened: soft::is_soft(self.sharpness) || known.is_some_and(|plan| plan.is_softened),

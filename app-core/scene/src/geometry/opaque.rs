@@ -6,15 +6,19 @@ use glam::{DMat4, DVec2, DVec3, DVec4, Vec3Swizzles};
 
 /// Least radius of a light's disc, projected onto a rectangle, in metres: a pixel shows no sharper
 /// edge.
-const SHARPEST_M: f64 = 5e-4;
-/// Least cosine between a receiver and the top of what stands on it.
-const STANDS: f64 = 0.5;
+pub const SHARPEST_M: f32 = 5e-4;
+/// Least cosine between a receiver and the top of what stands on it: a ramp of up to 60 degrees has
+/// a top, and what is steeper is taken for a wall.
+pub const STANDS: f32 = 0.5;
+/// Least part of the sky that a point sees: in the narrowest gap some of its light arrives by
+/// reflection, and a plate without any light has no shares of it.
+pub const LEAST_SKY: f32 = 0.02;
 
 /// Whether a rectangle may be the top of what stands on a plane y = 0; the matrix leads from its
 /// space to the plane's. An upright one is a wall, which may have a window, or a side.
 #[must_use]
 pub fn is_top(plane_from_rect: &DMat4) -> bool {
-    plane_from_rect.y_axis.y >= STANDS
+    plane_from_rect.y_axis.y >= f64::from(STANDS)
 }
 
 /// The part of a light that an opaque rectangle on the plane y = 0 hides from a point, 0 to 1.
@@ -33,7 +37,7 @@ pub fn hidden_light(from: DVec3, light: DVec4, radius: f64, [min, max]: [DVec2; 
     // Half the axes of the disc, projected onto the plane from the point.
     let slope = to_light.xz() / to_light.y;
     let radius = part * radius * (DVec2::ONE + slope * slope).map(f64::sqrt);
-    let radius = radius.max(DVec2::splat(SHARPEST_M));
+    let radius = radius.max(DVec2::splat(f64::from(SHARPEST_M)));
     let parts = |t: DVec2| t.map(disc_part);
     let within = (parts((at - min) / radius) + parts((max - at) / radius) - 1.0).max(DVec2::ZERO);
     within.element_product()

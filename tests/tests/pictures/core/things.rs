@@ -98,6 +98,13 @@ fn a_shadow_moves_on_a_thing_whose_points_are_known() {
 }
 
 #[test]
+fn a_point_too_high_for_its_code_is_none() {
+    let heights =
+        [0.655, 0.656, 2.0, -0.1, f64::NAN].map(|height_m| RaisedPoint::new(height_m, 0.5).height());
+    assert_eq!(heights, [65500, 0, 0, 0, 0]);
+}
+
+#[test]
 fn a_scene_is_learned_anew_once_things_are_known() {
     let (scene, input) = staged();
     let marked = with(&input, &[(Mark::Thing, IN_SHADOW)]);

@@ -150,6 +150,7 @@ impl FramePath<'_> {
             seen: self.seen(),
             things,
             plate: &self.captured.plate.view,
+            validity: &self.captured.by_pass.validity.marks.view,
             physical_visibility: &self.captured.light.visibility.lights.view,
             visibility: &self.drawn.light.visibility.lights.view,
         }

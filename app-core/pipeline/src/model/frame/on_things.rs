@@ -21,6 +21,7 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
     Slot::Texture,
+    Slot::Texture,
 ];
 /// Format of what is shown: more precise than codes, since its alpha is.
 const FORMAT: TextureFormat = FINE_FORMAT;
@@ -38,6 +39,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) seen: SeenScene<'a>,
     pub(crate) things: &'a Things,
     pub(crate) plate: &'a TextureView,
+    pub(crate) validity: &'a TextureView,
     pub(crate) physical_visibility: &'a TextureView,
     pub(crate) visibility: &'a TextureView,
 }
@@ -80,6 +82,7 @@ impl Pass {
             inputs.plate.into(),
             inputs.physical_visibility.into(),
             inputs.visibility.into(),
+            inputs.validity.into(),
         ];
         let groups = [
             inputs.seen.bind(recorder, draw),
