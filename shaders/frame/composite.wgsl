@@ -4,8 +4,7 @@
 //   out = frame + gain plate (M' - M) if the receiver is visible and M' is near M: r is the pixel's
 //                                     own, so the frame passes; also for unexplained things
 //   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r), not a plate
-// A glossy receiver's reflection is subtracted from the frame first, and that of the shown toy is
-// added last.
+// A glossy receiver's reflection is removed from the frame first, and the shown toy's is added last.
 //
 // Reads: all state of the receiver, visibility and ambient of the animated pose, the drawn toy.
 // Writes: linear colour, opaque. CPU reference: tests/reference/src/composite.rs.
@@ -138,8 +137,7 @@ fn receiver(
   if b.a == 0.0 { return f; }
   let lit = fit.gain.rgb * b.rgb;
   let point = receiver_point(at);
-  // A thing stays as photographed; where the real toy hides it, the plate has its light, and in the
-  // toy's shadow all that is shown.
+  // A thing stays as photographed, but for where the real toy hides it or the toy's shadow moves.
   if is_thing(evident) {
     *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.b);
     if is_relit(b) { return relit(b, f); }

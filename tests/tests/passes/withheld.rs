@@ -96,7 +96,7 @@ fn a_fault_in_withholding_is_found() {
     let faults = [
         ("LIT: f32 = 0.95", "LIT: f32 = 0.7"),
         (".r == 0.0", ".r < 0.0"),
-        ("< MAX_RECEIVERS;", "<= MAX_RECEIVERS;"),
+        ("(point) < MAX_RECEIVERS;", "(point) <= MAX_RECEIVERS;"),
         (", smallest(", ", largest("),
         (".b)),", ".g)),"),
     ];
