@@ -144,10 +144,10 @@ fn hidden_by_thing(rect: vec4f, turn: mat3x3f, origin: vec3f) -> f32 {
   return hidden;
 }
 
-// Part of the sky that is open above a point, LEAST_SKY at least. The faces that hide the rest count as dark: the toy's
-// shadow on a receiver beside a lit face is on the face, too. With .7 and 1.3 of their part, the
-// RMS error of the shadow beside two listed books is .59 and .57 for .56 codes, and 1.36 and 1.40
-// for 1.33.
+// Part of the sky that is open above a point, LEAST_SKY at least. The faces that hide the rest count
+// as dark: the toy's shadow on a receiver beside a lit face is on the face, too. With .7 and 1.3 of
+// their part, the RMS error of the shadow beside two listed books is .59 and .57 for .56 codes, and
+// 1.36 and 1.40 for 1.33.
 fn open_sky(point: ReceiverPoint) -> f32 {
   let own = receiver_of(point);
   let own_turn = transpose(anchor_turn(own));

@@ -7,7 +7,7 @@ use glam::DMat4;
 use super::Aligner;
 use super::kept_lights::KeptLights;
 use super::lights::{Joined, OfOutline, joined};
-use super::photograph::{MOST_OUTLINE_PX, Photograph, apart};
+use super::photograph::{MOST_OUTLINE_PX, Photograph, apart, middle_of_toy};
 use super::pose::{LEAST_EVIDENCE, stand};
 use super::report::Stand;
 use super::view::Seen;
@@ -73,8 +73,7 @@ impl Aligner {
         }
         let camera = seen.input.camera.world_from_camera;
         let world_from_object = camera * motion * camera.inverse() * seen.input.world_from_object;
-        let middle = self.scene.toy.bounds_of_pose(&self.scene.physical_pose)?;
-        let middle = 0.5 * (middle.min + middle.max).as_dvec3();
+        let middle = middle_of_toy(&self.scene)?;
         let stand = photograph.stand(&self.scene, &world_from_object)?;
         if let Some(report) = &mut seen.view.report {
             (report.moved_m, report.turned_rad) = apart(&seen.view.given, &world_from_object, middle);

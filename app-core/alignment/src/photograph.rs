@@ -314,9 +314,7 @@ impl Photograph {
     ) -> Result<EstimatedLights, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let world_from_camera = &input.camera.world_from_camera;
-        let bounds = scene.toy.bounds_of_pose(&scene.physical_pose)?;
-        let middle = 0.5 * (bounds.min + bounds.max).as_dvec3();
-        let middle_in_world = input.world_from_object.transform_point3(middle);
+        let middle_in_world = input.world_from_object.transform_point3(middle_of_toy(scene)?);
         let initial_lights = by_probe.iter();
         let initial_lights =
             initial_lights.filter_map(|light| InitialLight::new(light, &self.camera_from_world));
@@ -390,6 +388,12 @@ impl PoseStart {
             ground: self.ground,
         }
     }
+}
+
+/// Centre of the toy's box in its physical pose, in its own space.
+pub(super) fn middle_of_toy(scene: &Scene) -> Result<DVec3, ToyError> {
+    let bounds = scene.toy.bounds_of_pose(&scene.physical_pose)?;
+    Ok(0.5 * (bounds.min + bounds.max).as_dvec3())
 }
 
 /// Difference of two poses: metres that a point of the object moves, and the angle in radians.

@@ -7,6 +7,11 @@ use app_scene::scene::{Image, Intrinsics};
 use app_scene::sharpness::Spread;
 use app_scene::things::Mark;
 
+/// Mean of a colour's channels.
+pub(crate) fn brightness(color: &Color) -> f32 {
+    color.iter().sum::<f32>() / 3.0
+}
+
 /// Index of a place within a rectangle; `None` outside it.
 pub(super) fn index_in(size_px: IVec2, place: IVec2) -> Option<usize> {
     let is_inside = place.cmpge(IVec2::ZERO).all() && place.cmplt(size_px).all();

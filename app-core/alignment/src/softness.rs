@@ -10,7 +10,7 @@ use glam::{DVec2, IVec2};
 use nalgebra::{Matrix3, Vector3};
 
 use super::median::median;
-use super::picture::{Level, Mask, places, taps_along};
+use super::picture::{Level, Mask, brightness, places, taps_along};
 use super::raster::Coverage;
 use app_scene::sharpness::{Sharpness, Spread};
 
@@ -183,7 +183,7 @@ fn textures(level: &Level, coverage: &Coverage) -> Option<(Grey, Grey, Mask)> {
     let read = |picture: &super::picture::Picture| {
         let roots = places(size_px).map(|at| {
             let color = picture.get(origin_px + at)?;
-            Some((color.iter().sum::<f32>() / 3.0).max(0.0).sqrt())
+            Some(brightness(&color).max(0.0).sqrt())
         });
         roots.collect::<Vec<Option<f32>>>()
     };

@@ -15,7 +15,7 @@ use super::lamp::Lamp;
 use super::shading::{FIRST_LAMP, Factors, Shading};
 use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
 use crate::median::median;
-use crate::picture::{Color, Level, index_in, noise_deviation, places};
+use crate::picture::{Color, Level, brightness, index_in, noise_deviation, places};
 use crate::raster::{Rasterizer, project};
 use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
@@ -202,11 +202,10 @@ fn share(shadows: &Shadows<'_>, taken: &[Vec<f32>], lamp: usize, gain: &Color) -
         .filter(|index| is_hidden(*index) && shadows.pixels[*index].has_evidence())
         .filter_map(|index| implied(shadows, index, taken[lamp][index], gain))
         .collect();
-    let mean = |vote: &Color| vote.iter().sum::<f32>() / 3.0;
-    let peak = peak(votes.iter().map(mean))?;
+    let peak = peak(votes.iter().map(brightness))?;
     let of_peak: Vec<Color> = votes
         .into_iter()
-        .filter(|vote| (mean(vote) - peak).abs() < OF_PEAK)
+        .filter(|vote| (brightness(vote) - peak).abs() < OF_PEAK)
         .collect();
     medians(&of_peak)
 }
@@ -423,7 +422,7 @@ impl Compared {
 
     /// The share of the light that the model blocks.
     pub(crate) fn taken(&self) -> f32 {
-        1.0 - self.model.iter().sum::<f32>() / 3.0
+        1.0 - brightness(&self.model)
     }
 
     /// Whether the model blocks a visible share of light.

@@ -7,15 +7,15 @@
 use std::collections::BTreeMap;
 
 use glam::DMat4;
-use nalgebra::{DMatrix, DVector, SMatrix};
+use nalgebra::{DMatrix, DVector};
 
 use super::follow::View;
 use super::lamp::{Lamp, N_PARTS};
 use super::prior::Prior;
-use super::shading::{FIRST_LAMP, Factors, N_FACTORS, PRIOR, Shaded, Shading};
+use super::shading::{FIRST_LAMP, Factors, Shaded, Shading};
 use super::shadows::{LEAST_PIXELS, ROBUST_NEAR, Shadows};
 use super::step::{Slope, bounded, difference_px};
-use super::uncertainty::tile_px;
+use super::uncertainty::Block;
 use crate::raster::Rasterizer;
 use crate::rigid_motion::{Matrix6, RigidMotion, Vector6};
 use crate::shape::Shape;
@@ -209,26 +209,18 @@ impl Shadows<'_> {
     fn system(&self, (taken, columns): (&[Vec<f32>], &[Column]), shading: &Shading) -> System {
         let n = columns.len();
         let shaded = self.shaded(taken);
-        let mut blocks = vec![(square(PRIOR), DMatrix::zeros(N_FACTORS, n)); 3 * shading.factors.len()];
+        let mut blocks = vec![Block::new(n); 3 * shading.factors.len()];
         self.each(&shaded, columns, shading, |one| {
-            let (normal, mixed) = &mut blocks[one.block];
-            *normal += one.weight * one.factors * one.factors.transpose();
-            mixed.ger(one.weight, &one.factors, &one.row, 1.0);
+            blocks[one.block].add(&one.factors, one.row, one.weight);
         });
-        let solved = blocks.into_iter().map(|(normal, mixed)| match normal.cholesky() {
-            Some(factor) => factor.solve(&mixed),
-            None => DMatrix::zeros(N_FACTORS, n),
-        });
-        let solved: Vec<DMatrix<f64>> = solved.collect();
+        let solved: Vec<DMatrix<f64>> = blocks.into_iter().map(Block::solved).collect();
         let (mut normal, mut side) = (DMatrix::zeros(n, n), DVector::zeros(n));
         let mut scores: BTreeMap<[i32; 2], DVector<f64>> = BTreeMap::new();
-        let tile_px = tile_px(self.px_per_rad);
         self.each(&shaded, columns, shading, |one| {
-            let own = &one.row - solved[one.block].tr_mul(&one.factors);
+            let own = one.row - solved[one.block].tr_mul(&one.factors);
             normal.ger(one.weight, &own, &own, 1.0);
             side.axpy(one.weight * one.residual, &own, 1.0);
-            let at = self.pixels[one.pixel].at.as_dvec2();
-            let score = scores.entry((at / tile_px).floor().as_ivec2().to_array());
+            let score = scores.entry(self.tile(self.pixels[one.pixel].at));
             let score = score.or_insert_with(|| DVector::zeros(n));
             score.axpy(one.weight * one.residual, &own, 1.0);
         });
@@ -244,7 +236,7 @@ impl Shadows<'_> {
         shaded: &Shaded<'_>,
         columns: &[Column],
         shading: &Shading,
-        mut visit: impl FnMut(&Observation),
+        mut visit: impl FnMut(&Observation<'_>),
     ) {
         let mut row = DVector::zeros(columns.len());
         for (pixel, seen) in self.pixels.iter().enumerate() {
@@ -266,7 +258,7 @@ impl Shadows<'_> {
                     block: 3 * seen.receiver + channel,
                     pixel,
                     factors: one.row,
-                    row: row.clone(),
+                    row: &row,
                     weight: one.weight,
                     residual: one.residual,
                 });
@@ -276,18 +268,14 @@ impl Shadows<'_> {
 }
 
 /// One channel of a pixel.
-struct Observation {
+struct Observation<'a> {
     /// Index of its receiver and channel.
     block: usize,
     pixel: usize,
     /// Its derivatives by the factors of the light.
     factors: Factors,
     /// By lamps and pose.
-    row: DVector<f64>,
+    row: &'a DVector<f64>,
     weight: f64,
     residual: f64,
-}
-
-fn square(diagonal: f64) -> SMatrix<f64, N_FACTORS, N_FACTORS> {
-    SMatrix::identity() * diagonal
 }

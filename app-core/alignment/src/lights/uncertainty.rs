@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat4, DQuat, DVec3, IVec2};
 use nalgebra::{DMatrix, DVector};
 
 use super::lamp::{Lamp, N_PARTS};
@@ -75,22 +75,28 @@ struct Observation {
 
 /// Normal equations of the factors of one receiver and channel.
 #[derive(Clone)]
-struct Block {
+pub(super) struct Block {
     normal: DMatrix<f64>,
     /// Mixed terms of factors and of lamps and pose.
     mixed: DMatrix<f64>,
 }
 
 impl Block {
-    fn new(n_columns: usize) -> Self {
+    pub(super) fn new(n_columns: usize) -> Self {
         Self {
             normal: DMatrix::identity(N_FACTORS, N_FACTORS) * PRIOR,
             mixed: DMatrix::zeros(N_FACTORS, n_columns),
         }
     }
 
+    /// Adds a residual by its derivatives by the factors, and by lamps and pose.
+    pub(super) fn add(&mut self, factors: &Factors, row: &DVector<f64>, weight: f64) {
+        self.normal.ger(weight, factors, factors, 1.0);
+        self.mixed.ger(weight, factors, row, 1.0);
+    }
+
     /// The factors' compensation for a change of each column.
-    fn solved(self) -> DMatrix<f64> {
+    pub(super) fn solved(self) -> DMatrix<f64> {
         let Self { normal, mixed } = self;
         let n_columns = mixed.ncols();
         normal.cholesky().map_or_else(
@@ -121,7 +127,6 @@ impl Shadows<'_> {
         let shaded = self.shaded(&taken);
         let (observations, blocks) = self.observations(&shaded, &changes, robust);
         let solved: Vec<DMatrix<f64>> = blocks.into_iter().map(Block::solved).collect();
-        let tile_px = tile_px(self.px_per_rad);
         let n_columns = changes.n_columns();
         let mut normal = DMatrix::<f64>::zeros(n_columns, n_columns);
         let mut tiles: BTreeMap<[i32; 2], DVector<f64>> = BTreeMap::new();
@@ -131,8 +136,9 @@ impl Shadows<'_> {
             let made_up = solved[one.block].tr_mul(&DVector::from_column_slice(columns.as_slice()));
             let own = one.row - made_up;
             normal.ger(one.weight, &own, &own, 1.0);
-            let tile = (pixel.at.as_dvec2() / tile_px).floor().as_ivec2().to_array();
-            let score = tiles.entry(tile).or_insert_with(|| DVector::zeros(n_columns));
+            let score = tiles
+                .entry(self.tile(pixel.at))
+                .or_insert_with(|| DVector::zeros(n_columns));
             score.axpy(one.weight * one.residual, &own, 1.0);
         }
         sandwich(&normal, tiles.values(), changes.of_lamps.len())
@@ -157,8 +163,7 @@ impl Shadows<'_> {
                 };
                 let row = changes.row(index, factors) * f64::from(pixel.plate[channel]);
                 let block = 3 * pixel.receiver + channel;
-                blocks[block].normal.ger(one.weight, &one.row, &one.row, 1.0);
-                blocks[block].mixed.ger(one.weight, &one.row, &row, 1.0);
+                blocks[block].add(&one.row, &row, one.weight);
                 observations.push(Observation {
                     block,
                     pixel: index,
@@ -169,6 +174,12 @@ impl Shadows<'_> {
             }
         }
         (observations, blocks)
+    }
+
+    /// The part of the picture at a pixel, within which errors are alike.
+    pub(super) fn tile(&self, at: IVec2) -> [i32; 2] {
+        let side_px = (TILE * self.px_per_rad).max(LEAST_TILE_PX);
+        (at.as_dvec2() / side_px).floor().as_ivec2().to_array()
     }
 
     /// The change of each lamp's blocked light for a move of the pose by one standard deviation of
@@ -218,11 +229,6 @@ impl Shadows<'_> {
             })
             .collect()
     }
-}
-
-/// Side of the parts of a picture whose errors are alike, in pixels.
-pub(super) fn tile_px(px_per_rad: f64) -> f64 {
-    (TILE * px_per_rad).max(LEAST_TILE_PX)
 }
 
 /// Covariance of the first `n_parts` columns: that of the tiles' scores, and that of one standard

@@ -150,9 +150,6 @@ impl Photograph {
             planes: planes.collect(),
             memory,
             things: Things::new(found.size_px.as_uvec2(), found.marks, camera).map(|things| {
-                if found.raised.is_empty() {
-                    return things;
-                }
                 // The marks are known without points, too.
                 things.clone().with_raised(found.raised).unwrap_or(things)
             }),

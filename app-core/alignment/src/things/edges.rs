@@ -47,21 +47,13 @@ pub(super) struct Side {
 
 /// Distance in metres by which a side on a plane moves outward.
 pub(super) fn moved_m(side: &Side, plane_from_camera: &DMat4, level: &Level) -> f64 {
-    let seen = SeenSide {
-        side,
-        camera_from_plane: plane_from_camera.inverse(),
-        level,
-    };
+    let seen = SeenSide::of(side, plane_from_camera, level);
     let Some(px_m) = seen.px_m() else { return 0.0 };
-    let contrast = |step: i32, down_m: f64| {
-        seen.contrast((px_m * step_px(step), down_m), BESIDE_PX * px_m)
-            .unwrap_or(0.0)
-    };
-    let step = match side.face_m.filter(|_| seen.faces_camera()) {
-        Some(face_m) => clearest(WITH_FACE, |step| {
-            (contrast(step, 0.0) * contrast(step, face_m)).sqrt()
-        }),
-        None => nearest(NEAR, |step| contrast(step, 0.0)),
+    let face_m = seen.face_m();
+    let contrast = |step: i32| seen.edge(px_m, step, face_m);
+    let step = match face_m {
+        Some(_) => clearest(WITH_FACE, contrast),
+        None => nearest(NEAR, contrast, |_, _| LEAST),
     };
     step.map_or(0.0, |step| px_m * step_px(step))
 }
@@ -69,46 +61,27 @@ pub(super) fn moved_m(side: &Side, plane_from_camera: &DMat4, level: &Level) -> 
 /// Distance in metres by which a listed side moves outward: to the nearest clear edge, or not at all
 /// if that is as near as can be told.
 pub(super) fn clearer_m(side: &Side, plane_from_camera: &DMat4, level: &Level) -> f64 {
-    let seen = SeenSide {
-        side,
-        camera_from_plane: plane_from_camera.inverse(),
-        level,
-    };
+    let seen = SeenSide::of(side, plane_from_camera, level);
     let Some(px_m) = seen.px_m() else { return 0.0 };
-    let face_m = side.face_m.filter(|_| seen.faces_camera());
-    let contrast = |step: i32| {
-        let at = |down_m: f64| {
-            let contrast = seen.contrast((px_m * step_px(step), down_m), BESIDE_PX * px_m);
-            contrast.unwrap_or(0.0)
-        };
-        face_m.map_or(at(0.0), |face_m| (at(0.0) * at(face_m)).sqrt())
-    };
+    let face_m = seen.face_m();
     #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
     let most = (STEPS_A_PX * LISTED_M / px_m).min(MOST_STEPS).ceil() as i32;
-    let contrasts: Vec<f64> = (-most..=most).map(contrast).collect();
-    let clearest = contrasts.iter().copied().fold(0.0, f64::max);
-    let peaks = contrasts.windows(3).zip(-most + 1..);
-    let peaks = peaks.filter(|(around, step)| {
-        // Stripes of a thing are as clear as its edge, which may be any where it is listed.
-        let least = if step.abs() > AS_LISTED {
-            CLEAR * clearest
+    // Stripes of a thing are as clear as its edge, which may be any where it is listed.
+    let least = |step: i32, largest: f64| {
+        if step.abs() > AS_LISTED {
+            LEAST.max(CLEAR * largest)
         } else {
-            0.0
-        };
-        around[1] > least.max(LEAST) && around[1] >= around[0] && around[1] > around[2]
-    });
-    let nearest = peaks.map(|(_, step)| step).min_by_key(|step| step.abs());
+            LEAST
+        }
+    };
+    let nearest = nearest(-most..=most, |step| seen.edge(px_m, step, face_m), least);
     let moved = nearest.filter(|step| step.abs() > AS_LISTED);
     moved.map_or(0.0, |step| px_m * step_px(step))
 }
 
 /// Contrast of a side where it is, in logarithms of light; `None` if too little of it is visible.
 pub(super) fn contrast(side: &Side, plane_from_camera: &DMat4, level: &Level) -> Option<f64> {
-    let seen = SeenSide {
-        side,
-        camera_from_plane: plane_from_camera.inverse(),
-        level,
-    };
+    let seen = SeenSide::of(side, plane_from_camera, level);
     seen.contrast((0.0, 0.0), BESIDE_PX * seen.px_m()?)
 }
 
@@ -121,14 +94,19 @@ fn clearest(steps: RangeInclusive<i32>, contrast: impl Fn(i32) -> f64) -> Option
         .map(|(_, step)| step)
 }
 
-/// The step of a peak of the contrast that is nearest to 0.
-fn nearest(steps: RangeInclusive<i32>, contrast: impl Fn(i32) -> f64) -> Option<i32> {
+/// The step of a peak of the contrast that is nearest to 0. `least` is the contrast that a step
+/// needs, by the largest of all.
+fn nearest(
+    steps: RangeInclusive<i32>,
+    contrast: impl Fn(i32) -> f64,
+    least: impl Fn(i32, f64) -> f64,
+) -> Option<i32> {
     let first = *steps.start();
     let contrasts: Vec<f64> = steps.map(contrast).collect();
-    let peaks = contrasts
-        .windows(3)
-        .zip(first + 1..)
-        .filter(|(around, _)| around[1] > LEAST && around[1] >= around[0] && around[1] > around[2]);
+    let largest = contrasts.iter().copied().fold(0.0, f64::max);
+    let peaks = contrasts.windows(3).zip(first + 1..).filter(|(around, step)| {
+        around[1] > least(*step, largest) && around[1] >= around[0] && around[1] > around[2]
+    });
     peaks.map(|(_, step)| step).min_by_key(|step| step.abs())
 }
 
@@ -142,7 +120,29 @@ struct SeenSide<'a> {
     level: &'a Level,
 }
 
-impl SeenSide<'_> {
+impl<'a> SeenSide<'a> {
+    fn of(side: &'a Side, plane_from_camera: &DMat4, level: &'a Level) -> Self {
+        Self {
+            side,
+            camera_from_plane: plane_from_camera.inverse(),
+            level,
+        }
+    }
+
+    /// Height of the upright face below it, if that is turned to the camera.
+    fn face_m(&self) -> Option<f64> {
+        self.side.face_m.filter(|_| self.faces_camera())
+    }
+
+    /// Contrast of the edge at a step, with that at the face's foot if there is one.
+    fn edge(&self, px_m: f64, step: i32, face_m: Option<f64>) -> f64 {
+        let at = |down_m: f64| {
+            let contrast = self.contrast((px_m * step_px(step), down_m), BESIDE_PX * px_m);
+            contrast.unwrap_or(0.0)
+        };
+        face_m.map_or(at(0.0), |face_m| (at(0.0) * at(face_m)).sqrt())
+    }
+
     /// Whether the camera is on the outer side.
     fn faces_camera(&self) -> bool {
         let eye = self.camera_from_plane.inverse().w_axis.truncate();

@@ -1,4 +1,4 @@
-//! Pixels with a property, and connected ones.
+//! Values of pixels, and connected pixels.
 
 use glam::IVec2;
 
@@ -8,15 +8,20 @@ use crate::picture::{index_in, square};
 /// Neighbours of a pixel.
 pub(super) const STEPS: [IVec2; 4] = [IVec2::X, IVec2::NEG_X, IVec2::Y, IVec2::NEG_Y];
 
-/// For each pixel of a level, whether it was compared and has a property.
-pub(super) fn marked(size_px: IVec2, compared: &[Compared], has: impl Fn(&Compared) -> bool) -> Vec<bool> {
-    let mut marked = vec![false; (size_px.x * size_px.y) as usize];
+/// A value of each pixel of a level that was compared, and another one elsewhere.
+pub(super) fn in_level<T: Clone>(
+    size_px: IVec2,
+    compared: &[Compared],
+    elsewhere: T,
+    of: impl Fn(&Compared) -> T,
+) -> Vec<T> {
+    let mut values = vec![elsewhere; (size_px.x * size_px.y) as usize];
     for pixel in compared {
         if let Some(index) = index_in(size_px, pixel.at) {
-            marked[index] = has(pixel);
+            values[index] = of(pixel);
         }
     }
-    marked
+    values
 }
 
 /// Indices of connected pixels.

@@ -15,7 +15,7 @@ use super::seeds::Colored;
 use super::simplex::descend;
 use crate::lights::{Compared, Comparison, OnPlane};
 use crate::measured_points::MeasuredPoints;
-use crate::picture::{Color, Level};
+use crate::picture::{Color, Level, brightness};
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
 use crate::report::PlaneAlignment;
@@ -469,7 +469,7 @@ impl<'a> Search<'a> {
         let shadowed = expected
             .iter()
             .flatten()
-            .filter(|color| color.iter().sum::<f32>() / 3.0 < 1.0 - SHADOWED);
+            .filter(|color| brightness(color) < 1.0 - SHADOWED);
         self.apart * shadowed.count() >= LEAST_SHADOWED[usize::from(!candidate.is_level)]
     }
 

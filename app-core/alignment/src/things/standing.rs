@@ -7,7 +7,7 @@
 use glam::{DVec3, IVec2};
 
 use super::extent::is_exact;
-use super::groups::{groups, marked};
+use super::groups::{groups, in_level};
 use super::grown::{Grown, LEAST_ALONE};
 use super::measured::{above_m, of_table};
 use super::seeds::is_unexplained;
@@ -34,7 +34,7 @@ pub(super) fn standing(
     let exact = measured.iter().find(|measured| is_exact(measured))?;
     let stands = places_above(grown, exact, receivers.first()?, level)?;
     let size_px = level.frame.size_px;
-    let is_unexplained = marked(size_px, compared, is_unexplained);
+    let is_unexplained = in_level(size_px, compared, false, is_unexplained);
     let groups = groups(size_px, |index| stands[index]).into_iter();
     let counted = groups.map(|group| {
         (

@@ -2,7 +2,7 @@
 
 use glam::IVec2;
 
-use super::codes::{Codes, UNLIKE_CODES, apart, from_shaded};
+use super::codes::{Codes, UNLIKE_CODES, apart, codes_of, from_shaded};
 use super::found::InFrame;
 use super::groups::{cross, most_around};
 use super::grown::Grown;
@@ -12,7 +12,6 @@ use super::sight::Sight;
 use crate::measured_points::MeasuredPoints;
 use crate::picture::{Color, Level, index_in};
 use crate::raster::{Coverage, Rasterizer, project};
-use app_scene::geometry::color::srgb_from_linear;
 use app_scene::things::Mark;
 
 /// Distance in pixels of a level from the toy's outline within which something before it is
@@ -46,7 +45,7 @@ impl Toy {
         let corners = project(sight.shape.points.iter().copied(), &level.intrinsics);
         let coverage = Rasterizer::default().coverage(&corners, &sight.shape.faces, level.frame.size_px);
         let shown = sight.paint.shown(level, &coverage);
-        let codes = |color: Color| color.map(|linear| 255.0 * srgb_from_linear(linear.clamp(0.0, 1.0)));
+        let codes = |color: Color| codes_of(color.map(|linear| linear.clamp(0.0, 1.0)));
         let shown = shown.map(|shown| shown.into_iter().map(|color| color.map(codes)).collect());
         Self { coverage, shown }
     }

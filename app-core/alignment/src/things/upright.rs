@@ -11,12 +11,12 @@ use glam::{DVec2, DVec3, IVec2, Vec3Swizzles};
 
 use super::codes::codes_of;
 use super::found::Found;
-use super::groups::cross;
+use super::groups::{cross, in_level};
 use super::memory::Memory;
 use super::sight::Sight;
 use crate::lights::Compared;
 use crate::median::median;
-use crate::picture::{Color, Level, Picture, index_in, places};
+use crate::picture::{Level, brightness, index_in, places};
 use crate::receivers::SeenReceiver;
 use app_scene::scene::Light;
 use app_scene::things::{Mark, RaisedPoint};
@@ -141,12 +141,12 @@ impl Upright<'_> {
     pub(super) fn raised(&self) -> Option<Vec<RaisedPoint>> {
         let n_things = self.bodies.thing.iter().flatten().max()? + 1;
         let gain = self.gain()?;
-        let shaded: Vec<f32> = (0..n_things).map(|thing| self.shaded(thing, gain)).collect();
+        let shaded = self.shaded(n_things, gain);
         let feet = Feet::of(self);
         let points: Vec<Option<Point>> = places(self.bodies.size_px)
             .zip(&self.bodies.thing)
             .map(|(at, thing)| {
-                let plate = brightness(self.largest.plate.as_ref()?.get(at)?);
+                let plate = brightness(&self.largest.plate.as_ref()?.get(at)?);
                 Some(Point {
                     at: feet.point_above(at)?,
                     of_lights: (1.0 - shaded[(*thing)?] / plate).clamp(0.0, 1.0),
@@ -166,33 +166,35 @@ impl Upright<'_> {
     /// Exposure of the frame over that of the plate.
     fn gain(&self) -> Option<f32> {
         let of = |pixel: &Compared| {
-            let frame = brightness(self.level.frame.get(pixel.at)?);
-            let plate = brightness(self.level.plate.as_ref()?.get(pixel.at)?);
-            let gain = frame / (plate * brightness(pixel.ratio));
+            let frame = brightness(&self.level.frame.get(pixel.at)?);
+            let plate = brightness(&self.level.plate.as_ref()?.get(pixel.at)?);
+            let gain = frame / (plate * brightness(&pixel.ratio));
             gain.is_finite().then_some(gain)
         };
         median(self.compared.iter().filter_map(of), f32::total_cmp)
     }
 
-    /// Brightness in the plate of a thing's parts without light of the lights.
-    fn shaded(&self, thing: usize, gain: f32) -> f32 {
-        let of_thing = places(self.bodies.size_px).zip(&self.bodies.thing);
-        let of_thing = of_thing.filter(|(_, of)| **of == Some(thing));
-        let mut darker: Vec<f32> = of_thing
-            .filter_map(|(at, _)| {
-                let [frame, plate] = [&self.largest.frame, self.largest.plate.as_ref()?]
-                    .map(|picture: &Picture| picture.get(at).map(brightness));
-                Some((frame? / gain).min(plate?))
-            })
-            .collect();
-        darker.sort_unstable_by(f32::total_cmp);
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a part of a count"
-        )]
-        let rank = (SHADED * darker.len() as f64) as usize;
-        darker.get(rank).copied().unwrap_or(0.0)
+    /// For each thing, brightness in the plate of its parts without light of the lights.
+    fn shaded(&self, n_things: usize, gain: f32) -> Vec<f32> {
+        let mut darker = vec![Vec::new(); n_things];
+        for (at, thing) in places(self.bodies.size_px).zip(&self.bodies.thing) {
+            let [frame, plate] = [Some(&self.largest.frame), self.largest.plate.as_ref()]
+                .map(|picture| picture.and_then(|picture| picture.get(at)));
+            if let (Some(thing), Some(frame), Some(plate)) = (thing, frame, plate) {
+                darker[*thing].push((brightness(&frame) / gain).min(brightness(&plate)));
+            }
+        }
+        let shaded = darker.into_iter().map(|mut darker| {
+            darker.sort_unstable_by(f32::total_cmp);
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a part of a count"
+            )]
+            let rank = (SHADED * darker.len() as f64) as usize;
+            darker.get(rank).copied().unwrap_or(0.0)
+        });
+        shaded.collect()
     }
 
     /// For each thing, whether the toy's shadow in the picture is where its points have it.
@@ -205,12 +207,9 @@ impl Upright<'_> {
             .map(Compared::taken)
             .filter(|taken| *taken > UMBRA * most);
         let umbra = median(umbra, f32::total_cmp).unwrap_or(f32::NAN);
-        let mut hidden = vec![f32::NAN; (size_px.x * size_px.y) as usize];
-        for pixel in self.compared {
-            if let Some(index) = index_in(size_px, pixel.at) {
-                hidden[index] = (pixel.taken() / umbra).min(1.0);
-            }
-        }
+        let hidden = in_level(size_px, self.compared, f32::NAN, |pixel| {
+            (pixel.taken() / umbra).min(1.0)
+        });
         let mut losses = vec![[0.0; 2]; n_things];
         let mut n_shadowed = vec![0; n_things];
         for at in places(size_px) {
@@ -229,7 +228,7 @@ impl Upright<'_> {
                 continue;
             };
             let lost = point.of_lights * hidden;
-            let ratio = brightness(frame) / (gain * brightness(plate));
+            let ratio = brightness(&frame) / (gain * brightness(&plate));
             if lost.is_finite() && ratio.is_finite() {
                 let loss = |expected: f32| (ratio - expected).powi(2).min(MOST_LOSS);
                 losses[thing][0] += loss(1.0 - lost);
@@ -326,9 +325,4 @@ impl<'a> Feet<'a> {
     fn thing_at(&self, px: DVec2) -> Option<usize> {
         self.bodies.of(px.floor().as_ivec2())
     }
-}
-
-/// Mean of the channels.
-fn brightness(color: Color) -> f32 {
-    color.iter().sum::<f32>() / 3.0
 }

@@ -2,7 +2,7 @@
 
 use glam::IVec2;
 
-use super::groups::{groups, marked, place_of};
+use super::groups::{groups, in_level, place_of};
 use super::grown::Grown;
 use super::toy::Toy;
 use crate::lights::Compared;
@@ -16,7 +16,7 @@ const WRONG_PX: i32 = 2;
 /// Wrong part of a level's plate: everything that is connected with seeds and differs from the
 /// model; behind the toy, the area that it grew to.
 pub(super) fn wrong_plate(grown: &Grown, toy: &Toy, size_px: IVec2, compared: &[Compared]) -> Mask {
-    let differs = marked(size_px, compared, |pixel| {
+    let differs = in_level(size_px, compared, false, |pixel| {
         pixel.away() > DIFFERS.max(2.0 * pixel.noise)
     });
     let mut wrong = Mask::new(size_px);
