@@ -43,6 +43,7 @@ mod error;
 mod found;
 mod found_planes;
 mod gloss;
+mod ground_light;
 mod hand;
 mod joint_pose;
 mod kept_lights;

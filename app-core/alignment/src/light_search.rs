@@ -210,8 +210,17 @@ impl Aligner {
             let relit = (!is_same).then(|| Seen::again(&self.scene, seen.view.clone(), &seen.input));
             let relit = relit.as_ref().unwrap_or(as_it_is);
             let freed = self.reflection.removed_from(&self.scene, relit)?;
+            let freed = freed.as_ref().unwrap_or(relit);
             let planes_of = self.planes.wanted(!are_kept);
-            match self.look_for_things(lights.in_use(), freed.as_ref().unwrap_or(relit), planes_of)? {
+            // Listed planes are corrected before the lights trust them.
+            if !are_kept
+                && planes_of.is_some()
+                && let Some(on_ground) = self.lights_on_ground(&given, looked_at)?
+                && let Looked::Planes(again) = self.look_for_things(on_ground.in_use(), freed, planes_of)?
+            {
+                return self.look_at_lights(None, given, &again);
+            }
+            match self.look_for_things(lights.in_use(), freed, planes_of)? {
                 Looked::Things(things) => things,
                 Looked::Planes(again) => {
                     return self.look_at_lights(are_kept.then_some(lights), given, &again);

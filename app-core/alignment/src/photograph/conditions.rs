@@ -44,6 +44,17 @@ impl Photograph {
         }
     }
 
+    /// With unknown pixels at listed planes of things and around them; `None` if none is listed.
+    pub(crate) fn without_tops(&self) -> Option<Self> {
+        let level = self.pyramid.level(0);
+        let marks = things::marks_of_listed(&self.receivers, level)?;
+        Some(Self {
+            pyramid: self.pyramid.clear_of(&marks),
+            receivers: self.receivers.clone(),
+            camera_from_world: self.camera_from_world,
+        })
+    }
+
     /// Reflection of the receiver below the toy, in given lights; `None` if the picture does not
     /// constrain it.
     pub(crate) fn reflection(

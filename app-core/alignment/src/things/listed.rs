@@ -1,16 +1,17 @@
 //! Corrects listed planes of things, such as the top of a book that a tracker gave some millimetres
 //! off or larger than it is: height and tilt by the toy's shadow, extents by edges of the plate.
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 use super::extent::{Extent, LEVEL};
 use super::inner::NOISIEST;
 use super::planes::{FoundPlane, GROUND, Nearer, Place, Search};
 use crate::lights::{Compared, Comparison};
-use crate::picture::Level;
+use crate::picture::{Level, places};
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
 use crate::report::PlaneAlignment;
+use app_scene::things::Mark;
 
 /// Least cosine between the normals of a plane that is corrected and of the receiver: steeper ones
 /// also hide light and have shadows, but stay as they are listed.
@@ -28,6 +29,47 @@ const LEAST_PIXELS: usize = 300;
 /// it is another plane.
 const MOST_M: f64 = 0.006;
 
+/// Largest height in metres between two levels of a thing, at which pixels are looked
+/// up: the border hides the gap.
+const STEP_M: f64 = 0.005;
+
+/// Marks of a level's pixels that may show the listed planes of things, or the sides below them;
+/// `None` if there are no such planes.
+pub(crate) fn marks_of_listed(receivers: &[SeenReceiver], level: &Level) -> Option<Vec<Mark>> {
+    let table = receivers.get(GROUND)?;
+    let tops = receivers.iter().skip(GROUND + 1);
+    let slices: Vec<SeenReceiver> = tops
+        .filter_map(|top| Some((top, height_m(top, table)?)))
+        .flat_map(|(top, height_m)| slices(top, height_m))
+        .collect();
+    let mark = |at| {
+        let is_shown = slices
+            .iter()
+            .any(|slice| slice.point_at(&level.intrinsics, at).is_some());
+        if is_shown { Mark::Thing } else { Mark::None }
+    };
+    (!slices.is_empty()).then(|| places(level.frame.size_px).map(mark).collect())
+}
+
+/// Parallels of a top, a border larger, from the largest height at which it may be down to the
+/// table.
+fn slices(top: &SeenReceiver, height_m: f64) -> impl Iterator<Item = SeenReceiver> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a hundred at most")]
+    let n = ((height_m + MOST_M) / STEP_M).ceil().clamp(1.0, 100.0) as u32;
+    (0..=n).map(move |index| {
+        let below_m = (height_m + MOST_M) * f64::from(index) / f64::from(n) - MOST_M;
+        let down = DMat4::from_translation(DVec3::Y * below_m);
+        SeenReceiver::of_size(down * top.plane_from_camera, top.half_extent_m() + BORDER_M)
+    })
+}
+
+/// Height of a listed plane's centre above the table; `None` if it is no top of a thing.
+fn height_m(listed: &SeenReceiver, table: &SeenReceiver) -> Option<f64> {
+    let table_from_listed = table.plane_from_camera * listed.plane_from_camera.inverse();
+    let height_m = table_from_listed.w_axis.y;
+    (table_from_listed.y_axis.y >= LEAST_COSINE && height_m >= LEAST_M).then_some(height_m)
+}
+
 /// The listed planes that are off, corrected.
 pub(super) fn corrected(place: &Place<'_>, level: &Level, comparison: &Comparison) -> Vec<FoundPlane> {
     (GROUND + 1..place.receivers.len())
@@ -41,10 +83,7 @@ fn corrected_plane(
     index: usize,
 ) -> Option<FoundPlane> {
     let (table, listed) = (&place.receivers[GROUND], &place.receivers[index]);
-    let table_from_listed = table.plane_from_camera * listed.plane_from_camera.inverse();
-    if table_from_listed.y_axis.y < LEAST_COSINE || table_from_listed.w_axis.y < LEAST_M {
-        return None;
-    }
+    height_m(listed, table)?;
     let by_shadow = by_shadow(place, (level, comparison), listed);
     let plane_from_camera = by_shadow
         .as_ref()

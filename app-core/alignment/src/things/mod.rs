@@ -44,6 +44,7 @@ use app_scene::scene::MAX_RECEIVERS;
 use app_scene::things::{Mark, RaisedPoint};
 pub(crate) use codes::least_change;
 pub(crate) use found::adopt;
+pub(crate) use listed::marks_of_listed;
 pub(crate) use memory::Memory;
 
 use codes::Codes;
