@@ -149,7 +149,13 @@ pub(super) fn directed(beside: &Beside<'_>, elements: &[Element]) -> Option<Cova
 /// The class of a normal's direction, either way round.
 fn class_of(normal: DVec2) -> usize {
     let turn = normal.to_angle() / std::f64::consts::PI * N_CLASSES as f64;
-    turn.round().rem_euclid(N_CLASSES as f64) as usize
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to the number of classes"
+    )]
+    let class = turn.round().rem_euclid(N_CLASSES as f64) as usize;
+    class % N_CLASSES
 }
 
 /// The minimum of a unimodal function between two bounds, and its value. Source: golden-section
