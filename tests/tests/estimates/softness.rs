@@ -153,4 +153,10 @@ fn a_motion_is_told_by_its_direction() {
     );
     assert!(narrow < 0.4, "{narrow}");
     assert!(sharpness.plate_spread.xx_px2 > 4.0 * sharpness.plate_spread.yy_px2);
+    // The outline tells the motion where the texture does not.
+    let [wide, narrow] = sharpness.outline_spread.variances_px2().map(f64::sqrt);
+    let ratio = wide / expected.widest_px();
+    assert!((0.9..1.25).contains(&ratio) && narrow < 0.7, "{wide}, {narrow}");
+    let along = sharpness.outline_spread.axes_px()[0].normalize();
+    assert!(along.x.abs() > 0.95, "{along}");
 }

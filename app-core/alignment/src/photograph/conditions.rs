@@ -226,7 +226,12 @@ impl Photograph {
         let shape = self.shape(scene, world_from_object)?;
         let (level, picture_px) = (self.pyramid.level(0), self.pyramid.picture_px());
         let outline_px = outline_px.map(|px| px / picture_px);
-        let in_level = softness::sharpness(level, &pose::covered(&shape, level), outline_px);
+        // A scene whose toy has no start has failed above.
+        let directed = || {
+            let start = self.start(scene, *world_from_object).ok()?;
+            pose::directed_spread(start.subject(), &self.pyramid)
+        };
+        let in_level = softness::sharpness(level, &pose::covered(&shape, level), (outline_px, &directed));
         let in_picture = |spread: Spread| spread.times(picture_px * picture_px);
         Ok(Sharpness {
             plate_spread: in_picture(in_level.plate_spread),

@@ -6,6 +6,7 @@
 //! camera make a toy neither fat nor thin.
 
 use glam::{DVec2, IVec2};
+use nalgebra::{Matrix3, Vector3};
 
 use super::contour::Element;
 use super::motion::Measured;
@@ -15,6 +16,7 @@ use crate::picture::{Color, NOISE_CODES, gaussian, index_in, places};
 use crate::raster::Coverage;
 use crate::robust;
 use app_scene::geometry::color::{linear_per_srgb, srgb_from_linear};
+use app_scene::sharpness::Spread as Covariance;
 
 /// Error of the prediction of a piece, in pixels, independent of its number of pixels.
 const CARRIED_PX: f64 = 0.05;
@@ -42,6 +44,9 @@ const MOST_OVERSHOOT: f64 = 1.5;
 const FITTING: f64 = 0.7;
 /// An unknown of the camera is included if the misfit falls to less than this fraction.
 const GAIN: f64 = 0.98;
+/// Number of directions in which the blur of the outline is compared, and of pieces that one needs.
+const N_CLASSES: usize = 4;
+const LEAST_PIECES: usize = 16;
 
 /// A camera's edge response, the same all around the toy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -86,6 +91,71 @@ impl Optics {
         }
         (best, of_best)
     }
+}
+
+/// The lens's blur along the normals of the outline, as a covariance; `None` if too few directions
+/// tell. An edge shows no blur along itself, so that pieces of four directions are taken apart.
+pub(super) fn directed(beside: &Beside<'_>, elements: &[Element]) -> Option<Covariance> {
+    let edges = Edges::new(beside, elements, COMPARED_PX);
+    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    let mut n_told = 0;
+    for class in 0..N_CLASSES {
+        let is_used: Vec<bool> = elements.iter().map(|one| class_of(one.normal) == class).collect();
+        let n = edges
+            .are_known
+            .iter()
+            .zip(&is_used)
+            .filter(|(known, used)| **known && **used)
+            .count();
+        if n < LEAST_PIECES {
+            continue;
+        }
+        let misfit = |spread_px| {
+            let optics = Optics {
+                spread_px,
+                overshoot: 0.0,
+            };
+            edges.misfit_of(optics, &is_used)
+        };
+        let (found_px, of_soft) = least((LEAST_SPREAD_PX, MOST_SPREAD_PX), misfit);
+        let spread_px = if of_soft < GAIN * misfit(0.0) {
+            found_px
+        } else {
+            0.0
+        };
+        let rows = elements.iter().zip(&is_used).filter(|(_, used)| **used);
+        let row = rows.map(|(one, _)| {
+            let DVec2 { x, y } = one.normal;
+            Vector3::new(x * x, 2.0 * x * y, y * y)
+        });
+        let row = row.sum::<Vector3<f64>>();
+        let row = row / is_used.iter().filter(|used| **used).count() as f64;
+        normal += row * row.transpose();
+        right += row * (spread_px * spread_px);
+        n_told += 1;
+    }
+    // A covariance has three numbers.
+    if n_told < 3 {
+        return None;
+    }
+    let found = normal.cholesky()?.solve(&right);
+    Some(Covariance {
+        xx_px2: found.x,
+        xy_px2: found.y,
+        yy_px2: found.z,
+    })
+}
+
+/// The class of a normal's direction, either way round.
+fn class_of(normal: DVec2) -> usize {
+    let turn = normal.to_angle() / std::f64::consts::PI * N_CLASSES as f64;
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to the number of classes"
+    )]
+    let class = turn.round().rem_euclid(N_CLASSES as f64) as usize;
+    class % N_CLASSES
 }
 
 /// The minimum of a unimodal function between two bounds, and its value. Source: golden-section
@@ -210,8 +280,14 @@ impl<'a> Edges<'a> {
 
     /// Mean square of the residual over the contrast, for the pieces that fit.
     fn misfit(&self, optics: Optics) -> f64 {
+        self.misfit_of(optics, &vec![true; self.are_known.len()])
+    }
+
+    /// The same for some of the pieces.
+    fn misfit_of(&self, optics: Optics, are_used: &[bool]) -> f64 {
         let pieces = self.pieces(optics);
-        let mut left: Vec<f64> = pieces.iter().filter_map(Piece::left).collect();
+        let used = pieces.iter().zip(are_used).filter(|(_, is_used)| **is_used);
+        let mut left: Vec<f64> = used.filter_map(|(piece, _)| piece.left()).collect();
         left.sort_by(f64::total_cmp);
         #[allow(
             clippy::cast_possible_truncation,

@@ -39,6 +39,7 @@ use super::report::{PoseDeviation, Stand, most_model_px};
 use super::rigid_motion::{Matrix6, RigidMotion};
 use super::shape::Shape;
 use app_scene::scene::{Intrinsics, PoseUncertainty};
+use app_scene::sharpness::Spread;
 use contour::{Element, contour};
 use matte::Band;
 use motion::{Held, Measured, solve};
@@ -230,6 +231,15 @@ pub(super) fn spread_px(subject: Subject<'_>, pyramid: &Pyramid, most_px: f64) -
     let placement = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
     let fit = search.fit(&placement)?;
     (fit.outline_px() <= most_px).then(|| search.spread_px(subject.paint, &placement))
+}
+
+/// The camera's blur of the outline by direction, as [`spread_px`]; `None` also if too few directions
+/// tell.
+pub(super) fn directed_spread(subject: Subject<'_>, pyramid: &Pyramid) -> Option<Spread> {
+    let shape = subject.shape;
+    let mut search = Search::new(shape, pyramid, &PoseUncertainty::default());
+    let placement = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
+    search.directed_spread(subject.paint, &placement)
 }
 
 /// The pixels of a level that a shape covers.
