@@ -54,7 +54,11 @@ pub(crate) fn marks_of_listed(receivers: &[SeenReceiver], level: &Level) -> Opti
 /// Parallels of a top, a border larger, from the largest height at which it may be down to the
 /// table.
 fn slices(top: &SeenReceiver, height_m: f64) -> impl Iterator<Item = SeenReceiver> {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a hundred at most")]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a hundred at most"
+    )]
     let n = ((height_m + MOST_M) / STEP_M).ceil().clamp(1.0, 100.0) as u32;
     (0..=n).map(move |index| {
         let below_m = (height_m + MOST_M) * f64::from(index) / f64::from(n) - MOST_M;
