@@ -29,8 +29,8 @@ const LEAST_PIXELS: usize = 300;
 /// it is another plane.
 const MOST_M: f64 = 0.006;
 
-/// Largest height in metres between two levels of a thing, at which pixels are looked
-/// up: the border hides the gap.
+/// Largest height in metres between two levels of a thing at which pixels are looked up: the border
+/// hides the gap.
 const STEP_M: f64 = 0.005;
 
 /// Marks of a level's pixels that may show the listed planes of things, or the sides below them;
