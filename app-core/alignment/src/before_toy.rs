@@ -1,7 +1,10 @@
 //! A second look at the toy if something stands before it, or if its plate is wrong: a part of its
 //! outline is then not its own, and no pose fits, or a blur seems to.
 
+use std::sync::Arc;
+
 use super::Aligner;
+use super::kept_lights::KeptLights;
 use super::photograph::{MOST_OUTLINE_PX, Photograph};
 use super::view::Seen;
 use app_scene::frame::FrameInput;
@@ -23,6 +26,11 @@ impl Aligner {
         if self.are_shadows_withheld || seen.view.report.is_none() || (is_trusted && is_sharp(&seen)) {
             return Ok(seen);
         }
+        let found = match lights {
+            [] => Some(self.find_anywhere(Arc::from([]), &seen)?),
+            _ => None,
+        };
+        let lights = found.as_ref().map_or(lights, KeptLights::in_use);
         let sighted = seen
             .photograph
             .things(&self.scene, &seen.input, lights, (None, None))?;

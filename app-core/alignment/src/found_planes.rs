@@ -10,7 +10,7 @@ use app_scene::scene::{Receiver, Scene};
 const MOST_SEARCHES: usize = 2;
 
 /// A thing's plane as a receiver.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct FoundReceiver {
     pub(super) receiver: Receiver,
     /// Index of the scene's receiver that it replaces.
@@ -19,7 +19,7 @@ pub(super) struct FoundReceiver {
 }
 
 /// Planes that were found.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct FoundPlanes {
     found: Vec<FoundReceiver>,
     pub(super) report: Vec<PlaneAlignment>,

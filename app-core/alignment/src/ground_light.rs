@@ -23,12 +23,7 @@ impl Aligner {
         let Some(photograph) = seen.photograph.without_tops() else {
             return Ok(None);
         };
-        let on_ground = Seen {
-            view: seen.view.clone(),
-            photograph,
-            input: seen.input.clone(),
-        };
-        let lights = self.find_lights(Arc::clone(given), &on_ground)?;
+        let lights = self.find_lights(Arc::clone(given), &seen.with_photograph(photograph))?;
         Ok(lights.are_found().then_some(lights))
     }
 }

@@ -95,6 +95,11 @@ impl KeptLights {
         watched.shadows >= LEAST_SHADOWS && watched.unexplained > MOST_UNEXPLAINED
     }
 
+    /// Whether these lights leave too much of the latest view's shadows unexplained.
+    pub(super) fn leave_too_much(&self) -> bool {
+        self.latest.is_some_and(Self::leaves_too_much)
+    }
+
     /// Whether these lights were found, and explain what others, which leave `by_others`, do not.
     pub(super) fn stand_in_for(&self, watched: Watched, by_others: Watched) -> bool {
         self.are_found() && watched.unexplained <= MOST_UNEXPLAINED.min(OF_OTHERS * by_others.unexplained)

@@ -36,6 +36,7 @@
 #![forbid(unsafe_code)]
 
 mod adapted;
+mod base;
 mod before_toy;
 mod camera;
 mod directions;
@@ -73,6 +74,7 @@ mod silhouette;
 mod smaller;
 mod softness;
 mod standing_search;
+mod thing_lights;
 mod thing_watcher;
 mod things;
 mod toy_search;

@@ -7,6 +7,7 @@ use super::Aligner;
 use super::kept_lights::KeptLights;
 use super::lights::Watched;
 use super::photograph::MOST_OUTLINE_PX;
+use super::thing_lights::Explained;
 use super::view::Seen;
 use crate::no_light::NoLight;
 use crate::things::{self, Colored};
@@ -21,7 +22,7 @@ use app_scene::toy::ToyError;
 const DISCOVERY_OUTLINE_PX: f64 = 1.5;
 
 /// Result of the search for other things.
-enum Looked {
+pub(super) enum Looked {
     /// Things, if there are any.
     Things(Option<Things>),
     /// Planes of things: the view with these among the receivers.
@@ -111,7 +112,7 @@ impl Aligner {
     }
 
     /// Lights all over the hemisphere, or around a probe's estimates.
-    fn find_anywhere(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
+    pub(super) fn find_anywhere(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
         let by_probe = self.probe.as_ref().map_or(&[][..], |probe| &probe.lights);
         let found = match &seen.view.report {
             Some(pose) if seen.view.is_trusted(DISCOVERY_OUTLINE_PX) => {
@@ -216,11 +217,16 @@ impl Aligner {
             if !are_kept
                 && planes_of.is_some()
                 && let Some(on_ground) = self.lights_on_ground(&given, looked_at)?
-                && let Looked::Planes(again) = self.look_for_things(on_ground.in_use(), freed, planes_of)?
+                && let Looked::Planes(again) = self.tried_planes(&given, (&on_ground, freed), planes_of)?
             {
                 return self.look_at_lights(None, given, &again);
             }
-            match self.look_for_things(lights.in_use(), freed, planes_of)? {
+            let looked = if are_kept {
+                self.look_for_things(lights.in_use(), freed, planes_of)?
+            } else {
+                self.explain(&given, &mut lights, (freed, planes_of))?
+            };
+            match looked {
                 Looked::Things(things) => things,
                 Looked::Planes(again) => {
                     return self.look_at_lights(are_kept.then_some(lights), given, &again);
@@ -236,8 +242,30 @@ impl Aligner {
         Ok(lights)
     }
 
+    /// Things in the lights of a first view, or their planes; others lights, if these explain it
+    /// with things alone.
+    fn explain(
+        &mut self,
+        given: &Arc<[Light]>,
+        lights: &mut KeptLights,
+        (seen, planes_of): (&Seen, Option<Colored>),
+    ) -> Result<Looked, ToyError> {
+        let things = match self.tried_planes(given, (lights, seen), planes_of)? {
+            Looked::Things(things) if lights.leave_too_much() => things,
+            looked => return Ok(looked),
+        };
+        match self.explained_by_things(given, (seen, things), planes_of)? {
+            Some(Explained::Planes(again)) => Ok(Looked::Planes(again)),
+            Some(Explained::Lights(beside)) => {
+                *lights = *beside;
+                self.look_for_things(lights.in_use(), seen, None)
+            }
+            None => self.look_for_things(lights.in_use(), seen, planes_of),
+        }
+    }
+
     /// Things that stand beside the toy in given lights; or, once planes of some are found, the view with these among the receivers.
-    fn look_for_things(
+    pub(super) fn look_for_things(
         &mut self,
         lights: &[Light],
         seen: &Seen,
@@ -273,7 +301,7 @@ impl Aligner {
     }
 
     /// The loss of lights in a view; `None` if the view does not constrain them.
-    fn watch(&self, lights: &KeptLights, seen: &Seen) -> Result<Option<Watched>, ToyError> {
+    pub(super) fn watch(&self, lights: &KeptLights, seen: &Seen) -> Result<Option<Watched>, ToyError> {
         if !self.can_tell_lights(lights.in_use()) || !seen.view.is_trusted(DISCOVERY_OUTLINE_PX) {
             return Ok(None);
         }

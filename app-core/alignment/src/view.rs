@@ -66,9 +66,14 @@ impl Seen {
 
     /// The same view, with unknown pixels at things and at wrong parts of the plate.
     pub(super) fn clear_of(&self, things: &Things) -> Self {
+        self.with_photograph(self.photograph.clear_of(things))
+    }
+
+    /// With a photograph in which other pixels are unknown.
+    pub(super) fn with_photograph(&self, photograph: Photograph) -> Self {
         Self {
             view: self.view.clone(),
-            photograph: self.photograph.clear_of(things),
+            photograph,
             input: self.input.clone(),
         }
     }

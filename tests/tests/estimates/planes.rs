@@ -2,7 +2,7 @@
 //! plane is found if there is none. Depths or a mesh of the place help where little of the shadow
 //! falls.
 
-use app_core::alignment::Observer;
+use app_core::alignment::{Aligner, Observer};
 use app_core::scene::{Receiver, Scene};
 use app_scene::depth::Depth;
 use app_scene::place_mesh::PlaceMesh;
@@ -14,6 +14,8 @@ use measure::random::Random;
 /// Tolerance of its height in metres: a shadow moves by a pixel for each millimetre.
 const HEIGHT_M: f64 = 0.001;
 const TILT_RAD: f64 = 0.03;
+/// Tolerance of a light's direction, in radians.
+const LIGHT_RAD: f64 = 0.005;
 /// The same by an exact mesh.
 const EXACT_M: f64 = 0.0003;
 /// Tolerance of its middle and half sides in metres: one pixel and a half.
@@ -257,6 +259,19 @@ fn a_mesh_of_another_place_does_no_harm() {
     assert!((tilts[0] - tilts[1].abs()).abs() < TILT_RAD, "{tilts:?}");
 }
 
+/// Points with noise are one of two starts of a search.
+#[test]
+fn a_noisy_mesh_of_another_tilt_does_no_harm() {
+    let world_from_board = board(0.022, -0.16);
+    let (scene, shot) = session(&[(world_from_board, HALF_M)]);
+    let mut other = shot.scene.receivers.clone();
+    other[1].world_from_plane = board(0.022, -0.06);
+    let scene = scene.with_place_mesh(Some(mesh(&other, DMat4::IDENTITY, Some(5e-3))));
+    let (heights_m, tilts) = found_in(&(scene, shot), None, (world_from_board, -0.16)).expect("a plane");
+    assert_height(heights_m);
+    assert!((tilts[0] - tilts[1].abs()).abs() < TILT_RAD, "{tilts:?}");
+}
+
 /// The shadow alone does not determine it; a sensor that is 20 mm off does.
 #[test]
 fn depths_find_a_plane_with_little_shadow() {
@@ -305,6 +320,23 @@ fn a_plane_that_is_listed_a_little_off_is_corrected() {
     let found = corrected(listed);
     let off_m = found.world_from_plane.w_axis.y - exact.world_from_plane.w_axis.y;
     assert!(off_m.abs() < HEIGHT_M, "{:.2} mm off", 1e3 * off_m);
+}
+
+/// Lights that nobody lists are a compromise at first: they follow the shadow on the board, too.
+#[test]
+fn a_plane_is_found_in_unknown_lights() {
+    let world_from_board = board_at(-0.13, 0.018, 0.0);
+    let (mut scene, shot) = session(&[(world_from_board, HALF_M)]);
+    let lamp = std::mem::take(&mut scene.lights)[0];
+    let mut aligner = Aligner::new(scene);
+    let found = aligner.align(&shot.input).unwrap();
+    let planes = &aligner.scene().receivers[1..];
+    assert_eq!(planes.len(), 1, "{:?}", found.report);
+    let off_m = planes[0].world_from_plane.w_axis.y - world_from_board.w_axis.y;
+    assert!(off_m.abs() < HEIGHT_M, "{:.2} mm off", 1e3 * off_m);
+    let directions = [&found.lights.unwrap()[0], &lamp].map(|light| light.vector_from(DVec3::ZERO));
+    let off_rad = directions[0].angle_between(directions[1]);
+    assert!(off_rad < LIGHT_RAD, "{:.2} degrees off", off_rad.to_degrees());
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::found_planes::FoundReceiver;
 use crate::lights::FoundReflection;
 use crate::measured_points::MeasuredPoints;
 use crate::things::Colored;
-use crate::{gloss, lights, pose, softness, things};
+use crate::{base, gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
 use app_scene::geometry::nearest_receivers::nearest_to_toy;
 use app_scene::gloss::Gloss;
@@ -53,6 +53,17 @@ impl Photograph {
             receivers: self.receivers.clone(),
             camera_from_world: self.camera_from_world,
         })
+    }
+
+    /// With unknown pixels except on the table around the toy's base; `None` without a table.
+    pub(crate) fn around_base(&self, scene: &Scene, input: &FrameInput) -> Result<Option<Self>, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let marks = base::marks_beyond(&shape, &self.receivers, self.pyramid.level(0));
+        Ok(marks.map(|marks| Self {
+            pyramid: self.pyramid.clear_of(&marks),
+            receivers: self.receivers.clone(),
+            camera_from_world: self.camera_from_world,
+        }))
     }
 
     /// Reflection of the receiver below the toy, in given lights; `None` if the picture does not
