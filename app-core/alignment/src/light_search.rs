@@ -242,26 +242,33 @@ impl Aligner {
         Ok(lights)
     }
 
-    /// Things in the lights of a first view, or their planes; others lights, if these explain it
-    /// with things alone.
+    /// Things in the lights of a first view, or their planes; and other lights, if these explain it
+    /// beside things.
     fn explain(
         &mut self,
         given: &Arc<[Light]>,
         lights: &mut KeptLights,
         (seen, planes_of): (&Seen, Option<Colored>),
     ) -> Result<Looked, ToyError> {
+        let before = self.planes.clone();
         let things = match self.tried_planes(given, (lights, seen), planes_of)? {
             Looked::Things(things) if lights.leave_too_much() => things,
             looked => return Ok(looked),
         };
-        match self.explained_by_things(given, (seen, things), planes_of)? {
-            Some(Explained::Planes(again)) => Ok(Looked::Planes(again)),
+        let explained = self.explained_by_things(given, (seen, things), planes_of)?;
+        if let Some(Explained::Planes(again)) = explained {
+            return Ok(Looked::Planes(again));
+        }
+        // All of this counts as one search.
+        self.planes = before;
+        let planes_of = match explained {
             Some(Explained::Lights(beside)) => {
                 *lights = *beside;
-                self.look_for_things(lights.in_use(), seen, None)
+                None
             }
-            None => self.look_for_things(lights.in_use(), seen, planes_of),
-        }
+            _ => planes_of,
+        };
+        self.look_for_things(lights.in_use(), seen, planes_of)
     }
 
     /// Things that stand beside the toy in given lights; or, once planes of some are found, the view with these among the receivers.
