@@ -25,7 +25,7 @@ fn missing_beside(color: vec3f, own: f32, f: vec3f, b: vec4f, lit: vec3f) -> vec
 fn grained(color: vec3f, texel: vec2i, variance: vec3f) -> vec3f {
   if all(variance <= vec3f(0.0)) { return color; }
   let at = texel + vec2i(globals.region_origin_px);
-  let noise = sqrt(max(variance, vec3f(0.0))) * grain_at(at, drawing.picture, drawing.beside, drawing.channels);
+  let noise = sqrt(max(variance, vec3f(0.0))) * grain_at(at, drawing.picture, drawing.grain_weights, drawing.channels);
   let room = max(min(color, 1.0 - color), vec3f(0.0));
   return color + clamp(noise, -room, room);
 }
@@ -34,6 +34,6 @@ fn grained(color: vec3f, texel: vec2i, variance: vec3f) -> vec3f {
 // noise.
 fn grained_toy(color: vec3f, texel: vec2i, moved: f32) -> vec3f {
   if !HAS_GRAIN { return color; }
-  let of_toy = (1.0 - resampled_variance(drawing.beside)) * variance_of(drawing.frame_noise, color);
+  let of_toy = (1.0 - resampled_variance(drawing.grain_weights)) * variance_of(drawing.frame_noise, color);
   return grained(color, texel, mix(missing, of_toy, moved));
 }

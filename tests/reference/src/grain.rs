@@ -22,22 +22,19 @@ fn white(at: [i32; 2], picture: u32) -> [f64; 4] {
         .map(|bits| (f64::from(bits % 65536) + f64::from(bits / 65536) - 65535.0) / 65536.0 * 6.0_f64.sqrt())
 }
 
-/// Noise of a pixel's channels, of variance 1: adjacent pixels have the correlation `beside`,
-/// channels `channels`.
+/// Noise of a pixel's channels, of variance 1: the mean of white noise along rows and columns, with
+/// these weights of the pixels one and two away, relative to the pixel's own; channels have the
+/// correlation `channels`.
 #[must_use]
-pub fn grain_at(at: [i32; 2], picture: u32, beside: f64, channels: f64) -> [f64; 3] {
-    // For a mean with weights (w, 1, w): 2 w / (1 + 2 w^2) = beside.
-    let w = if beside > 0.0 {
-        (1.0 - (1.0 - 2.0 * beside * beside).sqrt()) / (2.0 * beside)
-    } else {
-        0.0
-    };
+pub fn grain_at(at: [i32; 2], picture: u32, [near, far]: [f64; 2], channels: f64) -> [f64; 3] {
+    let weights = [(-2, far), (-1, near), (0, 1.0), (1, near), (2, far)];
+    let squares: f64 = weights.iter().map(|(_, weight)| weight * weight).sum();
     let mut sum = [0.0; 4];
-    for (dy, along_y) in [(-1, w), (0, 1.0), (1, w)] {
-        for (dx, along_x) in [(-1, w), (0, 1.0), (1, w)] {
+    for (dy, along_y) in weights {
+        for (dx, along_x) in weights {
             let noise = white([at[0] + dx, at[1] + dy], picture);
             for (sum, noise) in sum.iter_mut().zip(noise) {
-                *sum += along_x * along_y * noise / (1.0 + 2.0 * w * w);
+                *sum += along_x * along_y * noise / squares;
             }
         }
     }
