@@ -14,11 +14,16 @@ fn squared_weights(weights: vec2f) -> f32 {
   return 1.0 + 2.0 * dot(weights, weights);
 }
 
+// Correlations of pixels one and two apart along a row.
+fn correlations_of(weights: vec2f) -> vec2f {
+  let covariances = vec2f(2.0 * weights.x * (1.0 + weights.y), 2.0 * weights.y + weights.x * weights.x);
+  return covariances / squared_weights(weights);
+}
+
 // Variance that remains of 1 after bilinear resampling, averaged over all positions between four
 // pixels with correlated neighbours.
 fn resampled_variance(weights: vec2f) -> f32 {
-  let beside = 2.0 * weights.x * (1.0 + weights.y) / squared_weights(weights);
-  let along = (2.0 + beside) / 3.0;
+  let along = (2.0 + correlations_of(weights).x) / 3.0;
   return along * along;
 }
 

@@ -131,7 +131,7 @@ fn receiver(
     return f;
   }
   // Without a plate and an estimate the frame stays.
-  let b = textureLoad(plate, texel, 0);
+  let b = smoothed_plate(texel);
   *change = vec4f(0.0, 0.0, 0.0, 1.0);
   if b.a == 0.0 { return f; }
   let lit = fit.gain.rgb * b.rgb;

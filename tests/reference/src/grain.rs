@@ -1,4 +1,9 @@
-//! CPU reference of `common/grain`: the noise of synthesised pixels.
+//! CPU reference of `common/grain`, the noise of synthesised pixels, and of the plate that
+//! `common/made_grain` smooths.
+
+use glam::{DVec3, DVec4, IVec2, UVec2};
+
+use crate::raster::Raster;
 
 /// Four pseudo-random numbers from four counters. Source: Jarzynski and Olano 2020 (pcg4d).
 fn hashed(seed: [u32; 4]) -> [u32; 4] {
@@ -39,4 +44,64 @@ pub fn grain_at(at: [i32; 2], picture: u32, [near, far]: [f64; 2], channels: f64
         }
     }
     [0, 1, 2].map(|channel| (1.0 - channels).sqrt() * sum[channel] + channels.sqrt() * sum[3])
+}
+
+/// Variance of nine pixels over that of their noise below which they have no structure.
+const STRUCTURE: f64 = 1.5;
+
+/// A plate's pixel as its neighbours smooth it, and the part of its noise's variance that is left;
+/// `noise` is the variance at a light, and alpha is 1 where the plate was photographed.
+#[must_use]
+pub fn smoothed(
+    plate: &Raster<DVec4>,
+    at: UVec2,
+    weights: [f64; 2],
+    noise: impl Fn(f64) -> f64,
+) -> (DVec3, f64) {
+    let last = plate.size() - 1;
+    let place = |offset: IVec2| {
+        (at.as_ivec2() + offset)
+            .clamp(IVec2::ZERO, last.as_ivec2())
+            .as_uvec2()
+    };
+    let offsets: Vec<IVec2> = (0..9).map(|k| IVec2::new(k % 3, k / 3) - 1).collect();
+    let pixels: Vec<DVec4> = offsets.iter().map(|offset| plate.at(place(*offset))).collect();
+    let own = plate.at(at).truncate();
+    if pixels.iter().any(|pixel| pixel.w != 1.0) {
+        return (own, 1.0);
+    }
+    let mean = pixels.iter().map(|pixel| pixel.truncate()).sum::<DVec3>() / 9.0;
+    let apart = |pixel: &DVec4| (pixel.truncate() - mean).length_squared();
+    let seen = pixels.iter().map(apart).sum::<f64>() / 8.0;
+    let mean_over = |of: &dyn Fn(IVec2) -> f64| offsets.iter().map(|offset| of(*offset)).sum::<f64>() / 9.0;
+    let with_mean = mean_over(&|a| correlation(a, weights));
+    let of_mean = mean_over(&|a| mean_over(&|b| correlation(a - b, weights)));
+    let expected = mean.to_array().map(noise).iter().sum::<f64>() * (1.0 - of_mean) * 9.0 / 8.0;
+    let kept = if seen > 0.0 {
+        (1.0 - STRUCTURE * expected / seen).max(0.0)
+    } else {
+        0.0
+    };
+    let left = kept * kept + 2.0 * kept * (1.0 - kept) * with_mean + (1.0 - kept).powi(2) * of_mean;
+    (kept * own + (1.0 - kept) * mean, left)
+}
+
+/// Correlation of two pixels of the noise, by the positions that both average.
+fn correlation(apart: IVec2, [near, far]: [f64; 2]) -> f64 {
+    let weight = |place: i32| match place.abs() {
+        0 => 1.0,
+        1 => near,
+        2 => far,
+        _ => 0.0,
+    };
+    let along = |apart: i32| {
+        (-2..=2)
+            .map(|place| weight(place) * weight(place + apart))
+            .sum::<f64>()
+    };
+    apart
+        .to_array()
+        .map(|apart| along(apart) / along(0))
+        .iter()
+        .product()
 }

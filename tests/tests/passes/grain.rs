@@ -7,8 +7,20 @@ use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::session::{Capture, Session};
 use desk::files::{BUNDLED_SESSION, Folder};
+use glam::{DVec4, UVec2};
 use harness::open_core;
-use reference::grain::grain_at;
+use reference::grain::{grain_at, smoothed};
+use reference::raster::Raster;
+
+use app_pipeline::geometry::rect::PixelRect;
+
+use crate::alone::{Draw, check_faults, source};
+use crate::device::Device;
+use crate::errors::{Errors, pairs_of};
+use crate::numbers::number;
+use crate::scrambled::{buffers, views};
+use crate::setups::WALL;
+use crate::stand::Stand;
 
 /// A frame of the bundled session in which the llama steps.
 const FRAME: usize = 2;
@@ -169,4 +181,90 @@ fn noise_is_measured() {
         assert!((f64::from(found) - wanted).abs() < 0.08, "{found} for {wanted}");
     }
     assert!((found.channels - 0.3).abs() < 0.08, "channels {}", found.channels);
+}
+
+/// The smoothed plate, and the part of its noise that is left.
+const PROBE: &str = "
+@fragment fn fs_probe(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  let b = smoothed_plate(vec2u(position.xy));
+  return vec4f(b.rgb, plate_left);
+}";
+/// Variance of the plate's noise in the dark and per unit of light, and its weights.
+const PLATE: ([f32; 2], [f32; 2]) = ([2e-5, 6e-4], [0.4, 0.15]);
+
+/// A plate with noise alone, with texture, and with unknown pixels.
+fn scrambled_plate(size: UVec2) -> Raster<DVec4> {
+    Raster::from_fn(size, |at| {
+        let texture = [0.0, 0.01, 0.1][(at.x / 20) as usize % 3];
+        let light = |seed: u32| {
+            let steps = texture * number(at / 3, seed) + 0.02 * number(at, seed + 3);
+            f64::from((0.3 + steps) as f32)
+        };
+        let alpha = if number(at / 5, 7) < 0.1 { 0.25 } else { 1.0 };
+        DVec4::new(light(1), light(2), light(3), alpha)
+    })
+}
+
+/// Errors of the plate that `source` smooths.
+fn errors(source: &str) -> Errors {
+    let device = Device::shared();
+    let stand = Stand::new(WALL);
+    let rect = PixelRect {
+        origin_px: UVec2::ZERO,
+        size_px: WALL.image_px,
+    };
+    let plate = scrambled_plate(rect.size_px);
+    let (noise, weights) = PLATE;
+    // Number of the picture and details; noise of frame and plate; weights; channels and strength.
+    let drawing = [[0.0; 2], [0.0; 2], noise, weights, [0.0, 1.0]];
+    let globals = [device.uniform(&stand.globals(&rect))];
+    let maps = [device.map(&plate)];
+    let mut own = views(20, &maps);
+    let drawing = [device.uniform(&drawing)];
+    own.extend(buffers(21, &drawing));
+    // Only two groups are bound here.
+    let source = source
+        .replace("@group(2) @binding(0)", "@group(1) @binding(20)")
+        .replace("@group(2) @binding(4)", "@group(1) @binding(21)");
+    let source = format!("{source}{PROBE}");
+    let draw = Draw {
+        constants: &[("HAS_GRAIN", 1.0)],
+        ..Draw::of(&source, "fs_probe", rect.size_px)
+    };
+    let actual = device.draw(draw, [&buffers(0, &globals), &own]);
+    let expected = Raster::from_fn(rect.size_px, |at| {
+        let variance = |light: f64| f64::from(noise[0]) + f64::from(noise[1]) * light;
+        let (color, left) = smoothed(&plate, at, weights.map(f64::from), variance);
+        color.extend(left)
+    });
+    let n_partly = expected
+        .texels()
+        .iter()
+        .filter(|texel| texel.w > 0.6 && texel.w < 0.95);
+    assert!(n_partly.count() > 500, "few pixels are smoothed in part");
+    Errors::between(pairs_of(&actual, &expected))
+}
+
+/// Limit for rounding.
+const ALLOWED: f64 = 1e-3;
+
+#[test]
+fn a_plate_is_smoothed_where_it_has_noise_alone() {
+    errors(&source("composite")).check_all("smoothed plate", ALLOWED);
+}
+
+#[test]
+fn a_fault_in_the_smoothing_is_found() {
+    let faults = [
+        ("STRUCTURE: f32 = 1.5", "STRUCTURE: f32 = 1.4"),
+        ("vec3f(1.0 / 8.0)", "vec3f(1.0 / 9.0)"),
+        ("vec3f(9.0 / 8.0)", "vec3f(1.0)"),
+        ("(1.0 - of_mean);", "1.0;"),
+        ("select(1.0, own, n == 9.0 &&", "select(1.0, own, n > 8.0 ||"),
+        ("(1.0 - kept) * of_mean)", "(1.0 - kept))"),
+        ("2.0 * kept * with_mean", "kept * with_mean"),
+        ("+ (1.0 - kept) * mean, b.a", "+ mean, b.a"),
+        ("b.rgb + mean)", "vec3f(0.0))"),
+    ];
+    check_faults("composite", &faults, ALLOWED, errors);
 }
