@@ -20,21 +20,29 @@ const STRUCTURE: f32 = 1.5;
 // Variance that the receiver's pixel lacks, compared with the camera's pixels there.
 var<private> missing: vec3f;
 
+// Correlation of neighbours from which on the next but one pixels are taken, which share less of the
+// noise. Then the standard deviation of a phone's noise over time, over the camera's, is .63 in place
+// of .54 where the old shadow was, and the RMSE is the same.
+const CORRELATED: f32 = 0.5;
+
 // Part of the plate's variance that is left where it is smoothed.
 var<private> plate_left: f32 = 1.0;
 
-// The plate's pixel, smoothed by its eight neighbours as far as their differences are noise. A
-// softened or estimated plate has none.
+// The plate's pixel, smoothed by eight around it as far as their differences are noise. A softened or
+// estimated plate has none.
 fn smoothed_plate(texel: vec2u) -> vec4f {
   let b = textureLoad(plate, texel, 0);
   if !HAS_GRAIN { return b; }
   let last = vec2i(globals.region_size_px) - 1;
+  let near = correlations_of(drawing.grain_weights);
+  let is_far = near.x > CORRELATED;
+  let step = select(1, 2, is_far);
   var sum = vec3f(0.0);
   var squares = vec3f(0.0);
   var n = 0.0;
   for (var y = -1; y <= 1; y++) {
     for (var x = -1; x <= 1; x++) {
-      let one = textureLoad(plate, clamp(vec2i(texel) + vec2i(x, y), vec2i(0), last), 0);
+      let one = textureLoad(plate, clamp(vec2i(texel) + step * vec2i(x, y), vec2i(0), last), 0);
       let apart = one.rgb - b.rgb;
       sum += apart;
       squares += apart * apart;
@@ -44,7 +52,8 @@ fn smoothed_plate(texel: vec2u) -> vec4f {
   let mean = sum / 9.0;
   let seen = dot(squares - 9.0 * mean * mean, vec3f(1.0 / 8.0));
   // Correlations of the pixel with all nine, and of all with each other.
-  let correlations = correlations_of(drawing.grain_weights);
+  let of_four_apart = pow(drawing.grain_weights.y, 2.0) / squared_weights(drawing.grain_weights);
+  let correlations = select(near, vec2f(near.y, of_four_apart), is_far);
   let with_mean = pow(1.0 + 2.0 * correlations.x, 2.0) / 9.0;
   let of_mean = pow(3.0 + 4.0 * correlations.x + 2.0 * correlations.y, 2.0) / 81.0;
   let noise = dot(variance_of(drawing.plate_noise, b.rgb + mean), vec3f(9.0 / 8.0)) * (1.0 - of_mean);

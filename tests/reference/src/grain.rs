@@ -48,8 +48,10 @@ pub fn grain_at(at: [i32; 2], picture: u32, [near, far]: [f64; 2], channels: f64
 
 /// Variance of nine pixels over that of their noise below which they have no structure.
 const STRUCTURE: f64 = 1.5;
+/// Correlation of neighbours from which on the next but one pixels are taken.
+const CORRELATED: f64 = 0.5;
 
-/// A plate's pixel as its neighbours smooth it, and the part of its noise's variance that is left;
+/// A plate's pixel as eight around it smooth it, and the part of its noise's variance that is left;
 /// `noise` is the variance at a light, and alpha is 1 where the plate was photographed.
 #[must_use]
 pub fn smoothed(
@@ -64,7 +66,12 @@ pub fn smoothed(
             .clamp(IVec2::ZERO, last.as_ivec2())
             .as_uvec2()
     };
-    let offsets: Vec<IVec2> = (0..9).map(|k| IVec2::new(k % 3, k / 3) - 1).collect();
+    let step = if correlation(IVec2::X, weights) > CORRELATED {
+        2
+    } else {
+        1
+    };
+    let offsets: Vec<IVec2> = (0..9).map(|k| step * (IVec2::new(k % 3, k / 3) - 1)).collect();
     let pixels: Vec<DVec4> = offsets.iter().map(|offset| plate.at(place(*offset))).collect();
     let own = plate.at(at).truncate();
     if pixels.iter().any(|pixel| pixel.w != 1.0) {
