@@ -7,7 +7,7 @@ use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::session::{Capture, Session};
 use desk::files::{BUNDLED_SESSION, Folder};
-use glam::{DVec4, UVec2};
+use glam::{DVec3, DVec4, UVec2};
 use harness::open_core;
 use reference::grain::{grain_at, smoothed};
 use reference::raster::Raster;
@@ -198,12 +198,10 @@ const WEIGHTS: [[f32; 2]; 2] = [[0.25, 0.1], [0.5, 0.3]];
 fn scrambled_plate(size: UVec2) -> Raster<DVec4> {
     Raster::from_fn(size, |at| {
         let texture = [0.0, 0.01, 0.1][(at.x / 20) as usize % 3];
-        let light = |seed: u32| {
-            let steps = texture * number(at / 3, seed) + 0.02 * number(at, seed + 3);
-            f64::from((0.3 + steps) as f32)
-        };
+        let light = |seed: u32| 0.3 + texture * number(at / 3, seed) + 0.02 * number(at, seed + 3);
         let alpha = if number(at / 5, 7) < 0.1 { 0.25 } else { 1.0 };
-        DVec4::new(light(1), light(2), light(3), alpha)
+        let color = DVec3::from([1, 2, 3].map(light));
+        color.as_vec3().as_dvec3().extend(alpha)
     })
 }
 

@@ -4,13 +4,11 @@ mod line;
 mod reach;
 
 use line::{fitted_without_outliers, narrowed};
-use reach::Reach;
+use reach::{BLOCK_PX, Reach};
 
 use crate::geometry::color::{linear_from_srgb, linear_of_codes, linear_per_srgb};
 use crate::scene::{Camera, Image, InputError, Scene, check};
 
-/// Side of a block of pixels in which noise is separated from texture.
-const BLOCK_PX: u32 = 8;
 /// Largest number of blocks: more add no information.
 const MAX_BLOCKS: u32 = 6000;
 /// Pixels of a block.

@@ -1,9 +1,11 @@
 //! The reach of noise, measured within blocks.
 
-use super::{BLOCK_PX, N};
-
+/// Side of a block of pixels in which noise is separated from texture.
+pub(super) const BLOCK_PX: u32 = 8;
 /// Pixels along a side of a block.
 const SIDE: usize = BLOCK_PX as usize;
+/// Pixels of a block.
+const N: f64 = (BLOCK_PX * BLOCK_PX) as f64;
 /// Number of halvings of the step in the search of the weights, which give them to 1 / 256.
 const N_HALVINGS: i32 = 7;
 
