@@ -8,10 +8,22 @@ fn variance_of(noise: vec2f, light: vec3f) -> vec3f {
   return noise.x + noise.y * max(light, vec3f(0.0));
 }
 
+// Sum of the squares of the weights along a row: of a pixel, 1, and of those one and two pixels from
+// it, on either side.
+fn squared_weights(weights: vec2f) -> f32 {
+  return 1.0 + 2.0 * dot(weights, weights);
+}
+
+// Correlations of pixels one and two apart along a row.
+fn correlations_of(weights: vec2f) -> vec2f {
+  let covariances = vec2f(2.0 * weights.x * (1.0 + weights.y), 2.0 * weights.y + weights.x * weights.x);
+  return covariances / squared_weights(weights);
+}
+
 // Variance that remains of 1 after bilinear resampling, averaged over all positions between four
 // pixels with correlated neighbours.
-fn resampled_variance(beside: f32) -> f32 {
-  let along = (2.0 + beside) / 3.0;
+fn resampled_variance(weights: vec2f) -> f32 {
+  let along = (2.0 + correlations_of(weights).x) / 3.0;
   return along * along;
 }
 
@@ -35,20 +47,24 @@ fn white_noise(at: vec2i, picture: u32) -> vec4f {
   return (vec4f(bits & vec4u(0xffffu)) + vec4f(bits >> vec4u(16u)) - 65535.0) * (2.4494897 / 65536.0);
 }
 
-// Noise in three channels with this correlation between channels and between neighbouring pixels.
-// The latter are means over three pixels each way, and the weight of the outer ones gives the
-// correlation 2 w / (1 + 2 w w).
-fn grain_at(at: vec2i, picture: u32, beside: f32, channels: f32) -> vec3f {
-  // The loop also runs if it is 0: Mesa 22.3's software driver fails if a uniform decides whether a
-  // loop runs.
-  let weight = beside / (1.0 + sqrt(max(1.0 - 2.0 * beside * beside, 0.0)));
+// Weight of a place along a row or column.
+fn weight_at(place: i32, weights: vec2f) -> f32 {
+  return select(1.0, select(weights.x, weights.y, abs(place) == 2), place != 0);
+}
+
+// Noise in three channels with this correlation between channels: white noise, averaged along rows
+// and columns with weights of the pixels one and two away.
+fn grain_at(at: vec2i, picture: u32, weights: vec2f, channels: f32) -> vec3f {
+  // A pixel's own weight is 1, so that the loops always run: Mesa 22.3's software driver fails if a
+  // uniform decides whether one does.
+  let reach = select(select(0, 1, weights.x > 0.0), 2, weights.y > 0.0);
   var sum = vec4f(0.0);
-  for (var y = -1; y <= 1; y++) {
-    for (var x = -1; x <= 1; x++) {
-      let far = select(1.0, weight, x != 0) * select(1.0, weight, y != 0);
-      sum += far * white_noise(at + vec2i(x, y), picture);
+  for (var y = -reach; y <= reach; y++) {
+    for (var x = -reach; x <= reach; x++) {
+      let weight = weight_at(x, weights) * weight_at(y, weights);
+      sum += weight * white_noise(at + vec2i(x, y), picture);
     }
   }
-  let noise = sum / (1.0 + 2.0 * weight * weight);
+  let noise = sum / squared_weights(weights);
   return sqrt(1.0 - channels) * noise.xyz + sqrt(channels) * noise.w;
 }

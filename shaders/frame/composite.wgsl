@@ -30,15 +30,14 @@ struct Drawing {
   // Whether the own residual of visible pixels is that of `detail` and not the frame's.
   has_detail: u32,
   // Grain: number of the picture; variance of light in frame and plate as (in the dark, for each
-  // unit); correlation of neighbouring pixels, and of a pixel's channels.
+  // unit); weights of the pixels one and two away; correlation of a pixel's channels.
   picture: u32,
   frame_noise: vec2f,
   plate_noise: vec2f,
-  beside: f32,
+  grain_weights: vec2f,
   channels: f32,
   // Strength of the shown shadow; 1 is the true one.
   strength: f32,
-  unused: f32,
 }
 
 // Whether the shown shadow is stronger or weaker than the true one.
@@ -132,7 +131,7 @@ fn receiver(
     return f;
   }
   // Without a plate and an estimate the frame stays.
-  let b = textureLoad(plate, texel, 0);
+  let b = smoothed_plate(texel);
   *change = vec4f(0.0, 0.0, 0.0, 1.0);
   if b.a == 0.0 { return f; }
   let lit = fit.gain.rgb * b.rgb;

@@ -174,13 +174,13 @@ fn a_blend_of_two_grainy_photographs_is_as_grainy_at_every_share() {
     let grain = Grain {
         frame: noise,
         plate: noise,
-        beside: 0.3,
+        weights: [0.3, 0.1],
         channels: 0.2,
     };
     let variance = noise.variance(f64::from(LIGHT));
     #[allow(clippy::cast_possible_truncation, reason = "of the range of light")]
     let grainy = |number: u32| {
-        let pixels = (0..SIDE * SIDE).map(|k| grain_at([k % SIDE, k / SIDE], number, 0.3, 0.2));
+        let pixels = (0..SIDE * SIDE).map(|k| grain_at([k % SIDE, k / SIDE], number, [0.3, 0.1], 0.2));
         LightPicture {
             width_px: SIDE as usize,
             height_px: SIDE as usize,

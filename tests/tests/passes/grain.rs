@@ -7,8 +7,20 @@ use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::session::{Capture, Session};
 use desk::files::{BUNDLED_SESSION, Folder};
+use glam::{DVec3, DVec4, UVec2};
 use harness::open_core;
-use reference::grain::grain_at;
+use reference::grain::{grain_at, smoothed};
+use reference::raster::Raster;
+
+use app_pipeline::geometry::rect::PixelRect;
+
+use crate::alone::{Draw, check_faults, source};
+use crate::device::Device;
+use crate::errors::{Errors, pairs_of};
+use crate::numbers::number;
+use crate::scrambled::{buffers, views};
+use crate::setups::WALL;
+use crate::stand::Stand;
 
 /// A frame of the bundled session in which the llama steps.
 const FRAME: usize = 2;
@@ -21,7 +33,7 @@ fn grain() -> Grain {
             per_light: 0.0,
         },
         plate: Noise::default(),
-        beside: 0.4,
+        weights: [0.5, 0.2],
         channels: 0.3,
     }
 }
@@ -60,15 +72,13 @@ fn made_pixels_have_the_reference_noise() {
             index % clean.width_px.cast_signed(),
             index / clean.width_px.cast_signed(),
         ];
-        let noise = grain_at(at, 1, f64::from(grain().beside), f64::from(grain().channels));
+        let noise = grain_at(at, 1, grain().weights.map(f64::from), f64::from(grain().channels));
         for channel in 0..3 {
             let [before, after] = [codes.0, codes.1].map(|codes| linear(codes[channel]));
             let (added, most) = (after - before, deviation * noise[channel]);
             // Both pictures are rounded, and a software driver's codes have an error of 0.14.
-            let slack = 1.3
-                * (linear(codes.1[channel].saturating_add(1)) - before)
-                    .abs()
-                    .max(0.004);
+            let step = |code: u8| linear(code.saturating_add(1)) - linear(code);
+            let slack = 1.3 * step(codes.0[channel]).max(step(codes.1[channel])).max(0.004);
             assert!(
                 added * most.signum() > -slack && added.abs() < most.abs() + slack,
                 "{at:?}: {added} of {most}"
@@ -83,8 +93,11 @@ fn made_pixels_have_the_reference_noise() {
     assert!(mean.abs() < 1e-4, "{mean}");
 }
 
-/// With noise of a variance that depends on the light; neighbours have the correlation 0.4, channels
-/// 0.3.
+/// Weights of white noise of which neighbours have the correlation .45, and the next ones .16.
+const NEAR: [f64; 2] = [0.24, 0.06];
+
+/// With noise of a variance that depends on the light, and of these weights; channels have the
+/// correlation 0.3.
 fn with_noise(clean: &Image, picture: u32, variance: impl Fn(f64) -> f64) -> Image {
     let mut noisy = clean.clone();
     for (index, codes) in (0..).zip(noisy.rgba8.chunks_mut(4)) {
@@ -92,7 +105,7 @@ fn with_noise(clean: &Image, picture: u32, variance: impl Fn(f64) -> f64) -> Ima
             index % clean.width_px.cast_signed(),
             index / clean.width_px.cast_signed(),
         ];
-        let noise = grain_at(at, picture, 0.4, 0.3);
+        let noise = grain_at(at, picture, NEAR, 0.3);
         for (code, noise) in codes.iter_mut().zip(noise) {
             let light = linear(*code);
             let shown = (light + variance(light).sqrt() * noise).clamp(0.0, 1.0);
@@ -164,6 +177,100 @@ fn noise_is_measured() {
         let ratio = variance / wanted(light);
         assert!((0.85..1.2).contains(&ratio), "at {light}: {ratio}");
     }
-    assert!((found.beside - 0.4).abs() < 0.08, "beside {}", found.beside);
+    for (found, wanted) in found.weights.into_iter().zip(NEAR) {
+        assert!((f64::from(found) - wanted).abs() < 0.08, "{found} for {wanted}");
+    }
     assert!((found.channels - 0.3).abs() < 0.08, "channels {}", found.channels);
+}
+
+/// The smoothed plate, and the part of its noise that is left.
+const PROBE: &str = "
+@fragment fn fs_probe(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  let b = smoothed_plate(vec2u(position.xy));
+  return vec4f(b.rgb, plate_left);
+}";
+/// Variance of the plate's noise in the dark and per unit of light.
+const PLATE_NOISE: [f32; 2] = [2e-5, 6e-4];
+/// Weights with a correlation of neighbours below and above the limit.
+const WEIGHTS: [[f32; 2]; 2] = [[0.25, 0.1], [0.5, 0.3]];
+
+/// A plate with noise alone, with texture, and with unknown pixels.
+fn scrambled_plate(size: UVec2) -> Raster<DVec4> {
+    Raster::from_fn(size, |at| {
+        let texture = [0.0, 0.01, 0.1][(at.x / 20) as usize % 3];
+        let light = |seed: u32| 0.3 + texture * number(at / 3, seed) + 0.02 * number(at, seed + 3);
+        let alpha = if number(at / 5, 7) < 0.1 { 0.25 } else { 1.0 };
+        let color = DVec3::from([1, 2, 3].map(light));
+        color.as_vec3().as_dvec3().extend(alpha)
+    })
+}
+
+/// Errors of the plate that `source` smooths.
+fn errors(source: &str) -> Errors {
+    Errors::between(WEIGHTS.map(|weights| pairs(source, weights)).concat())
+}
+
+fn pairs(source: &str, weights: [f32; 2]) -> Vec<(f64, f64)> {
+    let device = Device::shared();
+    let stand = Stand::new(WALL);
+    let rect = PixelRect {
+        origin_px: UVec2::ZERO,
+        size_px: WALL.image_px,
+    };
+    let plate = scrambled_plate(rect.size_px);
+    // Number of the picture and details; noise of frame and plate; weights; channels and strength.
+    let drawing = [[0.0; 2], [0.0; 2], PLATE_NOISE, weights, [0.0, 1.0]];
+    let globals = [device.uniform(&stand.globals(&rect))];
+    let maps = [device.map(&plate)];
+    let mut own = views(20, &maps);
+    let drawing = [device.uniform(&drawing)];
+    own.extend(buffers(21, &drawing));
+    // Only two groups are bound here.
+    let source = source
+        .replace("@group(2) @binding(0)", "@group(1) @binding(20)")
+        .replace("@group(2) @binding(4)", "@group(1) @binding(21)");
+    let source = format!("{source}{PROBE}");
+    let draw = Draw {
+        constants: &[("HAS_GRAIN", 1.0)],
+        ..Draw::of(&source, "fs_probe", rect.size_px)
+    };
+    let actual = device.draw(draw, [&buffers(0, &globals), &own]);
+    let expected = Raster::from_fn(rect.size_px, |at| {
+        let variance = |light: f64| f64::from(PLATE_NOISE[0]) + f64::from(PLATE_NOISE[1]) * light;
+        let (color, left) = smoothed(&plate, at, weights.map(f64::from), variance);
+        color.extend(left)
+    });
+    let n_partly = expected
+        .texels()
+        .iter()
+        .filter(|texel| texel.w > 0.6 && texel.w < 0.95);
+    assert!(n_partly.count() > 500, "few pixels are smoothed in part");
+    pairs_of(&actual, &expected)
+}
+
+/// Limit for rounding.
+const ALLOWED: f64 = 1e-3;
+
+#[test]
+fn a_plate_is_smoothed_where_it_has_noise_alone() {
+    errors(&source("composite")).check_all("smoothed plate", ALLOWED);
+}
+
+#[test]
+fn a_fault_in_the_smoothing_is_found() {
+    let faults = [
+        ("STRUCTURE: f32 = 1.5", "STRUCTURE: f32 = 1.4"),
+        ("vec3f(1.0 / 8.0)", "vec3f(1.0 / 9.0)"),
+        ("vec3f(9.0 / 8.0)", "vec3f(1.0)"),
+        ("(1.0 - of_mean);", "1.0;"),
+        ("select(1.0, own, n == 9.0 &&", "select(1.0, own, n > 8.0 ||"),
+        ("(1.0 - kept) * of_mean)", "(1.0 - kept))"),
+        ("2.0 * kept * with_mean", "kept * with_mean"),
+        ("CORRELATED: f32 = 0.5", "CORRELATED: f32 = 0.9"),
+        ("vec2f(near.y, of_four_apart)", "near"),
+        ("pow(drawing.grain_weights.y, 2.0)", "0.0"),
+        ("+ (1.0 - kept) * mean, b.a", "+ mean, b.a"),
+        ("b.rgb + mean)", "vec3f(0.0))"),
+    ];
+    check_faults("composite", &faults, ALLOWED, errors);
 }

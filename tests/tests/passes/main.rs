@@ -38,6 +38,7 @@ mod outliers;
 mod overlap;
 mod photo;
 mod plate;
+mod plate_light;
 mod plates;
 mod references;
 mod reflection;

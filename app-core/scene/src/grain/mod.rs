@@ -1,14 +1,14 @@
 //! Grain: the noise of a picture, measured against a plate of the same view.
 
 mod line;
+mod reach;
 
 use line::{fitted_without_outliers, narrowed};
+use reach::{BLOCK_PX, Reach};
 
 use crate::geometry::color::{linear_from_srgb, linear_of_codes, linear_per_srgb};
 use crate::scene::{Camera, Image, InputError, Scene, check};
 
-/// Side of a block of pixels in which noise is separated from texture.
-const BLOCK_PX: u32 = 8;
 /// Largest number of blocks: more add no information.
 const MAX_BLOCKS: u32 = 6000;
 /// Pixels of a block.
@@ -41,10 +41,6 @@ const APART_PX: f64 = 0.5;
 /// Largest factor of the extrapolation to no texture. Measured: .3 to .85 on pictures of a table; 24 on
 /// a fine periodic texture, whose blocks differ by chance.
 const MOST_EXTRAPOLATION: f64 = 1.0;
-/// Number of steps to the correlation of neighbours, which are enough for three digits.
-const N_SOLVES: usize = 4;
-/// Largest correlation of neighbours that can be made.
-const MAX_CORRELATION: f64 = 0.625;
 
 /// Variance of a channel of linear light: `floor + per_light * light`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -63,8 +59,9 @@ pub struct Grain {
     pub frame: Noise,
     /// Noise of the plate from the same camera pose.
     pub plate: Noise,
-    /// Correlation of adjacent pixels, from 0 to 0.625.
-    pub beside: f32,
+    /// Reach of the noise: it is white noise, averaged along rows and columns with these weights of
+    /// the pixels one and two away, from 0 to 1, relative to the pixel's own.
+    pub weights: [f32; 2],
     /// Correlation of a pixel's channels, from 0 to 1.
     pub channels: f32,
 }
@@ -78,7 +75,8 @@ struct Statistics {
     frame: f64,
     plate: f64,
     texture: f64,
-    beside: f64,
+    /// Covariances of the frame's noise of pixels one and two apart along rows and columns.
+    apart: [f64; 2],
 }
 
 /// Deviations of the pixels of a block from its mean, of the frame, and of the plate at the frame's
@@ -134,12 +132,13 @@ impl Grain {
             let points = classes.iter();
             fitted_without_outliers(points.map(|class| (light(class), value(class), class.n_blocks)))
         };
-        let beside = unbiased(median(classes.iter().map(|class| class.beside / class.frame)));
-        let whole = |noise: Noise| noise.times(1.0 / (1.0 - variance_of_mean(beside)));
+        let reach =
+            Reach::of([0, 1].map(|k| median(classes.iter().map(|class| class.apart[k] / class.frame))));
+        let whole = |noise: Noise| noise.times(reach.whole());
         let grain = Self {
             frame: whole(of(|class| class.frame, |class| class.light)?),
             plate: whole(of(|class| class.plate, |class| class.plate_light)?),
-            beside,
+            weights: reach.weights(),
             channels: narrowed(common, 1.0),
         };
         let light = median(classes.iter().map(|class| class.light));
@@ -158,10 +157,9 @@ impl Grain {
                 InputError::at(&format!("grain.{picture}.{name}"), checked)?;
             }
         }
-        InputError::at(
-            "grain.beside",
-            check::number(f64::from(self.beside), &(0.0..=MAX_CORRELATION)),
-        )?;
+        for weight in self.weights {
+            InputError::at("grain.weights", check::number(f64::from(weight), &(0.0..=1.0)))?;
+        }
         InputError::at(
             "grain.channels",
             check::number(f64::from(self.channels), &(0.0..=1.0)),
@@ -216,22 +214,6 @@ impl Noise {
             per_light: factor * self.per_light,
         }
     }
-}
-
-/// Variance of the mean of a block, for noise of variance 1 that is made of means over three pixels
-/// each way, so that neighbours have this correlation.
-fn variance_of_mean(beside: f32) -> f32 {
-    let weight = beside / (1.0 + (1.0 - 2.0 * beside * beside).max(0.0).sqrt());
-    let along = (1.0 + 2.0 * weight).powi(2) / (1.0 + 2.0 * weight * weight);
-    along * along / N_PX as f32
-}
-
-/// The correlation of neighbours, of that around the means of blocks, which have a part of the noise.
-fn unbiased(around_means: f64) -> f32 {
-    (0..N_SOLVES).fold(narrowed(around_means, MAX_CORRELATION), |beside, _| {
-        let lost = f64::from(variance_of_mean(beside));
-        narrowed(around_means * (1.0 - lost) + lost, MAX_CORRELATION)
-    })
 }
 
 /// Light of a pixel by its index; `None` if it is unknown.
@@ -334,17 +316,17 @@ impl Channel {
             frame: self.covariance(self),
             plate: (plate - shared) / self.scale.powi(2),
             texture: shared,
-            beside: self.beside(),
+            apart: [1, 2].map(|apart| self.apart(apart)),
         }
     }
 
-    /// Covariance of the noise of adjacent pixels.
-    fn beside(&self) -> f64 {
+    /// Covariance of the noise of pixels this far apart along rows and columns.
+    fn apart(&self, apart: usize) -> f64 {
         let (mut sum, mut n) = (0.0, 0.0);
         let side = BLOCK_PX as usize;
         for k in 0..side * side {
-            let right = (k % side + 1 < side).then_some(k + 1);
-            let below = (k + side < side * side).then_some(k + side);
+            let right = (k % side + apart < side).then_some(k + apart);
+            let below = (k + apart * side < side * side).then_some(k + apart * side);
             for other in right.into_iter().chain(below) {
                 let texture = self.frame[k] * self.plate[other] + self.frame[other] * self.plate[k];
                 sum += self.frame[k] * self.frame[other] - 0.5 * texture;
@@ -454,7 +436,10 @@ fn classes(statistics: Vec<Statistics>) -> Vec<Statistics> {
             frame: of(|statistics| statistics.frame),
             plate: of(|statistics| statistics.plate),
             texture: of(|statistics| statistics.texture),
-            beside: of(|statistics| statistics.beside),
+            apart: [
+                of(|statistics| statistics.apart[0]),
+                of(|statistics| statistics.apart[1]),
+            ],
         }
     })
     .map(|class| class.with_equal_noise_if_alike().without_rounding())

@@ -102,7 +102,7 @@ impl Mix<'_> {
     /// none.
     fn with_grain(&self, blend: LightPicture, of_frame: &FrameGrain, weights: &[f32]) -> LightPicture {
         let FrameGrain { grain, frame } = *of_frame;
-        let [beside, channels] = [grain.beside, grain.channels].map(f64::from);
+        let (near, channels) = (grain.weights.map(f64::from), f64::from(grain.channels));
         let clear = TABLE.clear(self.touched, blend.width_px);
         let side = |pixel: usize| i32::try_from(pixel).unwrap_or(i32::MAX);
         let pixels = blend.rgb.iter().zip(weights).zip(&clear).enumerate();
@@ -112,7 +112,7 @@ impl Mix<'_> {
                 return *pixel;
             }
             let at = [side(index % blend.width_px), side(index / blend.width_px)];
-            let noise = grain_at(at, frame, beside, channels);
+            let noise = grain_at(at, frame, near, channels);
             [0, 1, 2].map(|channel| {
                 let light = f64::from(pixel[channel]);
                 let deviation = (missing * grain.frame.variance(light.max(0.0))).sqrt();

@@ -60,10 +60,9 @@ shared_struct! {
         pub picture: u32,
         pub frame_noise: [f32; 2],
         pub plate_noise: [f32; 2],
-        pub beside: f32,
+        pub grain_weights: [f32; 2],
         pub channels: f32,
         pub strength: f32,
-        pub unused: f32,
     }
 }
 
@@ -347,7 +346,7 @@ impl<'a> Inputs<'a> {
                 picture,
                 frame_noise: [grain.frame.floor, grain.frame.per_light],
                 plate_noise: [grain.plate.floor, grain.plate.per_light],
-                beside: grain.beside,
+                grain_weights: grain.weights,
                 channels: grain.channels,
                 ..clean
             })
