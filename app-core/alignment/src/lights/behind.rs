@@ -1,6 +1,6 @@
 //! The light behind a thing that is known by its top, such as a book.
 
-use glam::{DMat4, DVec2, DVec3, DVec4, Vec3Swizzles};
+use glam::{DVec2, DVec3, DVec4, Vec3Swizzles};
 
 use super::lamp::Lamp;
 use super::receiver_pixels::ReceiverPixel;
@@ -11,8 +11,8 @@ use app_scene::geometry::opaque::{hidden_light, is_top};
 /// Receivers that may hide a lamp from each other.
 pub(super) struct Behind<'a> {
     receivers: &'a [SeenReceiver],
-    /// For each receiver, those that stand on it.
-    tops: Vec<Vec<usize>>,
+    /// For each receiver, those that stand on it, with its normal in their space.
+    tops: Vec<Vec<(usize, DVec3)>>,
     /// The lamp's centre in the space of each receiver, homogeneous.
     middles: Vec<DVec4>,
     /// Radius of the lamp's disc in metres, or as a slope of one at infinity.
@@ -21,14 +21,14 @@ pub(super) struct Behind<'a> {
 
 impl<'a> Behind<'a> {
     pub(super) fn new(shape: &Shape, receivers: &'a [SeenReceiver], lamp: &Lamp) -> Self {
-        let is_on = |below: &SeenReceiver, top: &SeenReceiver| {
-            let below_from_top: DMat4 = below.plane_from_camera * top.plane_from_camera.inverse();
-            is_top(&below_from_top)
+        let up = |below: &SeenReceiver, top: &SeenReceiver| {
+            let top_from_below = top.plane_from_camera * below.plane_from_camera.inverse();
+            is_top(&top_from_below.inverse()).then(|| top_from_below.y_axis.truncate())
         };
         let tops = (0..receivers.len()).map(|below| {
             let others = (0..receivers.len()).filter(|top| *top != below);
             others
-                .filter(|top| is_on(&receivers[below], &receivers[*top]))
+                .filter_map(|top| Some((top, up(&receivers[below], &receivers[top])?)))
                 .collect()
         });
         let middle = |receiver: &SeenReceiver| {
@@ -50,7 +50,7 @@ impl<'a> Behind<'a> {
     /// pixel that would show its receiver through a side of the thing shows that side, of which the
     /// top tells nothing: there it is 1.
     pub(super) fn seen(&self, pixel: &ReceiverPixel) -> f64 {
-        let hidden = self.tops[pixel.receiver].iter().map(|top| {
+        let hidden = self.tops[pixel.receiver].iter().map(|(top, up)| {
             let receiver = &self.receivers[*top];
             let here = receiver.plane_from_camera.transform_point3(pixel.point);
             let eye = receiver.plane_from_camera.w_axis.truncate();
@@ -58,7 +58,7 @@ impl<'a> Behind<'a> {
             if is_below([here, eye], half_m) {
                 0.0
             } else {
-                hidden_light(here, self.middles[*top], self.radius, [-half_m, half_m])
+                hidden_light(here, *up, self.middles[*top], self.radius, [-half_m, half_m])
             }
         });
         1.0 - hidden.fold(0.0, f64::max)
