@@ -46,9 +46,8 @@ fn check_light(height_m: f64) {
     let (mut n_part, mut largest) = (0, 0.0_f64);
     for light in lights {
         let centre = light.centre_in(&DMat4::IDENTITY);
-        let along = (0..400).map(|i| DVec3::new(0.05 + 0.0005 * f64::from(i), 0.0, 0.03));
         // Nearer to a face, both its edge and the side of the thing cut the disc: off by .08.
-        let along = along.filter(|from| from.x > TOP[1].x + 0.003);
+        let along = (0..800).map(|i| DVec3::new(TOP[1].x + 0.0035 + 0.00025 * f64::from(i), 0.0, 0.03));
         for from in places().chain(along) {
             let from = DVec3::new(from.x, -height_m, from.z);
             let to_light = centre.truncate() - centre.w * from;
