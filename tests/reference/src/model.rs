@@ -156,24 +156,61 @@ impl ReceiverPlane {
         !std::ptr::eq(self, other) && here.y > 0.0 && self.rect.holds(DVec2::new(here.x, here.z))
     }
 
-    /// The part of light `i`, with a disc of a radius, that the receiver hides from a point of its
-    /// space: over each axis, the part of the disc's shadow that its two edges enclose.
+    /// The part of light `i`, with a disc of a radius, that the receiver and what is below it hide
+    /// from a point of its space: the larger of the part of the disc's shadow between its edges, and
+    /// of the part to which the way, seen from above, enters it.
     #[must_use]
-    pub fn hidden(&self, i: usize, from: DVec3, radius: f64) -> f64 {
+    pub fn hidden(&self, i: usize, [from, up]: [DVec3; 2], radius: f64) -> f64 {
         let light = self.lights[i];
         let to_light = light.truncate() - light.w * from;
         let is_between = from.y > 0.0 && light.y < 0.0 || from.y < 0.0 && light.y > 0.0;
         if !is_between {
             return 0.0;
         }
-        let axis = |from_x: f64, to_x: f64, edges: [f64; 2]| {
-            let part = from.y.abs() / to_light.y.abs();
-            let radius = (part * radius * to_light.y.hypot(to_x) / to_light.y.abs()).max(SHARPEST_M);
-            let below = edges.map(|edge| segment((edge - from_x - part * to_x) / radius));
-            (below[1] - below[0]).max(0.0)
-        };
+        let part = from.y.abs() / to_light.y.abs();
+        let seen = from + part * to_light;
+        let above = from + up * (-from.y / up.y);
+        let half = [to_light.x, to_light.z]
+            .map(|to| (part * radius * to_light.y.hypot(to) / to_light.y.abs()).max(SHARPEST_M));
         let PlaneRect { min, max } = self.rect;
-        axis(from.x, to_light.x, [min.x, max.x]) * axis(from.z, to_light.z, [min.y, max.y])
+        let axes = [
+            (above.x, seen.x, half[0], [min.x, max.x]),
+            (above.z, seen.z, half[1], [min.y, max.y]),
+        ];
+        let on = axes.map(|(_, seen, half, [low, high])| {
+            (segment((high - seen) / half) - segment((low - seen) / half)).max(0.0)
+        });
+        let is_beside = axes
+            .iter()
+            .any(|(above, _, _, [low, high])| above < low || above > high);
+        let entered = axes.map(|(above, seen, half, [low, high])| match above {
+            _ if above < low => segment((seen - low) / half),
+            _ if above > high => segment((high - seen) / half),
+            _ => f64::from(u8::from(is_beside)),
+        });
+        let between = self.between_corners(above, [seen, to_light], part * radius);
+        (on[0] * on[1]).max(entered[0] * entered[1] * between)
+    }
+
+    /// The part of a light's disc around `seen`, in the direction `to_light`, that is between the
+    /// outermost corners of the receiver as seen from the point `above`.
+    fn between_corners(&self, above: DVec3, [seen, to_light]: [DVec3; 2], radius: f64) -> f64 {
+        let PlaneRect { min, max } = self.rect;
+        let sides = [min.x, max.x].map(|x| {
+            [min.y, max.y].map(|z| {
+                let (x, z) = (x - above.x, z - above.z);
+                let along = -z * to_light.x + x * to_light.z;
+                let width = radius * x.hypot(z).hypot(along / to_light.y);
+                let across = x * (seen.z - above.z) - z * (seen.x - above.x);
+                across / width.max(SHARPEST_M * x.hypot(z))
+            })
+        });
+        let sides = sides.as_flattened().iter().copied();
+        let outer = [
+            sides.clone().fold(f64::MIN, f64::max),
+            -sides.fold(f64::MAX, f64::min),
+        ];
+        (segment(outer[0]) - segment(-outer[1])).max(0.0)
     }
 }
 
@@ -187,7 +224,9 @@ impl Region {
         let in_anchor = own.plane_from_anchor.inverse().transform_point3(from);
         let hidden = self.hidden_by_all(point.receiver, |_, plane| {
             let here = plane.plane_from_anchor.transform_point3(in_anchor);
-            plane.hidden(i, here, self.light_radii[i])
+            let in_anchor = own.plane_from_anchor.inverse().transform_vector3(DVec3::Y);
+            let up = plane.plane_from_anchor.transform_vector3(in_anchor);
+            plane.hidden(i, [here, up], self.light_radii[i])
         });
         own.open_falloff(i, point.in_plane) * (1.0 - hidden).max(0.0)
     }

@@ -4,6 +4,7 @@
 
 use app_core::alignment::{Aligner, Observer};
 use app_core::scene::{Receiver, Scene};
+use app_core::things::Mark;
 use app_scene::depth::Depth;
 use app_scene::place_mesh::PlaceMesh;
 use glam::{DMat4, DQuat, DVec2, DVec3, UVec2};
@@ -346,4 +347,18 @@ fn no_plane_is_found_where_there_is_none() {
     observer.observed(&scene, &shot.input).unwrap();
     assert!(observer.planes().is_empty());
     assert_eq!(observer.scene(&scene).receivers, scene.receivers);
+}
+
+/// The toy's shadow crosses the board's own shadow on the table, and changes nothing there.
+#[test]
+fn no_thing_is_found_in_the_shadow_of_a_listed_plane() {
+    let (mut scene, shot) = session(&[(board_at(-0.06, 0.035, 0.0), HALF_M)]);
+    scene.receivers.push(shot.scene.receivers[1].clone());
+    let mut observer = Observer::default();
+    let things = observer.observed(&scene, &shot.input).unwrap().things;
+    assert!(
+        things.is_none(),
+        "{:?}",
+        things.map(|things| things.count(Mark::Thing))
+    );
 }

@@ -4,6 +4,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4, IVec2};
 
+use super::behind::Behind;
 use super::lamp::{Lamp, disc};
 use super::receiver_pixels::ReceiverPixel;
 use crate::raster::{Coverage, Rasterizer, project};
@@ -109,7 +110,8 @@ impl<'a> Caster<'a> {
         hidden.into_iter().map(|[hidden]| hidden).collect()
     }
 
-    /// Irradiance of each pixel's receiver from a lamp, relative to the foot of the toy there.
+    /// Irradiance of each pixel's receiver from a lamp, relative to the foot of the toy there: no shadow
+    /// falls where the top of a thing hides the lamp.
     pub(super) fn lit(&self, pixels: &[ReceiverPixel], lamp: &Lamp) -> Vec<f32> {
         let seen = self.receivers.iter().map(|receiver| {
             let plane_from_camera = receiver.plane_from_camera;
@@ -118,14 +120,17 @@ impl<'a> Caster<'a> {
             (plane_from_camera, middle, irradiance(middle, foot))
         });
         let seen: Vec<_> = seen.collect();
+        let behind = Behind::new(self.shape, self.receivers, lamp);
         let lit = pixels.iter().map(|pixel| {
             let (plane_from_camera, middle, at_foot) = seen[pixel.receiver];
-            if lamp.is_far() || at_foot <= 0.0 {
-                return 1.0;
-            }
-            let at = plane_from_camera.transform_point3(pixel.point);
+            let open = if lamp.is_far() || at_foot <= 0.0 {
+                1.0
+            } else {
+                let at = plane_from_camera.transform_point3(pixel.point);
+                irradiance(middle, at) / at_foot
+            };
             #[allow(clippy::cast_possible_truncation, reason = "a ratio, to 7 digits")]
-            let lit = (irradiance(middle, at) / at_foot) as f32;
+            let lit = (behind.seen(pixel) * open) as f32;
             lit
         });
         lit.collect()

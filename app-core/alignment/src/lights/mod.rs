@@ -9,6 +9,7 @@
 //! no lamp at all, one wide light may be assumed (`wide`).
 
 mod background;
+mod behind;
 mod cast;
 mod classes;
 mod evidence;

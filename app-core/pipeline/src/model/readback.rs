@@ -1,6 +1,6 @@
 //! Readback of the model's maps, for reports and tests.
 
-use glam::{DMat4, DVec2, Mat4, UVec2, Vec2, Vec3, Vec4};
+use glam::{DMat4, DVec2, DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::gpu::context::{Gpu, GpuError};
 use crate::gpu::shader::{Mirrors, mirrors};
@@ -187,9 +187,11 @@ fn direct_fraction_at(globals: &Globals, fit: &Fit, region_px: Vec2) -> Vec3 {
 fn unhidden(globals: &Globals, light: usize, (own, in_plane): (usize, Vec2)) -> f32 {
     let from = Vec3::new(in_plane.x, 0.0, in_plane.y).as_dvec3();
     let hidden = hidden_by_all(globals, own, |own_from_top, top| {
-        let here = own_from_top.inverse().transform_point3(from);
+        let top_from_own = own_from_top.inverse();
+        let here = top_from_own.transform_point3(from);
+        let up = top_from_own.transform_vector3(DVec3::Y);
         let centre = Vec4::from_array(top.lights[light]).as_dvec4();
-        hidden_light(here, centre, f64::from(globals.light_radii[light]), ends(top))
+        hidden_light(here, up, centre, f64::from(globals.light_radii[light]), ends(top))
     });
     (1.0 - hidden).max(0.0)
 }

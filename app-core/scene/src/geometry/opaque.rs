@@ -21,26 +21,74 @@ pub fn is_top(plane_from_rect: &DMat4) -> bool {
     plane_from_rect.y_axis.y >= f64::from(STANDS)
 }
 
-/// The part of a light that an opaque rectangle on the plane y = 0 hides from a point, 0 to 1.
+/// The part of a light that a rectangle on the plane y = 0, and what is below it, hide from a point
+/// below that plane, 0 to 1: the larger part of the two.
 ///
 /// `light` is its centre, homogeneous, and `radius` that of its disc over its distance, which is 1
-/// for a direction: metres, or a slope. The rectangle has a smallest and a largest (x, z). Each pair
-/// of parallel edges cuts the light's disc by itself.
+/// for a direction: metres, or a slope. The rectangle has a smallest and a largest (x, z); `up` is
+/// the direction upwards, against that of the thing's faces. Each line cuts the light's disc by
+/// itself.
 #[must_use]
-pub fn hidden_light(from: DVec3, light: DVec4, radius: f64, [min, max]: [DVec2; 2]) -> f64 {
+pub fn hidden_light(from: DVec3, up: DVec3, light: DVec4, radius: f64, [min, max]: [DVec2; 2]) -> f64 {
     if from.y * light.y >= 0.0 {
         return 0.0;
     }
     let to_light = light.truncate() - light.w * from;
     let part = -from.y / to_light.y;
-    let at = from.xz() + part * to_light.xz();
-    // Half the axes of the disc, projected onto the plane from the point.
-    let slope = to_light.xz() / to_light.y;
-    let radius = part * radius * (DVec2::ONE + slope * slope).map(f64::sqrt);
-    let radius = radius.max(DVec2::splat(f64::from(SHARPEST_M)));
-    let parts = |t: DVec2| t.map(disc_part);
-    let within = (parts((at - min) / radius) + parts((max - at) / radius) - 1.0).max(DVec2::ZERO);
-    within.element_product()
+    let disc = Disc {
+        at: from.xz() + part * to_light.xz(),
+        slope: to_light.xz() / to_light.y,
+        across: part * radius,
+    };
+    let above = from.xz() - up.xz() * (from.y / up.y);
+    disc.on([min, max]).max(disc.entered([min, max], above))
+}
+
+/// A light's disc, projected onto the plane of a rectangle from a point.
+struct Disc {
+    at: DVec2,
+    /// The light's (x, z) over its height.
+    slope: DVec2,
+    /// Its radius across the way to the light.
+    across: f64,
+}
+
+impl Disc {
+    /// Half its axes.
+    fn radius(&self) -> DVec2 {
+        let radius = self.across * (DVec2::ONE + self.slope * self.slope).map(f64::sqrt);
+        radius.max(DVec2::splat(f64::from(SHARPEST_M)))
+    }
+
+    /// The part of it on a rectangle.
+    fn on(&self, [min, max]: [DVec2; 2]) -> f64 {
+        let parts = |t: DVec2| (t / self.radius()).map(disc_part);
+        let within = (parts(self.at - min) + parts(max - self.at) - 1.0).max(DVec2::ZERO);
+        within.element_product()
+    }
+
+    /// The part of it for which the way from `above`, seen from above, meets a rectangle: it enters by
+    /// the edges that are turned to `above`, between the outermost corners; 0 from within it, since a
+    /// pixel with such a point shows a side.
+    fn entered(&self, [min, max]: [DVec2; 2], above: DVec2) -> f64 {
+        let (is_before, is_behind) = (above.cmplt(min), above.cmpgt(max));
+        if !is_before.any() && !is_behind.any() {
+            return 0.0;
+        }
+        let parts = |t: DVec2| (t / self.radius()).map(disc_part);
+        let beyond_high = DVec2::select(is_behind, parts(max - self.at), DVec2::ONE);
+        let near = DVec2::select(is_before, parts(self.at - min), beyond_high);
+        let corners = [min, max, DVec2::new(min.x, max.y), DVec2::new(max.x, min.y)];
+        let sides = corners.map(|corner| {
+            let to = corner - above;
+            let width = self.across * to.length().hypot(to.perp().dot(self.slope));
+            to.perp_dot(self.at - above) / width.max(f64::from(SHARPEST_M) * to.length())
+        });
+        let most = sides.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let least = sides.into_iter().fold(f64::INFINITY, f64::min);
+        let within = (disc_part(most) + disc_part(-least) - 1.0).max(0.0);
+        near.element_product() * within
+    }
 }
 
 /// Part of the area of a disc on one side of a line at a distance from its centre, in radii.
