@@ -355,6 +355,10 @@ impl Sight<'_> {
             .plate
             .as_ref()
             .map(|plate| [Codes::of(&largest.frame), Codes::of(plate)]);
+        let is_own = |at: IVec2, frame: &Codes| {
+            let color = frame.get(at);
+            color.is_some_and(|color| found.is_own_color_in_frame(color))
+        };
         let mark = |at: IVec2| {
             let there = (at.as_dvec2() + 0.5) * per_px;
             let Some([frame, plate]) = &codes else {
@@ -363,7 +367,7 @@ impl Sight<'_> {
             match found.at(there) {
                 Mark::BeforeToy if toy.shows(at, frame, plate) => Mark::None,
                 Mark::None => match found.in_frame_at(there) {
-                    Mark::BeforeToy if toy.is_shown(at, frame) => Mark::None,
+                    Mark::BeforeToy if toy.is_shown(at, frame) && !is_own(at, frame) => Mark::None,
                     Mark::BeforeToy if !is_shade(at, frame, plate) => Mark::BeforeToy,
                     Mark::Thing if toy.coverage.at(at) > 0.0 || is_shade(at, frame, plate) => Mark::None,
                     Mark::BeforeToy | Mark::Thing => Mark::Thing,
