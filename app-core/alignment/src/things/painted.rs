@@ -14,7 +14,16 @@ use app_scene::things::Mark;
 /// Distance in pixels from the toy up to which a pixel may be mixed with it, and from a thing's outline.
 const MIXED_PX: i32 = 2;
 /// Lines through a pixel, of which each has two directions.
-const LINES: [IVec2; 4] = [IVec2::X, IVec2::Y, IVec2::ONE, IVec2::new(1, -1)];
+const LINES: [IVec2; 8] = [
+    IVec2::X,
+    IVec2::Y,
+    IVec2::ONE,
+    IVec2::new(1, -1),
+    IVec2::new(2, 1),
+    IVec2::new(2, -1),
+    IVec2::new(1, 2),
+    IVec2::new(1, -2),
+];
 /// Number of lines on which a pixel lies between visible parts.
 const LEAST_LINES: usize = 2;
 
@@ -40,7 +49,13 @@ impl Seen<'_> {
                 behind.mark(at);
             }
         }
-        let hidden = between((self.things, &behind), size_px);
+        let mut hidden = between((self.things, &behind), size_px);
+        // Pixels of a thing beside the toy are mixed with it.
+        let is_mixed = |(at, mark): &(IVec2, &Mark)| {
+            **mark == Mark::Thing && self.things.has(*at) && self.coverage.is_near(*at, MIXED_PX)
+        };
+        let mixed = places(size_px).zip(marks.iter()).filter(is_mixed);
+        hidden.extend(mixed.map(|(at, _)| at));
         if hidden.is_empty() {
             return;
         }
