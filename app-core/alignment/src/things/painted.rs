@@ -61,7 +61,9 @@ impl Seen<'_> {
         }
         let colors = self.colors(&hidden);
         for at in hidden {
-            let Some(index) = index_in(size_px, at) else { continue };
+            let Some(index) = index_in(size_px, at) else {
+                continue;
+            };
             let Some(plate) = self.plate.get(at).filter(|_| !colors[index][0].is_nan()) else {
                 continue;
             };
