@@ -22,7 +22,7 @@ const IN_SHADOW: Rect = [UVec2::new(365, 220), UVec2::new(415, 262)];
 /// Over the toy's forelegs, and to both sides of them.
 const OVER_LEGS: Rect = [UVec2::new(222, 222), UVec2::new(292, 254)];
 /// Beside the forelegs, far enough for a thing that is not before the toy.
-const AROUND_LEGS: Rect = [UVec2::new(196, 224), UVec2::new(308, 260)];
+const AROUND_LEGS: Rect = [UVec2::new(150, 222), UVec2::new(350, 290)];
 /// Over the hind legs and a part of the back, so that no pose fits the visible outline.
 const OVER_BACK: Rect = [UVec2::new(312, 100), UVec2::new(356, 290)];
 const TEAL: [u8; 3] = [20, 120, 130];
