@@ -27,7 +27,7 @@ const AROUND_LEGS: Rect = [UVec2::new(150, 222), UVec2::new(350, 290)];
 const OVER_BACK: Rect = [UVec2::new(312, 100), UVec2::new(356, 290)];
 const TEAL: [u8; 3] = [20, 120, 130];
 /// In less light it is like the toy's hair.
-const SKIN: [u8; 3] = [165, 118, 94];
+const SKIN: [u8; 3] = [140, 104, 72];
 
 fn painted(image: &Image, rect: Rect) -> Image {
     painted_where(image, (TEAL, rect), |_| true)
