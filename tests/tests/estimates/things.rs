@@ -160,7 +160,8 @@ fn a_hand_behind_the_toy_has_its_colours_where_the_toy_hides_it() {
     let (mut n_painted, mut n_hidden, mut farthest) = (0, 0, 0.0_f32);
     let [first, end] = AROUND_LEGS;
     for index in (0..things.marks().len()).filter(|index| is_toy(*index)) {
-        let at = UVec2::new(index as u32 % plate.width_px, index as u32 / plate.width_px);
+        let pixel = u32::try_from(index).unwrap();
+        let at = UVec2::new(pixel % plate.width_px, pixel / plate.width_px);
         let is_in = at.cmpge(first).all() && at.cmplt(end).all();
         n_hidden += u32::from(is_in);
         if let Mark::PaintedThing { light } = things.marks()[index] {
