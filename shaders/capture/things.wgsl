@@ -3,7 +3,8 @@
 // A thing gives no information on the light of a receiver, nor on the toy that it hides. It stays
 // as photographed.
 // A wrong part of the plate is treated as not photographed; a shadow that the plate alone has is
-// divided out, and a thing that the toy hides gets the light of its visible part.
+// divided out, and a thing that the toy hides gets the light of its visible part, or its colours if the plate
+// does not show it.
 //
 // Reads: validity, marks of things, which belong to the picture in which they were found and are
 // transferred by the first receiver's plane.
@@ -47,7 +48,7 @@ fn fs_mark(@builtin(position) position: vec4f) -> @location(0) vec4f {
   if code == CODE_BEFORE_TOY { return vec4f(0.0, 0.0, clear, BEFORE_TOY - less); }
   var of_toy = marks.g;
   if of_toy == 1.0 && is_beside_thing_before_toy(position.xy) { of_toy = 0.0; }
-  if code == CODE_THING || code == CODE_HIDDEN_THING { return vec4f(0.0, of_toy, clear, THING - less); }
+  if code == CODE_THING || code == CODE_HIDDEN_THING || code == CODE_PAINTED_THING { return vec4f(0.0, of_toy, clear, THING - less); }
   return vec4f(marks.r, of_toy, marks.ba);
 }
 
@@ -59,5 +60,6 @@ fn fs_correct_plate(@builtin(position) position: vec4f) -> @location(0) vec4f {
   if code == CODE_WRONG_PLATE { return vec4f(0.0); }
   if code == CODE_SHADED_PLATE { return vec4f(1.0 / max(mark.gba, vec3f(LEAST_LEFT)), 1.0); }
   if code == CODE_HIDDEN_THING { return vec4f(mark.gba, 1.0); }
+  if code == CODE_PAINTED_THING { return vec4f(MOST_PAINTED * mark.gba * mark.gba, 1.0); }
   return vec4f(1.0);
 }

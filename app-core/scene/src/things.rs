@@ -29,7 +29,18 @@ pub enum Mark {
         /// Light relative to the plate, of 255, for each channel.
         light: [u8; 3],
     },
+    /// A part of a thing that the toy hides, and that no plate shows: the plate in a light that gives
+    /// it the thing's colours.
+    PaintedThing {
+        /// Square root of the light relative to the plate, of 255 for [`MOST_PAINTED`], for each
+        /// channel.
+        light: [u8; 3],
+    },
 }
+
+/// Largest light of a painted thing, relative to the plate: that of skin over a dark slate. Codes of its square
+/// root leave 1.6 % of a light of 1 undetermined, a code and a half.
+pub const MOST_PAINTED: f32 = 16.0;
 
 /// Step of the heights of raised points, in metres.
 pub const HEIGHT_STEP_M: f32 = 1e-5;
@@ -93,11 +104,20 @@ impl Mark {
         }
     }
 
+    /// A thing that neither the picture nor its plate shows, in this light relative to the plate, for each
+    /// channel; `None` if it is more than the plate can be given, or unknown.
+    #[must_use]
+    pub fn painted_thing(light: [f32; 3]) -> Option<Self> {
+        let is_possible = light.iter().all(|light| (0.0..=MOST_PAINTED).contains(light));
+        let light = light.map(|light| code_of((light / MOST_PAINTED).sqrt()));
+        is_possible.then_some(Self::PaintedThing { light })
+    }
+
     /// Index in the counts; `None` for no mark.
     fn kind(self) -> Option<usize> {
         match self {
             Self::None => None,
-            Self::Thing | Self::HiddenThing { .. } => Some(0),
+            Self::Thing | Self::HiddenThing { .. } | Self::PaintedThing { .. } => Some(0),
             Self::BeforeToy => Some(1),
             Self::WrongPlate => Some(2),
             Self::ShadedPlate { .. } => Some(3),
@@ -231,7 +251,7 @@ impl Things {
     /// Whether any pixel's plate needs another light.
     #[must_use]
     pub fn has_light(&self) -> bool {
-        let is_hidden = |mark: &Mark| matches!(mark, Mark::HiddenThing { .. });
+        let is_hidden = |mark: &Mark| matches!(mark, Mark::HiddenThing { .. } | Mark::PaintedThing { .. });
         self.counts[3] > 0 || self.marks.iter().any(is_hidden)
     }
 }

@@ -15,6 +15,10 @@ pub const WRONG_PLATE: u8 = 3;
 pub const SHADED_PLATE: u8 = 4;
 /// Code of a thing that the toy hides.
 pub const HIDDEN_THING: u8 = 5;
+/// Code of a thing that the toy hides and no plate shows.
+pub const PAINTED_THING: u8 = 6;
+/// Light of such a thing with the largest codes, whose squares are proportional to light.
+const MOST_PAINTED: f64 = 16.0;
 /// Alpha of the marks of things, in the same order.
 pub(super) const ALPHAS: [f64; 2] = [0.8, 0.6];
 /// Less of the alpha on a pixel of another thing.
@@ -74,7 +78,7 @@ pub fn mark(things: &Things, validity: &Raster<DVec4>, texel: UVec2) -> DVec4 {
     let clear = if is_marked { marks.z } else { marks.x };
     let alphas = codes[usize::from(is_marked)];
     match things.at(at) {
-        THING | HIDDEN_THING => DVec4::new(0.0, of_toy, clear, alphas[0]),
+        THING | HIDDEN_THING | PAINTED_THING => DVec4::new(0.0, of_toy, clear, alphas[0]),
         BEFORE_TOY => DVec4::new(0.0, 0.0, clear, alphas[1]),
         _ => DVec4::new(marks.x, of_toy, marks.z, marks.w),
     }
@@ -89,6 +93,7 @@ pub fn plate_factors(things: &Things, texel: UVec2) -> DVec4 {
         WRONG_PLATE => DVec4::ZERO,
         SHADED_PLATE => light.max(DVec3::splat(0.00392)).recip().extend(1.0),
         HIDDEN_THING => light.extend(1.0),
+        PAINTED_THING => (MOST_PAINTED * light * light).extend(1.0),
         _ => DVec4::ONE,
     }
 }

@@ -6,9 +6,11 @@ use std::sync::Arc;
 use app_core::alignment::{Aligner, Observer};
 use app_core::frame::FrameInput;
 use app_core::scene::{Image, Scene};
-use app_core::things::{Mark, Things};
+use app_core::session::GroundTruth;
+use app_core::things::{MOST_PAINTED, Mark, Things};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 use glam::UVec2;
+use harness::bundled_session;
 
 use super::bundled::SESSION;
 
@@ -19,19 +21,35 @@ type Rect = [UVec2; 2];
 const IN_SHADOW: Rect = [UVec2::new(365, 220), UVec2::new(415, 262)];
 /// Over the toy's forelegs, and to both sides of them.
 const OVER_LEGS: Rect = [UVec2::new(222, 222), UVec2::new(292, 254)];
+/// Beside the forelegs, far enough for a thing that is not before the toy.
+const AROUND_LEGS: Rect = [UVec2::new(150, 222), UVec2::new(350, 290)];
 /// Over the hind legs and a part of the back, so that no pose fits the visible outline.
 const OVER_BACK: Rect = [UVec2::new(312, 100), UVec2::new(356, 290)];
 const TEAL: [u8; 3] = [20, 120, 130];
+/// In less light it is like the toy's hair.
+const SKIN: [u8; 3] = [140, 104, 72];
 
-fn painted(image: &Image, [first, end]: Rect) -> Image {
+fn painted(image: &Image, rect: Rect) -> Image {
+    painted_where(image, (TEAL, rect), |_| true)
+}
+
+/// A rectangle in one colour, where a pixel of this index is painted.
+fn painted_where(
+    image: &Image,
+    (color, [first, end]): ([u8; 3], Rect),
+    is_painted: impl Fn(usize) -> bool,
+) -> Image {
     let mut image = image.clone();
     for y in first.y..end.y {
         for x in first.x..end.x {
-            let at = 4 * (y * image.width_px + x) as usize;
+            let index = (y * image.width_px + x) as usize;
+            if !is_painted(index) {
+                continue;
+            }
             // Not of one code, as no object is.
             let grain = ((7 * x + 13 * y) % 5) as u8;
-            for (code, teal) in image.rgba8[at..at + 3].iter_mut().zip(TEAL) {
-                *code = teal + grain;
+            for (code, color) in image.rgba8[4 * index..4 * index + 3].iter_mut().zip(color) {
+                *code = color + grain;
             }
         }
     }
@@ -110,6 +128,55 @@ fn a_thing_before_the_toy_is_found() {
     assert!(
         of_it > 0.9 && beyond < 0.2,
         "{of_it:.2} of it, {beyond:.2} beyond"
+    );
+}
+
+/// What is found where the frame alone shows a rectangle.
+fn in_frame_alone((color, rect): ([u8; 3], Rect), is_painted: impl Fn(usize) -> bool) -> Found {
+    let (scene, input) = &*SESSION;
+    let image = painted_where(input.image.rgba(), (color, rect), is_painted);
+    let input = input.clone().with_image(Arc::new(image));
+    let things = Observer::default().observed(scene, &input).unwrap().things;
+    Found { things, rect }
+}
+
+#[test]
+fn a_hand_before_a_toy_of_its_hue_is_whole() {
+    let found = in_frame_alone((SKIN, OVER_LEGS), |_| true);
+    let [of_it, beyond] = [found.part(Mark::BeforeToy), found.beyond(Mark::BeforeToy)];
+    assert!(
+        of_it > 0.9 && beyond < 0.2,
+        "{of_it:.2} of it, {beyond:.2} beyond"
+    );
+}
+
+#[test]
+fn a_hand_behind_the_toy_has_its_colours_where_the_toy_hides_it() {
+    let labels = bundled_session().truth(0).unwrap().unwrap().mask;
+    let is_toy = |index: usize| labels.rgba8[4 * index + 1] > 0;
+    let found = in_frame_alone((TEAL, AROUND_LEGS), |index| !is_toy(index));
+    let things = found.things.as_ref().unwrap();
+    let plate = &SESSION.0.plates[0].image;
+    let (mut n_painted, mut n_hidden, mut farthest) = (0, 0, 0.0_f32);
+    let [first, end] = AROUND_LEGS;
+    for index in (0..things.marks().len()).filter(|index| is_toy(*index)) {
+        let pixel = u32::try_from(index).unwrap();
+        let at = UVec2::new(pixel % plate.width_px, pixel / plate.width_px);
+        let is_in = at.cmpge(first).all() && at.cmplt(end).all();
+        n_hidden += u32::from(is_in);
+        if let Mark::PaintedThing { light } = things.marks()[index] {
+            n_painted += if is_in { 1 } else { u32::MAX / 2 };
+            for channel in 0..3 {
+                let light = MOST_PAINTED * (f32::from(light[channel]) / 255.0).powi(2);
+                let plate = linear_from_srgb(f32::from(plate.rgba8[4 * index + channel]) / 255.0);
+                let code = 255.0 * srgb_from_linear(light * plate);
+                farthest = farthest.max((code - f32::from(TEAL[channel])).abs());
+            }
+        }
+    }
+    assert!(
+        n_painted > 8 * n_hidden / 10 && n_painted <= n_hidden && farthest < 8.0,
+        "{n_painted} of {n_hidden} pixels, up to {farthest} codes off"
     );
 }
 

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3, DVec4, UVec2};
 use reference::raster::Raster;
 use reference::things::{
-    BEFORE_TOY, HIDDEN_THING, SHADED_PLATE, THING, Things, WRONG_PLATE, mark, plate_factors,
+    BEFORE_TOY, HIDDEN_THING, PAINTED_THING, SHADED_PLATE, THING, Things, WRONG_PLATE, mark, plate_factors,
 };
 
 use crate::alone::{Draw, check_faults, source};
@@ -14,7 +14,15 @@ use crate::scrambled::{buffers, views};
 
 /// Blocks of each code, in a picture other than the region's.
 fn things() -> Things {
-    let codes = [0, THING, SHADED_PLATE, 0, BEFORE_TOY, WRONG_PLATE, HIDDEN_THING];
+    let codes = [
+        0,
+        THING,
+        SHADED_PLATE,
+        PAINTED_THING,
+        BEFORE_TOY,
+        WRONG_PLATE,
+        HIDDEN_THING,
+    ];
     Things {
         codes: Raster::from_fn(UVec2::new(97, 83), |at| {
             let light = u8::try_from(at.element_sum() % 251 + 2).unwrap();
@@ -79,6 +87,9 @@ fn a_fault_in_marking_things_is_found() {
         ("of_toy = 0.0", "of_toy = 1.0"),
         ("return vec4f(mark.gba, 1.0)", "return vec4f(1.0)"),
         ("1.0 / max(mark.gba", "max(mark.gba"),
+        ("MOST_PAINTED * mark.gba * mark.gba", "MOST_PAINTED * mark.gba"),
+        ("MOST_PAINTED: f32 = 16.0", "MOST_PAINTED: f32 = 15.0"),
+        (" || code == CODE_PAINTED_THING", ""),
     ];
     check_faults("things", &faults, 1e-6, errors);
 }

@@ -118,6 +118,13 @@ impl Found<'_> {
         left.map_or(Mark::None, Mark::shaded_plate)
     }
 
+    /// Whether a colour in codes is that of things in the frame alone.
+    pub(super) fn is_own_color_in_frame(&self, color: Color) -> bool {
+        self.in_frame
+            .as_ref()
+            .is_some_and(|found| found.grown.is_own_color(color))
+    }
+
     /// The same for things in the frame alone.
     pub(super) fn in_frame_at(&self, place: DVec2) -> Mark {
         let in_frame = self.in_frame.as_ref();

@@ -21,6 +21,7 @@ mod known;
 mod listed;
 mod measured;
 mod memory;
+mod painted;
 pub(crate) mod planes;
 mod seeds;
 mod shade;
@@ -38,7 +39,7 @@ use std::collections::HashSet;
 use glam::IVec2;
 
 use crate::lights::Comparison;
-use crate::picture::{Level, places};
+use crate::picture::{Level, Mask, places};
 use crate::receivers::receiver_at;
 use app_scene::scene::MAX_RECEIVERS;
 use app_scene::things::{Mark, RaisedPoint};
@@ -59,6 +60,7 @@ use shade::Brightness;
 pub(crate) use sight::Sight;
 use standing::standing;
 use toy::{Toy, is_shade};
+use upright::gain;
 use wrong_plate::wrong_plate;
 
 /// Maximum number of pixels of the level for the search: more take longer and find no more.
@@ -355,6 +357,10 @@ impl Sight<'_> {
             .plate
             .as_ref()
             .map(|plate| [Codes::of(&largest.frame), Codes::of(plate)]);
+        let is_own = |at: IVec2, frame: &Codes| {
+            let color = frame.get(at);
+            color.is_some_and(|color| found.is_own_color_in_frame(color))
+        };
         let mark = |at: IVec2| {
             let there = (at.as_dvec2() + 0.5) * per_px;
             let Some([frame, plate]) = &codes else {
@@ -363,7 +369,7 @@ impl Sight<'_> {
             match found.at(there) {
                 Mark::BeforeToy if toy.shows(at, frame, plate) => Mark::None,
                 Mark::None => match found.in_frame_at(there) {
-                    Mark::BeforeToy if toy.is_shown(at, frame) => Mark::None,
+                    Mark::BeforeToy if toy.is_shown(at, frame) && !is_own(at, frame) => Mark::None,
                     Mark::BeforeToy if !is_shade(at, frame, plate) => Mark::BeforeToy,
                     Mark::Thing if toy.coverage.at(at) > 0.0 || is_shade(at, frame, plate) => Mark::None,
                     Mark::BeforeToy | Mark::Thing => Mark::Thing,
@@ -372,6 +378,25 @@ impl Sight<'_> {
                 mark => mark,
             }
         };
-        (size_px, places(size_px).map(mark).collect())
+        let mut marks: Vec<Mark> = places(size_px).map(mark).collect();
+        if let Some(plate) = largest.plate.as_ref().filter(|_| found.in_frame.is_some()) {
+            let mut things = Mask::new(size_px);
+            for (at, mark) in places(size_px).zip(&marks) {
+                let there = (at.as_dvec2() + 0.5) * per_px;
+                let is_thing = matches!(mark, Mark::Thing | Mark::BeforeToy);
+                if is_thing && found.in_frame_at(there) != Mark::None {
+                    things.mark(at);
+                }
+            }
+            let seen = painted::Seen {
+                things: &things,
+                coverage: &toy.coverage,
+                frame: &largest.frame,
+                plate,
+                gain: gain(level, found.compared).unwrap_or(1.0),
+            };
+            seen.paint(&mut marks);
+        }
+        (size_px, marks)
     }
 }

@@ -208,15 +208,15 @@ impl Seeds {
     }
 
     /// The same for things that the frame alone shows: against the place, and against the toy in
-    /// pixels that look as expected.
-    pub(super) fn in_frame(&self, frame: &Codes, toy: impl Iterator<Item = usize>) -> Self {
+    /// pixels that look as expected, without those in a thing's colours.
+    pub(super) fn in_frame(&self, frame: &Codes, toy: &[usize]) -> Self {
         let keep = |seed: &Seed| match seed {
             Seed::InFrame | Seed::Receiver => *seed,
             Seed::None | Seed::Thing | Seed::WrongPlate => Seed::None,
         };
         let mut seeds: Vec<Seed> = self.seeds.iter().map(keep).collect();
         for index in toy {
-            seeds[index] = Seed::Receiver;
+            seeds[*index] = Seed::Receiver;
         }
         let mut found = Self {
             seeds,
@@ -224,10 +224,27 @@ impl Seeds {
             colors: self.colors.clone(),
             ..*self
         };
-        let of = |kind: Seed| found.of(kind).into_iter().map(|index| frame.pixels[index]);
-        let colors = Colors::of(of(Seed::InFrame), of(Seed::Receiver));
-        found.colors = [colors, Colors::default()];
+        found.learn_in_frame(frame);
+        // Skin in less light is like a pale toy.
+        for _ in 0..N_DROPS {
+            let is_like_thing = |index: &usize| {
+                let likelier = found.colors[0].likelier(frame.pixels[*index]);
+                likelier.is_some_and(|likelier| likelier > LIKE_THING)
+            };
+            let dropped: Vec<usize> = toy.iter().copied().filter(is_like_thing).collect();
+            for index in dropped {
+                found.seeds[index] = Seed::None;
+            }
+            found.learn_in_frame(frame);
+        }
         found
+    }
+
+    /// Learns the colours in the frame of things that it alone shows.
+    fn learn_in_frame(&mut self, frame: &Codes) {
+        let of = |kind: Seed| self.of(kind).into_iter().map(|index| frame.pixels[index]);
+        let colors = Colors::of(of(Seed::InFrame), of(Seed::Receiver));
+        self.colors = [colors, Colors::default()];
     }
 
     /// Indices of the seeds of a kind.

@@ -163,7 +163,7 @@ impl Brightness {
     }
 }
 
-fn logarithm(color: Color) -> Color {
+pub(super) fn logarithm(color: Color) -> Color {
     if color.iter().all(|channel| *channel > 0.0) {
         color.map(f32::ln)
     } else {
@@ -266,7 +266,7 @@ fn smoothed(own: &[Color], size_px: IVec2) -> Vec<Color> {
 
 /// Sets some unknown pixels so that each differs from its neighbours as `measured` says, or not at
 /// all where that is unknown. Source: Young 1954 (successive over-relaxation).
-fn interpolate(light: &mut [Color], (measured, size_px): (&[Color], IVec2), of: &[IVec2]) {
+pub(super) fn interpolate(light: &mut [Color], (measured, size_px): (&[Color], IVec2), of: &[IVec2]) {
     for round in 0..N_ROUNDS {
         // At first what is known spreads from the border.
         let relaxation = if 4 * round < N_ROUNDS { 1.0 } else { RELAXATION };

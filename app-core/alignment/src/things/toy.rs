@@ -114,8 +114,8 @@ impl Toy {
             .iter()
             .copied()
             .filter(|at| self.is_as_expected(*at, frame));
-        let of_toy = as_expected.filter_map(|at| index_in(seeds.size_px, at));
-        let seeds = seeds.in_frame(frame, of_toy);
+        let of_toy: Vec<usize> = as_expected.filter_map(|at| index_in(seeds.size_px, at)).collect();
+        let seeds = seeds.in_frame(frame, &of_toy);
         let grown = Grown::from(&seeds, Seed::InFrame, frame)?;
         let mut hidden = vec![0; grown.n_things()];
         for at in within.into_iter().filter(|at| !self.is_as_expected(*at, frame)) {

@@ -140,11 +140,22 @@ pub(super) struct Upright<'a> {
     pub(super) light: Light,
 }
 
+/// Exposure of the frame over that of the plate.
+pub(super) fn gain(level: &Level, compared: &[Compared]) -> Option<f32> {
+    let of = |pixel: &Compared| {
+        let frame = brightness(&level.frame.get(pixel.at)?);
+        let plate = brightness(&level.plate.as_ref()?.get(pixel.at)?);
+        let gain = frame / (plate * brightness(&pixel.ratio));
+        gain.is_finite().then_some(gain)
+    };
+    median(compared.iter().filter_map(of), f32::total_cmp)
+}
+
 impl Upright<'_> {
     /// The point of each pixel of the largest level; `None` if no thing has any.
     pub(super) fn raised(&self) -> Option<Vec<RaisedPoint>> {
         let n_things = self.bodies.thing.iter().flatten().max()? + 1;
-        let gain = self.gain()?;
+        let gain = gain(self.level, self.compared)?;
         let shaded = self.shaded(n_things, gain);
         let feet = Feet::of(self);
         let points: Vec<Option<Point>> = places(self.bodies.size_px)
@@ -165,17 +176,6 @@ impl Upright<'_> {
             })
         });
         agrees.contains(&true).then(|| raised.collect())
-    }
-
-    /// Exposure of the frame over that of the plate.
-    fn gain(&self) -> Option<f32> {
-        let of = |pixel: &Compared| {
-            let frame = brightness(&self.level.frame.get(pixel.at)?);
-            let plate = brightness(&self.level.plate.as_ref()?.get(pixel.at)?);
-            let gain = frame / (plate * brightness(&pixel.ratio));
-            gain.is_finite().then_some(gain)
-        };
-        median(self.compared.iter().filter_map(of), f32::total_cmp)
     }
 
     /// For each thing, brightness in the plate of its parts without light of the lights.

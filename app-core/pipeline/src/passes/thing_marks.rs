@@ -1,7 +1,7 @@
 //! Marks of objects on the device: codes of the picture in which they were detected, and the
 //! positions of that picture's pixels in a view.
 
-use app_scene::things::{HEIGHT_STEP_M, Mark, RaisedPoint, Things as GivenThings};
+use app_scene::things::{HEIGHT_STEP_M, MOST_PAINTED, Mark, RaisedPoint, Things as GivenThings};
 use bytemuck::Zeroable;
 use glam::{DMat3, DMat4};
 use wgpu::TextureFormat;
@@ -16,7 +16,7 @@ pub(crate) const THING_MARKS: Mirrors = mirrors!(
     structs: [ThingsView],
     constants: [
         CODE_THING, CODE_BEFORE_TOY, CODE_WRONG_PLATE, CODE_SHADED_PLATE, CODE_HIDDEN_THING,
-        HEIGHT_STEP_M,
+        CODE_PAINTED_THING, MOST_PAINTED, HEIGHT_STEP_M,
     ]
 );
 
@@ -25,6 +25,7 @@ pub(crate) const CODE_BEFORE_TOY: u32 = 2;
 pub(crate) const CODE_WRONG_PLATE: u32 = 3;
 pub(crate) const CODE_SHADED_PLATE: u32 = 4;
 pub(crate) const CODE_HIDDEN_THING: u32 = 5;
+pub(crate) const CODE_PAINTED_THING: u32 = 6;
 
 shared_struct! {
     /// Positions of the marks' pixels in the region.
@@ -104,7 +105,7 @@ impl Things {
 }
 
 /// A mark's code and light, or the height of a thing's point and the lights' share there.
-#[allow(clippy::cast_possible_truncation, reason = "codes below 6")]
+#[allow(clippy::cast_possible_truncation, reason = "codes below 7")]
 fn texel(mark: Mark, raised: RaisedPoint) -> [u8; 4] {
     let [high, low] = raised.height().to_be_bytes();
     let of_thing = [high, low, raised.of_lights()];
@@ -115,6 +116,7 @@ fn texel(mark: Mark, raised: RaisedPoint) -> [u8; 4] {
         Mark::WrongPlate => (CODE_WRONG_PLATE, [0; 3]),
         Mark::ShadedPlate { left } => (CODE_SHADED_PLATE, left),
         Mark::HiddenThing { light } => (CODE_HIDDEN_THING, light),
+        Mark::PaintedThing { light } => (CODE_PAINTED_THING, light),
     };
     [code as u8, red, green, blue]
 }

@@ -4,7 +4,7 @@
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
-use app_core::things::{Mark, RaisedPoint, Things};
+use app_core::things::{MOST_PAINTED, Mark, RaisedPoint, Things};
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::frame::{Thing, Warning};
 use app_pipeline::readback::Map;
@@ -17,8 +17,9 @@ type Rect = [UVec2; 2];
 
 /// In the shadow, away from the toy.
 const IN_SHADOW: Rect = [UVec2::new(95, 50), UVec2::new(123, 76)];
-/// In the area that the toy covers in either pose.
+/// In the area that the toy covers in either pose, and parts of it.
 const OVER_TOY: Rect = [UVec2::new(56, 40), UVec2::new(72, 56)];
+const PAINTED: Rect = [UVec2::new(64, 40), UVec2::new(72, 56)];
 
 fn with(input: &FrameInput, marked: &[(Mark, Rect)]) -> FrameInput {
     let image = input.image.rgba();
@@ -134,17 +135,24 @@ fn a_wrong_plate_is_estimated() {
     }
 }
 
+/// A thing that no plate shows, in this part of the most light that it can have, of 255.
+fn painted(light: [u8; 3]) -> Mark {
+    Mark::painted_thing(light.map(|light| MOST_PAINTED * f32::from(light) / 255.0)).unwrap()
+}
+
 #[test]
 fn a_plate_gets_its_light() {
     let (scene, input) = staged();
     let mut core = core();
     core.set_scene(scene, Preset::Balanced).unwrap();
-    let left = [51, 102, 204];
+    // Near codes of their square roots.
+    let left = [51, 103, 204];
     // All of the light as well, so that both plates have the same format.
     let maps = [[255; 3], left].map(|light| {
         let marked = [
             (Mark::ShadedPlate { left: light }, IN_SHADOW),
             (Mark::HiddenThing { light }, OVER_TOY),
+            (painted(light), PAINTED),
         ];
         let report = core.frame(&with(&input, &marked)).unwrap();
         assert!(report.warnings.contains(&Warning::Thing(Thing::InPlateAlone)));

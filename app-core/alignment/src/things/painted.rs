@@ -1,0 +1,130 @@
+//! Parts of things that the frame alone shows, such as a hand, behind the toy.
+//!
+//! Neither frame nor plate shows them. What lies between visible parts of a thing, along two lines at
+//! least, is taken to be of it, in the colours of the parts around it.
+
+use glam::IVec2;
+
+use super::groups::cross;
+use super::shade::{interpolate, logarithm};
+use crate::picture::{Color, Mask, Picture, UNKNOWN, index_in, places};
+use crate::raster::Coverage;
+use app_scene::things::Mark;
+
+/// Distance in pixels from the toy up to which a pixel may be mixed with it, and from a thing's outline.
+const MIXED_PX: i32 = 2;
+/// Lines through a pixel, of which each has two directions. Without painting, with the first four of
+/// them, and with all and the mixed pixels, the shadow's RMS error is 13.11, 12.80 and 12.60 codes
+/// for a hand around a llama's legs, and 7.04, 6.24 and 6.05 for one around a heron's.
+const LINES: [IVec2; 8] = [
+    IVec2::X,
+    IVec2::Y,
+    IVec2::ONE,
+    IVec2::new(1, -1),
+    IVec2::new(2, 1),
+    IVec2::new(2, -1),
+    IVec2::new(1, 2),
+    IVec2::new(1, -2),
+];
+/// Number of lines on which a pixel lies between visible parts: more than one, as two fingers are on one.
+/// No other number was tried.
+const LEAST_LINES: usize = 2;
+
+/// What a level shows of the things in its frame alone.
+pub(super) struct Seen<'a> {
+    /// Pixels of the things.
+    pub(super) things: &'a Mask,
+    pub(super) coverage: &'a Coverage,
+    /// The frame, and the plate in the frame's exposure.
+    pub(super) frame: &'a Picture,
+    pub(super) plate: &'a Picture,
+    /// Exposure of the frame over that of the plate.
+    pub(super) gain: f32,
+}
+
+impl Seen<'_> {
+    /// Marks the parts behind the toy among pixels without a mark.
+    pub(super) fn paint(&self, marks: &mut [Mark]) {
+        let size_px = self.frame.size_px;
+        let mut behind = Mask::new(size_px);
+        for (at, mark) in places(size_px).zip(marks.iter()) {
+            if *mark == Mark::None && self.coverage.is_near(at, MIXED_PX) {
+                behind.mark(at);
+            }
+        }
+        let mut hidden = between((self.things, &behind), size_px);
+        // Pixels of a thing beside the toy are mixed with it.
+        let is_mixed = |(at, mark): &(IVec2, &Mark)| {
+            **mark == Mark::Thing && self.things.has(*at) && self.coverage.is_near(*at, MIXED_PX)
+        };
+        let mixed = places(size_px).zip(marks.iter()).filter(is_mixed);
+        hidden.extend(mixed.map(|(at, _)| at));
+        if hidden.is_empty() {
+            return;
+        }
+        let colors = self.colors(&hidden);
+        for at in hidden {
+            let Some(index) = index_in(size_px, at) else {
+                continue;
+            };
+            let Some(plate) = self.plate.get(at).filter(|_| !colors[index][0].is_nan()) else {
+                continue;
+            };
+            let light = [0, 1, 2].map(|channel| colors[index][channel].exp() / (self.gain * plate[channel]));
+            if let Some(mark) = Mark::painted_thing(light) {
+                marks[index] = mark;
+            }
+        }
+    }
+
+    /// Logarithms of colours: those of the things, and between them those of hidden pixels.
+    fn colors(&self, hidden: &[IVec2]) -> Vec<Color> {
+        let size_px = self.frame.size_px;
+        let is_clear = |at: IVec2| cross(at, MIXED_PX).all(|at| self.things.has(at));
+        let of = |at: IVec2| match self.frame.get(at) {
+            Some(color) if is_clear(at) => logarithm(color),
+            _ => UNKNOWN,
+        };
+        let known: Vec<Color> = places(size_px).map(of).collect();
+        let rims = places(size_px).filter(|at| self.things.has(*at) && !is_clear(*at));
+        let unknown: Vec<IVec2> = hidden.iter().copied().chain(rims).collect();
+        let mut colors = known.clone();
+        interpolate(&mut colors, (&vec![UNKNOWN; known.len()], size_px), &unknown);
+        colors
+    }
+}
+
+/// The pixels that may be behind the toy and lie between pixels of things.
+fn between((things, behind): (&Mask, &Mask), size_px: IVec2) -> Vec<IVec2> {
+    let mut n_lines = vec![0; (size_px.x * size_px.y) as usize];
+    for line in LINES {
+        let [one, other] = [line, -line].map(|step| reached((things, behind), size_px, step));
+        for (n, (one, other)) in n_lines.iter_mut().zip(one.into_iter().zip(other)) {
+            *n += usize::from(one && other);
+        }
+    }
+    let both = places(size_px).zip(n_lines);
+    both.filter(|(at, n)| *n >= LEAST_LINES && behind.has(*at))
+        .map(|(at, _)| at)
+        .collect()
+}
+
+/// For each pixel, whether a line from it against a step leads to a thing, past hidden pixels alone.
+fn reached((things, behind): (&Mask, &Mask), size_px: IVec2, step: IVec2) -> Vec<bool> {
+    let mut reached = vec![false; (size_px.x * size_px.y) as usize];
+    let mut visit = |at: IVec2| {
+        let before = at - step;
+        let [Some(index), Some(from)] = [at, before].map(|at| index_in(size_px, at)) else {
+            return;
+        };
+        reached[index] = things.has(before) || (behind.has(before) && reached[from]);
+    };
+    // The pixel before each one comes first.
+    if step.y > 0 || (step.y == 0 && step.x > 0) {
+        places(size_px).for_each(&mut visit);
+    } else {
+        let all: Vec<IVec2> = places(size_px).collect();
+        all.into_iter().rev().for_each(&mut visit);
+    }
+    reached
+}
