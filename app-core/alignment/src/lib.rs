@@ -36,7 +36,6 @@
 #![forbid(unsafe_code)]
 
 mod adapted;
-mod base;
 mod before_toy;
 mod camera;
 mod directions;
@@ -44,7 +43,6 @@ mod error;
 mod found;
 mod found_planes;
 mod gloss;
-mod ground_light;
 mod hand;
 mod joint_pose;
 mod kept_lights;

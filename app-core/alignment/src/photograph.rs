@@ -1,5 +1,6 @@
 //! A photograph with its plate, and the estimates of a toy's pose and lights from it.
 
+mod base;
 mod conditions;
 
 use std::sync::Arc;

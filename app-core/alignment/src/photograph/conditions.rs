@@ -2,12 +2,12 @@
 
 use glam::DMat4;
 
-use super::{MOST_OUTLINE_PX, Photograph};
+use super::{MOST_OUTLINE_PX, Photograph, base};
 use crate::found_planes::FoundReceiver;
 use crate::lights::FoundReflection;
 use crate::measured_points::MeasuredPoints;
 use crate::things::Colored;
-use crate::{base, gloss, lights, pose, softness, things};
+use crate::{gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
 use app_scene::geometry::nearest_receivers::nearest_to_toy;
 use app_scene::gloss::Gloss;

@@ -2,9 +2,9 @@
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
-use super::picture::{Level, places};
-use super::receivers::SeenReceiver;
-use super::shape::Shape;
+use crate::picture::{Level, places};
+use crate::receivers::SeenReceiver;
+use crate::shape::Shape;
 use app_scene::things::Mark;
 
 /// Height of the base over that of the toy.
