@@ -20,17 +20,19 @@ impl Aligner {
         &self,
         seen: Seen,
         input: &FrameInput,
-        lights: &[Light],
+        (kept, given): (Option<&KeptLights>, &[Light]),
     ) -> Result<Seen, ToyError> {
         let is_trusted = seen.view.is_trusted(MOST_OUTLINE_PX);
         if self.are_shadows_withheld || seen.view.report.is_none() || (is_trusted && is_sharp(&seen)) {
             return Ok(seen);
         }
-        let found = match lights {
-            [] => Some(self.find_anywhere(Arc::from([]), &seen)?),
-            _ => None,
+        // In a first view without a list, lights are estimated with the thing in the picture.
+        let found = if kept.is_none() && given.is_empty() {
+            Some(self.find_anywhere(Arc::from([]), &seen)?)
+        } else {
+            None
         };
-        let lights = found.as_ref().map_or(lights, KeptLights::in_use);
+        let lights = kept.or(found.as_ref()).map_or(given, KeptLights::in_use);
         let sighted = seen
             .photograph
             .things(&self.scene, &seen.input, lights, (None, None))?;

@@ -62,6 +62,11 @@ impl FoundPlanes {
         is_any
     }
 
+    /// With as many searches as another count has.
+    pub(super) fn count_as(&mut self, other: &Self) {
+        self.n_searches = other.n_searches;
+    }
+
     /// Adds all planes to a scene that has none of them.
     pub(super) fn add_to(&self, scene: &mut Arc<Scene>) {
         add(&self.found, scene);

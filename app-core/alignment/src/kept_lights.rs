@@ -188,10 +188,15 @@ impl KeptLights {
 
     /// Whether these are lamps that were estimated, and that explain the shadows of the latest view.
     pub(super) fn explain_shadows(&self) -> bool {
+        let are_lamps = self.applied.is_some() && self.are_found() && !self.is_assumed() && !self.is_long;
+        are_lamps && self.explain_latest()
+    }
+
+    /// Whether the latest view shows shadows, and these lights explain them.
+    pub(super) fn explain_latest(&self) -> bool {
         let is_explained =
             |latest: Watched| latest.shadows >= LEAST_SHADOWS && latest.unexplained <= MOST_UNEXPLAINED;
-        let are_lamps = self.applied.is_some() && self.are_found() && !self.is_assumed() && !self.is_long;
-        are_lamps && self.latest.is_some_and(is_explained)
+        self.latest.is_some_and(is_explained)
     }
 
     /// With these lights in place of the same estimated ones, as seen from the toy at a place.

@@ -268,8 +268,7 @@ impl Aligner {
             Some(view) => Seen::again(&self.scene, view, input),
             None => {
                 let seen = self.see(input, kept.as_ref())?;
-                let known = kept.as_ref().map_or(&*given, KeptLights::in_use);
-                self.past_things(seen, input, known)?
+                self.past_things(seen, input, (kept.as_ref(), &given))?
             }
         };
         let seen = self.with_adapted_model(seen)?;

@@ -7,7 +7,6 @@ use super::Aligner;
 use super::kept_lights::KeptLights;
 use super::lights::Watched;
 use super::photograph::MOST_OUTLINE_PX;
-use super::thing_lights::Explained;
 use super::view::Seen;
 use crate::no_light::NoLight;
 use crate::things::{self, Colored};
@@ -217,14 +216,14 @@ impl Aligner {
             if !are_kept
                 && planes_of.is_some()
                 && let Some(on_ground) = self.lights_on_ground(&given, looked_at)?
-                && let Looked::Planes(again) = self.tried_planes(&given, (&on_ground, freed), planes_of)?
+                && let Looked::Planes(again) = self.look_for_things(on_ground.in_use(), freed, planes_of)?
             {
                 return self.look_at_lights(None, given, &again);
             }
             let looked = if are_kept {
                 self.look_for_things(lights.in_use(), freed, planes_of)?
             } else {
-                self.explain(&given, &mut lights, (freed, planes_of))?
+                self.look_for_explanations(&given, &mut lights, (freed, planes_of))?
             };
             match looked {
                 Looked::Things(things) => things,
@@ -240,35 +239,6 @@ impl Aligner {
         }
         things::adopt(&mut self.things, things);
         Ok(lights)
-    }
-
-    /// Things in the lights of a first view, or their planes; and other lights, if these explain it
-    /// beside things.
-    fn explain(
-        &mut self,
-        given: &Arc<[Light]>,
-        lights: &mut KeptLights,
-        (seen, planes_of): (&Seen, Option<Colored>),
-    ) -> Result<Looked, ToyError> {
-        let before = self.planes.clone();
-        let things = match self.tried_planes(given, (lights, seen), planes_of)? {
-            Looked::Things(things) if lights.leave_too_much() => things,
-            looked => return Ok(looked),
-        };
-        let explained = self.explained_by_things(given, (seen, things), planes_of)?;
-        if let Some(Explained::Planes(again)) = explained {
-            return Ok(Looked::Planes(again));
-        }
-        // All of this counts as one search.
-        self.planes = before;
-        let planes_of = match explained {
-            Some(Explained::Lights(beside)) => {
-                *lights = *beside;
-                None
-            }
-            _ => planes_of,
-        };
-        self.look_for_things(lights.in_use(), seen, planes_of)
     }
 
     /// Things that stand beside the toy in given lights; or, once planes of some are found, the view with these among the receivers.

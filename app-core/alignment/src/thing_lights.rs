@@ -9,26 +9,67 @@
 use std::sync::Arc;
 
 use super::Aligner;
+use super::found_planes::FoundPlanes;
 use super::kept_lights::KeptLights;
 use super::light_search::Looked;
 use super::view::Seen;
-use crate::things::Colored;
-use app_scene::scene::Light;
+use crate::things::{Colored, Memory};
+use app_scene::scene::{Light, Scene};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 
 /// What explains a view that lights alone do not.
-pub(super) enum Explained {
+enum Explained {
     /// Planes of things, which are among the receivers of this view.
     Planes(Box<Seen>),
     /// Lights beside things.
     Lights(Box<KeptLights>),
 }
 
+/// What a search for things has changed.
+struct Searched {
+    planes: FoundPlanes,
+    scene: Arc<Scene>,
+    memory: Option<Memory>,
+}
+
 impl Aligner {
+    /// Things in the lights of a first view, or their planes; and other lights, if these explain it
+    /// beside things. If nothing explains it, all is as in the given lights.
+    pub(super) fn look_for_explanations(
+        &mut self,
+        given: &Arc<[Light]>,
+        lights: &mut KeptLights,
+        (seen, planes_of): (&Seen, Option<Colored>),
+    ) -> Result<Looked, ToyError> {
+        let before = self.searched();
+        let first = self.look_for_things(lights.in_use(), seen, planes_of)?;
+        if !lights.leave_too_much() {
+            return Ok(first);
+        }
+        let first_things = match &first {
+            Looked::Planes(again) if self.is_explained(given, lights, again)? => return Ok(first),
+            Looked::Planes(_) => None,
+            Looked::Things(things) => things.clone(),
+        };
+        let in_lights = self.replaced(before);
+        match self.explained_by_things(given, (seen, first_things), planes_of)? {
+            Some(Explained::Planes(again)) => Ok(Looked::Planes(again)),
+            Some(Explained::Lights(beside)) => {
+                *lights = *beside;
+                self.planes.count_as(&in_lights.planes);
+                self.look_for_things(lights.in_use(), seen, None)
+            }
+            None => {
+                self.replaced(in_lights);
+                Ok(first)
+            }
+        }
+    }
+
     /// Planes of things, or lights beside things, that explain a view; `None` if there are none.
     /// `things` are those in lights that do not.
-    pub(super) fn explained_by_things(
+    fn explained_by_things(
         &mut self,
         given: &Arc<[Light]>,
         (seen, things): (&Seen, Option<Things>),
@@ -38,19 +79,25 @@ impl Aligner {
         if let Some(photograph) = seen.photograph.around_base(&self.scene, &seen.input)? {
             let lights = self.find_lights(Arc::clone(given), &seen.with_photograph(photograph))?;
             if lights.are_found() {
-                match self.tried_planes(given, (&lights, seen), planes_of)? {
-                    Looked::Planes(again) => return Ok(Some(Explained::Planes(again))),
+                let before = self.searched();
+                match self.look_for_things(lights.in_use(), seen, planes_of)? {
                     Looked::Things(things) => all_things.extend(things),
+                    Looked::Planes(again) => {
+                        if self.is_explained(given, &lights, &again)? {
+                            return Ok(Some(Explained::Planes(again)));
+                        }
+                        self.replaced(before);
+                    }
                 }
             }
         }
         let mut explained = None;
         for things in all_things {
             let lights = self.find_lights(Arc::clone(given), &seen.clear_of(&things))?;
-            if !lights.are_found() || lights.leave_too_much() {
+            if !lights.are_found() || !lights.explain_latest() {
                 continue;
             }
-            if let Looked::Planes(again) = self.tried_planes(given, (&lights, seen), planes_of)? {
+            if let Looked::Planes(again) = self.look_for_things(lights.in_use(), seen, planes_of)? {
                 return Ok(Some(Explained::Planes(again)));
             }
             explained = explained.or(Some(Explained::Lights(Box::new(lights))));
@@ -58,28 +105,29 @@ impl Aligner {
         Ok(explained)
     }
 
-    /// Things in some lights; or planes of them, which are kept if lights explain the view with
-    /// them.
-    pub(super) fn tried_planes(
-        &mut self,
-        given: &Arc<[Light]>,
-        (lights, seen): (&KeptLights, &Seen),
-        planes_of: Option<Colored>,
-    ) -> Result<Looked, ToyError> {
-        let before = (self.planes.clone(), Arc::clone(&self.scene));
-        let looked = self.look_for_things(lights.in_use(), seen, planes_of)?;
-        let Looked::Planes(again) = &looked else {
-            return Ok(looked);
-        };
-        // Lights that explain it need no search.
-        let left = self.watch(lights, again)?;
-        if left.is_some_and(KeptLights::leaves_too_much)
-            && self.find_lights(Arc::clone(given), again)?.leave_too_much()
-        {
-            (self.planes, self.scene) = before;
-            return self.look_for_things(lights.in_use(), seen, None);
+    /// Whether these lights, or others that are searched, explain a view.
+    fn is_explained(&self, given: &Arc<[Light]>, lights: &KeptLights, seen: &Seen) -> Result<bool, ToyError> {
+        let freed = self.reflection.removed_from(&self.scene, seen)?;
+        let seen = freed.as_ref().unwrap_or(seen);
+        let is_left = self.watch(lights, seen)?.is_some_and(KeptLights::leaves_too_much);
+        Ok(!is_left || !self.find_lights(Arc::clone(given), seen)?.leave_too_much())
+    }
+
+    fn searched(&self) -> Searched {
+        Searched {
+            planes: self.planes.clone(),
+            scene: Arc::clone(&self.scene),
+            memory: None,
         }
-        Ok(looked)
+    }
+
+    /// What was changed, after it is replaced.
+    fn replaced(&mut self, by: Searched) -> Searched {
+        Searched {
+            planes: std::mem::replace(&mut self.planes, by.planes),
+            scene: std::mem::replace(&mut self.scene, by.scene),
+            memory: std::mem::replace(&mut self.memories[1], by.memory),
+        }
     }
 
     /// The lights by the shadow beside all listed tops; `None` if none is listed, or if the ground
