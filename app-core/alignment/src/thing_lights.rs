@@ -83,7 +83,7 @@ impl Aligner {
                 match self.look_for_things(lights.in_use(), seen, planes_of)? {
                     Looked::Things(things) => all_things.extend(things),
                     Looked::Planes(again) => {
-                        if self.is_explained(given, &lights, &again)? {
+                        if lights.explain_latest() || self.is_explained(given, &lights, &again)? {
                             return Ok(Some(Explained::Planes(again)));
                         }
                         self.replaced(before);
@@ -91,7 +91,7 @@ impl Aligner {
                 }
             }
         }
-        let mut explained = None;
+        let mut beside: Option<KeptLights> = None;
         for things in all_things {
             let lights = self.find_lights(Arc::clone(given), &seen.clear_of(&things))?;
             if !lights.are_found() || !lights.explain_latest() {
@@ -100,9 +100,15 @@ impl Aligner {
             if let Looked::Planes(again) = self.look_for_things(lights.in_use(), seen, planes_of)? {
                 return Ok(Some(Explained::Planes(again)));
             }
-            explained = explained.or(Some(Explained::Lights(Box::new(lights))));
+            // Of two explanations, that with fewer lights.
+            if beside
+                .as_ref()
+                .is_none_or(|other| lights.in_use().len() < other.in_use().len())
+            {
+                beside = Some(lights);
+            }
         }
-        Ok(explained)
+        Ok(beside.map(|lights| Explained::Lights(Box::new(lights))))
     }
 
     /// Whether these lights, or others that are searched, explain a view.
