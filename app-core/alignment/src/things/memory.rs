@@ -125,7 +125,11 @@ impl Memory {
             .map(|(at, (known, mark))| {
                 let is_near = near.iter().all(|near| near.has(at));
                 let in_level = ((at.as_dvec2() + 0.5) * per_px).floor().as_ivec2();
-                let stays = known != mark && is_near && !has_changed.has(in_level);
+                // A painted pixel shows the toy, whose picture does not change if the thing behind it moves.
+                let is_painted = [known, mark]
+                    .iter()
+                    .any(|mark| matches!(mark, Mark::PaintedThing { .. }));
+                let stays = known != mark && is_near && !is_painted && !has_changed.has(in_level);
                 if stays { *known } else { *mark }
             });
         steadied.collect()

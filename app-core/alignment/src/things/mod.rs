@@ -60,7 +60,7 @@ use shade::Brightness;
 pub(crate) use sight::Sight;
 use standing::standing;
 use toy::{Toy, is_shade};
-use upright::gain;
+use upright::gains;
 use wrong_plate::wrong_plate;
 
 /// Maximum number of pixels of the level for the search: more take longer and find no more.
@@ -380,11 +380,12 @@ impl Sight<'_> {
         };
         let mut marks: Vec<Mark> = places(size_px).map(mark).collect();
         if let Some(plate) = largest.plate.as_ref().filter(|_| found.in_frame.is_some()) {
-            let mut things = Mask::new(size_px);
+            let (mut things, mut is_any) = (Mask::new(size_px), false);
             for (at, mark) in places(size_px).zip(&marks) {
                 let there = (at.as_dvec2() + 0.5) * per_px;
                 let is_thing = matches!(mark, Mark::Thing | Mark::BeforeToy);
                 if is_thing && found.in_frame_at(there) != Mark::None {
+                    is_any = true;
                     things.mark(at);
                 }
             }
@@ -393,9 +394,11 @@ impl Sight<'_> {
                 coverage: &toy.coverage,
                 frame: &largest.frame,
                 plate,
-                gain: gain(level, found.compared).unwrap_or(1.0),
+                gain: gains(level, found.compared).unwrap_or([1.0; 3]),
             };
-            seen.paint(&mut marks);
+            if is_any {
+                seen.paint(&mut marks);
+            }
         }
         (size_px, marks)
     }

@@ -1,6 +1,6 @@
 //! Parts of things that the frame alone shows, such as a hand, behind the toy.
 //!
-//! Neither frame nor plate shows them. What lies between visible parts of a thing, along two lines at
+//! Neither frame nor plate shows them. A pixel between visible parts of a thing, along two lines at
 //! least, is taken to be of it, in the colours of the parts around it.
 
 use glam::IVec2;
@@ -26,8 +26,8 @@ const LINES: [IVec2; 8] = [
     IVec2::new(1, 2),
     IVec2::new(1, -2),
 ];
-/// Number of lines on which a pixel lies between visible parts: more than one, as two fingers are on one.
-/// No other number was tried.
+/// Number of lines on which a pixel lies between visible parts, of which one is as long as the gap: what
+/// lies between two hands beside the toy is seen to be of neither. No other number was tried.
 const LEAST_LINES: usize = 2;
 
 /// What a level shows of the things in its frame alone.
@@ -35,11 +35,11 @@ pub(super) struct Seen<'a> {
     /// Pixels of the things.
     pub(super) things: &'a Mask,
     pub(super) coverage: &'a Coverage,
-    /// The frame, and the plate in the frame's exposure.
+    /// The frame, and the plate as it was exposed.
     pub(super) frame: &'a Picture,
     pub(super) plate: &'a Picture,
-    /// Exposure of the frame over that of the plate.
-    pub(super) gain: f32,
+    /// Exposure of the frame over that of the plate, for each channel.
+    pub(super) gain: Color,
 }
 
 impl Seen<'_> {
@@ -70,7 +70,8 @@ impl Seen<'_> {
             let Some(plate) = self.plate.get(at).filter(|_| !colors[index][0].is_nan()) else {
                 continue;
             };
-            let light = [0, 1, 2].map(|channel| colors[index][channel].exp() / (self.gain * plate[channel]));
+            let light =
+                [0, 1, 2].map(|channel| colors[index][channel].exp() / (self.gain[channel] * plate[channel]));
             if let Some(mark) = Mark::painted_thing(light) {
                 marks[index] = mark;
             }
@@ -85,11 +86,11 @@ impl Seen<'_> {
             Some(color) if is_clear(at) => logarithm(color),
             _ => UNKNOWN,
         };
-        let known: Vec<Color> = places(size_px).map(of).collect();
+        let mut colors: Vec<Color> = places(size_px).map(of).collect();
         let rims = places(size_px).filter(|at| self.things.has(*at) && !is_clear(*at));
         let unknown: Vec<IVec2> = hidden.iter().copied().chain(rims).collect();
-        let mut colors = known.clone();
-        interpolate(&mut colors, (&vec![UNKNOWN; known.len()], size_px), &unknown);
+        let unmeasured = vec![UNKNOWN; colors.len()];
+        interpolate(&mut colors, (&unmeasured, size_px), &unknown);
         colors
     }
 }
@@ -100,7 +101,9 @@ fn between((things, behind): (&Mask, &Mask), size_px: IVec2) -> Vec<IVec2> {
     for line in LINES {
         let [one, other] = [line, -line].map(|step| reached((things, behind), size_px, step));
         for (n, (one, other)) in n_lines.iter_mut().zip(one.into_iter().zip(other)) {
-            *n += usize::from(one && other);
+            *n += usize::from(
+                one.gap > 0 && other.gap > 0 && one.gap + other.gap - 1 <= one.part.max(other.part),
+            );
         }
     }
     let both = places(size_px).zip(n_lines);
@@ -109,15 +112,36 @@ fn between((things, behind): (&Mask, &Mask), size_px: IVec2) -> Vec<IVec2> {
         .collect()
 }
 
-/// For each pixel, whether a line from it against a step leads to a thing, past hidden pixels alone.
-fn reached((things, behind): (&Mask, &Mask), size_px: IVec2, step: IVec2) -> Vec<bool> {
-    let mut reached = vec![false; (size_px.x * size_px.y) as usize];
+/// What a line from a pixel leads to, in steps.
+#[derive(Clone, Copy, Default)]
+struct Reached {
+    /// Number of steps to a thing, past hidden pixels alone; 0 if the line leads to none.
+    gap: u32,
+    /// Length of the visible part of the thing there.
+    part: u32,
+}
+
+/// For each pixel, what a line from it against a step leads to.
+fn reached((things, behind): (&Mask, &Mask), size_px: IVec2, step: IVec2) -> Vec<Reached> {
+    let mut reached = vec![Reached::default(); (size_px.x * size_px.y) as usize];
     let mut visit = |at: IVec2| {
         let before = at - step;
         let [Some(index), Some(from)] = [at, before].map(|at| index_in(size_px, at)) else {
             return;
         };
-        reached[index] = things.has(before) || (behind.has(before) && reached[from]);
+        let Reached { gap, part } = reached[from];
+        reached[index] = if things.has(before) {
+            // A pixel of a thing continues the part that ends there.
+            let part = if gap == 1 { part } else { 0 };
+            Reached {
+                gap: 1,
+                part: part + 1,
+            }
+        } else if behind.has(before) && gap > 0 {
+            Reached { gap: gap + 1, part }
+        } else {
+            Reached::default()
+        };
     };
     // The pixel before each one comes first.
     if step.y > 0 || (step.y == 0 && step.x > 0) {

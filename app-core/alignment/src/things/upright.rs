@@ -16,7 +16,7 @@ use super::memory::Memory;
 use super::sight::Sight;
 use crate::lights::Compared;
 use crate::median::median;
-use crate::picture::{Level, brightness, index_in, places};
+use crate::picture::{Color, Level, brightness, index_in, places};
 use crate::receivers::SeenReceiver;
 use app_scene::scene::Light;
 use app_scene::things::{Mark, RaisedPoint};
@@ -140,7 +140,20 @@ pub(super) struct Upright<'a> {
     pub(super) light: Light,
 }
 
-/// Exposure of the frame over that of the plate.
+/// Exposure of the frame over that of the plate, for each channel.
+pub(super) fn gains(level: &Level, compared: &[Compared]) -> Option<Color> {
+    let of = |channel: usize| {
+        let gain = |pixel: &Compared| {
+            let (frame, plate) = (level.frame.get(pixel.at)?, level.plate.as_ref()?.get(pixel.at)?);
+            let gain = frame[channel] / (plate[channel] * pixel.ratio[channel]);
+            gain.is_finite().then_some(gain)
+        };
+        median(compared.iter().filter_map(gain), f32::total_cmp)
+    };
+    Some([of(0)?, of(1)?, of(2)?])
+}
+
+/// The same for their brightness.
 pub(super) fn gain(level: &Level, compared: &[Compared]) -> Option<f32> {
     let of = |pixel: &Compared| {
         let frame = brightness(&level.frame.get(pixel.at)?);
