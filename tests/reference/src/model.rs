@@ -164,7 +164,7 @@ impl ReceiverPlane {
         let light = self.lights[i];
         let to_light = light.truncate() - light.w * from;
         let is_below = from.y < 0.0 && light.y > 0.0;
-        if !is_below && !(from.y > 0.0 && light.y < 0.0) {
+        if !(is_below || from.y > 0.0 && light.y < 0.0) {
             return 0.0;
         }
         let part = from.y.abs() / to_light.y.abs();
