@@ -1,7 +1,8 @@
 // Grain of computed pixels: the part of the camera's noise that they lack.
 //
-// The noise of a plate that is a single picture would stand still. So it is smoothed where it has no
-// more structure than its noise, and lacks as much more. The importing shader declares `plate`.
+// The noise of a plate that is a single picture would stand still. So the plate is smoothed where it
+// has no more structure than its noise, and grain replaces what is lost. The importing shader declares
+// `plate`.
 // Source: Lee 1980 (least squares by local mean and variance).
 
 //#import common/globals
@@ -10,29 +11,35 @@
 
 // Whether computed pixels get the camera's noise.
 override HAS_GRAIN: bool = false;
+// Whether the plate is as sharp as it was taken, and has noise: with grain alone.
+override HAS_PLATE_NOISE: bool = false;
 // Part of a pixel's variance that may be missing without correction.
 const ENOUGH_MISSING: f32 = 0.2;
-// Variance of nine pixels over that of their noise below which they have no structure. The RMSE of a
-// plate with 4 codes of noise on a terrazzo, by thirds of its texture, is 1.95, 2.56 and 3.3 with 1,
-// 1.89, 2.50 and 3.3 with 1.5, and 3.5 unsmoothed.
-const STRUCTURE: f32 = 1.5;
+// Variance of nine pixels over that of their noise below which they have no structure: 1 takes off
+// what is noise on average. With 1.5 a plate with 4 codes of noise on a terrazzo is nearer to the
+// clean one (RMSE by thirds of its texture 1.89, 2.50 and 3.3 for 1.95, 2.56 and 3.3; 3.5 unsmoothed),
+// but a faint texture is lost.
+const STRUCTURE: f32 = 1.0;
 
 // Variance that the receiver's pixel lacks, compared with the camera's pixels there.
 var<private> missing: vec3f;
 
 // Correlation of neighbours from which on the next but one pixels are taken, which share less of the
-// noise. Then the standard deviation of a phone's noise over time, over the camera's, is .63 in place
-// of .54 where the old shadow was, and the RMSE is the same.
+// noise. Then the standard deviation of a phone's noise over time (llama, with a STRUCTURE of 1.5), over
+// the camera's, is .63 in place of .54 where the old shadow was, and the RMSE is the same.
 const CORRELATED: f32 = 0.5;
 
 // Part of the plate's variance that is left where it is smoothed.
 var<private> plate_left: f32 = 1.0;
+// The plate's pixel before it is smoothed: residuals of single pixels refer to it.
+var<private> unsmoothed: vec3f;
 
-// The plate's pixel, smoothed by eight around it as far as their differences are noise. A softened or
-// estimated plate has none.
-fn smoothed_plate(texel: vec2u) -> vec4f {
+// The plate's pixel, smoothed by eight around it as far as their differences are noise. An estimated
+// plate has none, and that of a thing is in another light than the camera's noise belongs to.
+fn smoothed_plate(texel: vec2u, of_thing: bool) -> vec4f {
   let b = textureLoad(plate, texel, 0);
-  if !HAS_GRAIN { return b; }
+  unsmoothed = b.rgb;
+  if !HAS_PLATE_NOISE { return b; }
   let last = vec2i(globals.region_size_px) - 1;
   let near = correlations_of(drawing.grain_weights);
   let is_far = near.x > CORRELATED;
@@ -57,8 +64,9 @@ fn smoothed_plate(texel: vec2u) -> vec4f {
   let with_mean = pow(1.0 + 2.0 * correlations.x, 2.0) / 9.0;
   let of_mean = pow(3.0 + 4.0 * correlations.x + 2.0 * correlations.y, 2.0) / 81.0;
   let noise = dot(variance_of(drawing.plate_noise, b.rgb + mean), vec3f(9.0 / 8.0)) * (1.0 - of_mean);
-  let own = select(1.0, max(1.0 - STRUCTURE * noise / seen, 0.0), seen > 0.0);
-  let kept = select(1.0, own, n == 9.0 && !is_soft());
+  // Equal pixels have no structure.
+  let structure = select(0.0, max(1.0 - STRUCTURE * noise / seen, 0.0), seen > 0.0);
+  let kept = select(1.0, structure, n == 9.0 && !of_thing);
   plate_left = kept * kept + (1.0 - kept) * (2.0 * kept * with_mean + (1.0 - kept) * of_mean);
   return vec4f(b.rgb + (1.0 - kept) * mean, b.a);
 }

@@ -55,10 +55,10 @@ fn side_of(corner: vec2f, at: vec2f, radius: f32, slope: vec2f) -> f32 {
 
 // Part of a light's disc for which the way from `above` to `at`, seen from above, meets a rectangle:
 // it enters by the edges that are turned to `above`, between the outermost corners. `across` is the
-// radius of the disc across the way to the light, and `radius` that along either axis. No pixel of
-// the receiver has `above` within the rectangle: it shows a side, for which the top alone counts. If
-// that were dark, the fit to a book whose sides are no receivers would be off: the shadow's error
-// beside it, after a blur, 1.26 codes for .80.
+// radius of the disc across the way to the light, and `radius` that along either axis. A pixel with
+// `above` within the rectangle shows a side, or the receiver beside a top that is listed too large:
+// for it the top alone counts. If it were dark, the fit to a book whose sides are no receivers would
+// be off: the shadow's error beside it, after a blur, 1.26 codes for .80.
 fn entered(rect: vec4f, above: vec2f, at: vec2f, across: f32, radius: vec2f, slope: vec2f) -> f32 {
   let is_before = above < rect.xy;
   let is_behind = above > rect.zw;
@@ -78,7 +78,8 @@ fn entered(rect: vec4f, above: vec2f, at: vec2f, across: f32, radius: vec2f, slo
 }
 
 // Part of light `i` that receiver `k`, and what is below it, hide from a point in that receiver's
-// space, in which `up` is the direction upwards: the larger part of the two.
+// space, in which `up` is the direction upwards: the larger part of the two. From a point above the
+// plane of a ramp's top, a light below that plane is hidden by the top alone.
 fn hidden_by(k: u32, i: u32, here: vec3f, up: vec3f) -> f32 {
   let light = globals.receivers[k].lights[i];
   if here.y * light.y >= 0.0 { return 0.0; }
@@ -93,7 +94,8 @@ fn hidden_by(k: u32, i: u32, here: vec3f, up: vec3f) -> f32 {
   let rect = globals.receivers[k].rect;
   let within = max(disc_parts((at - rect.xy) / radius) + disc_parts((rect.zw - at) / radius) - 1.0, vec2f(0.0));
   let above = here.xz - here.y / up.y * up.xz;
-  return max(within.x * within.y, entered(rect, above, at, across, radius, slope));
+  let below = select(0.0, entered(rect, above, at, across, radius, slope), here.y < 0.0);
+  return max(within.x * within.y, below);
 }
 
 // Leads from a receiver's space to the anchor, without the origins.

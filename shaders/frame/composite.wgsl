@@ -131,7 +131,7 @@ fn receiver(
     return f;
   }
   // Without a plate and an estimate the frame stays.
-  let b = smoothed_plate(texel);
+  let b = smoothed_plate(texel, is_thing(evident));
   *change = vec4f(0.0, 0.0, 0.0, 1.0);
   if b.a == 0.0 { return f; }
   let lit = fit.gain.rgb * b.rgb;
@@ -178,7 +178,8 @@ fn receiver(
   var own = own_color + lit * (after - before);
   if drawing.has_detail == 1u && b.a == 1.0 {
     // Ratios to a nearly black plate are noise.
-    own = select(own, lit * (after + textureLoad(detail, texel, 0).rgb), b.rgb >= vec3f(DARKEST_USABLE));
+    let exact = fit.gain.rgb * unsmoothed * (after + textureLoad(detail, texel, 0).rgb);
+    own = select(own, exact, unsmoothed >= vec3f(DARKEST_USABLE));
   }
   let kept = mix(darkened(own_color, own, lit * after) + shown, f, is_object);
   let keep = seen * max(is_near, is_outlier);

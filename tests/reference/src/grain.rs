@@ -47,7 +47,7 @@ pub fn grain_at(at: [i32; 2], picture: u32, [near, far]: [f64; 2], channels: f64
 }
 
 /// Variance of nine pixels over that of their noise below which they have no structure.
-const STRUCTURE: f64 = 1.5;
+const STRUCTURE: f64 = 1.0;
 /// Correlation of neighbours from which on the next but one pixels are taken.
 const CORRELATED: f64 = 0.5;
 

@@ -163,8 +163,8 @@ impl ReceiverPlane {
     pub fn hidden(&self, i: usize, [from, up]: [DVec3; 2], radius: f64) -> f64 {
         let light = self.lights[i];
         let to_light = light.truncate() - light.w * from;
-        let is_between = from.y > 0.0 && light.y < 0.0 || from.y < 0.0 && light.y > 0.0;
-        if !is_between {
+        let is_below = from.y < 0.0 && light.y > 0.0;
+        if !(is_below || from.y > 0.0 && light.y < 0.0) {
             return 0.0;
         }
         let part = from.y.abs() / to_light.y.abs();
@@ -189,7 +189,8 @@ impl ReceiverPlane {
             _ => f64::from(u8::from(is_beside)),
         });
         let between = self.between_corners(above, [seen, to_light], part * radius);
-        (on[0] * on[1]).max(entered[0] * entered[1] * between)
+        let by_faces = f64::from(u8::from(is_below)) * entered[0] * entered[1] * between;
+        (on[0] * on[1]).max(by_faces)
     }
 
     /// The part of a light's disc around `seen`, in the direction `to_light`, that is between the

@@ -9,7 +9,7 @@ use crate::alone::{Draw, check_faults, source};
 use crate::device::Device;
 use crate::errors::{Errors, pairs_of};
 use crate::scrambled::buffers;
-use crate::setups::{BOOK, PILE, Setup, WALL};
+use crate::setups::{BOOK, PILE, RAMP, Setup, WALL};
 use crate::stand::Stand;
 
 /// A pass of the registry that contains it, and vertices for a whole target.
@@ -22,11 +22,11 @@ const PROBE: &str = "
   return vec4f(falloff(0u, point), falloff(1u, point), open_sky(point), f32(receiver_of(point)));
 }";
 
-/// Errors of the light that `source` computes beside a book, a pile of books and a wall, of pixels
-/// that do not lie at the border of a receiver.
+/// Errors of the light that `source` computes beside a book, a pile of books, a ramp and a wall, of
+/// pixels that do not lie at the border of a receiver.
 fn errors(source: &str) -> Errors {
     let source = format!("{source}{PROBE}");
-    let pairs = [BOOK, PILE, WALL].map(|setup| pairs(&source, setup));
+    let pairs = [BOOK, PILE, RAMP, WALL].map(|setup| pairs(&source, setup));
     Errors::between(pairs.concat())
 }
 
@@ -106,9 +106,16 @@ fn a_fault_in_the_light_beside_things_is_found() {
         ("0.5 + (asin(c)", "0.4 + (asin(c)"),
         ("light.xyz - light.w * here", "light.xyz"),
         ("sqrt(1.0 + slope * slope)", "vec2f(1.0)"),
+        ("disc_parts((at - rect.xy) / radius) + ", "1.0 + "),
+        ("select(0.0, entered(rect", "select(1.0, entered(rect"),
+        ("return near.x * near.y *", "return near.x *"),
+        ("max(within.x + within.y - 1.0, 0.0);", "within.x;"),
+        ("vec2f(-corner.y, corner.x)", "vec2f(-corner.x, corner.y)"),
+        ("length(vec3f(across, dot(across, slope)))", "length(across)"),
+        ("here.y / up.y * up.xz", "vec2f(0.0)"),
         (
-            "disc_parts(low) + disc_parts(high) - 1.0",
-            "disc_parts(low) + disc_parts(high)",
+            "entered(rect, above, at, across, radius, slope), here.y < 0.0)",
+            "entered(rect, above, at, across, radius, slope), true)",
         ),
         (
             "* turn_of(a - middle, b - middle) < 0.0",

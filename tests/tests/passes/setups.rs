@@ -27,6 +27,8 @@ pub(crate) enum Beside {
     Book,
     /// Three equal books, each lying on another.
     Pile,
+    /// A ramp with its high edge to the left: its top is tilted.
+    Ramp,
 }
 
 impl Setup {
@@ -74,6 +76,12 @@ const BACK_BULB: Light = Light::Sphere {
     radius_m: 0.04,
 };
 
+/// Behind the high edge of the ramp, 25 degrees high.
+const RAMP_BULB: Light = Light::Sphere {
+    position_in_world: DVec3::new(-0.7, 0.27, 0.0),
+    radius_m: 0.03,
+};
+
 const NEAR: Setup = Setup {
     name: "bulb",
     image_px: UVec2::new(97, 61),
@@ -104,6 +112,14 @@ pub(crate) const BOOK: Setup = Setup {
 pub(crate) const PILE: Setup = Setup {
     name: "pile",
     beside: Beside::Pile,
+    ..BOOK
+};
+/// The table beside a ramp: one light is to the right of its low edge, the other behind its high
+/// one, below the plane of its top for the points before the low edge.
+pub(crate) const RAMP: Setup = Setup {
+    name: "ramp",
+    lights: &[RAMP_BULB, BULB],
+    beside: Beside::Ramp,
     ..BOOK
 };
 /// Ambient light alone.

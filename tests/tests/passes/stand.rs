@@ -228,11 +228,19 @@ fn receivers(world_from_table: &DMat4, beside: Beside) -> Vec<Receiver> {
             surface: Surface::Textured,
         }
     };
+    let tilt = DQuat::from_rotation_y(0.3) * DQuat::from_rotation_z(-0.52);
+    let ramp = Receiver {
+        name: "ramp".to_owned(),
+        world_from_plane: *world_from_table
+            * DMat4::from_rotation_translation(tilt, DVec3::new(-0.11, 0.0225, 0.03)),
+        ..book(0.0)
+    };
     match beside {
         Beside::Nothing => vec![table],
         Beside::Wall => vec![table, wall],
         Beside::Book => vec![table, book(0.025)],
         Beside::Pile => vec![table, book(0.03), book(0.06), book(0.09)],
+        Beside::Ramp => vec![table, ramp],
     }
 }
 

@@ -91,6 +91,11 @@ impl Globals {
         AROUND_PX.max(self.soft_reach_px())
     }
 
+    /// Whether the picture is softer than the plate and the toy's colours.
+    pub(crate) fn is_soft(&self) -> bool {
+        self.spread[0] > 0.0
+    }
+
     /// Distance over which a soft picture spreads a point; 0 for a sharp picture.
     pub(crate) fn soft_reach_px(&self) -> f32 {
         self.spread[3]

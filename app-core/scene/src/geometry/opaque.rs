@@ -21,13 +21,14 @@ pub fn is_top(plane_from_rect: &DMat4) -> bool {
     plane_from_rect.y_axis.y >= f64::from(STANDS)
 }
 
-/// The part of a light that a rectangle on the plane y = 0, and what is below it, hide from a point
-/// below that plane, 0 to 1: the larger part of the two.
+/// The part of a light that a rectangle on the plane y = 0, and what is below it, hide from a point,
+/// 0 to 1: the larger part of the two. From a point above the plane, as before the low edge of a
+/// ramp, the rectangle alone hides a light below it.
 ///
 /// `light` is its centre, homogeneous, and `radius` that of its disc over its distance, which is 1
 /// for a direction: metres, or a slope. The rectangle has a smallest and a largest (x, z); `up` is
-/// the direction upwards, against that of the thing's faces. Each line cuts the light's disc by
-/// itself.
+/// the direction upwards, and faces run down from the rectangle's edges against it. Each line cuts
+/// the light's disc by itself.
 #[must_use]
 pub fn hidden_light(from: DVec3, up: DVec3, light: DVec4, radius: f64, [min, max]: [DVec2; 2]) -> f64 {
     if from.y * light.y >= 0.0 {
@@ -41,7 +42,12 @@ pub fn hidden_light(from: DVec3, up: DVec3, light: DVec4, radius: f64, [min, max
         across: part * radius,
     };
     let above = from.xz() - up.xz() * (from.y / up.y);
-    disc.on([min, max]).max(disc.entered([min, max], above))
+    let below = if from.y < 0.0 {
+        disc.entered([min, max], above)
+    } else {
+        0.0
+    };
+    disc.on([min, max]).max(below)
 }
 
 /// A light's disc, projected onto the plane of a rectangle from a point.

@@ -148,7 +148,7 @@ impl Grain {
     /// Checks the values.
     ///
     /// # Errors
-    /// When a variance is not from 0 to 1, or a correlation is out of range.
+    /// When a variance, a weight, or the correlation of channels is not from 0 to 1.
     pub fn check(&self) -> Result<(), InputError> {
         let noises = [("frame", self.frame), ("plate", self.plate)];
         for (picture, noise) in noises {

@@ -6,7 +6,7 @@ pub(super) const BLOCK_PX: u32 = 8;
 const SIDE: usize = BLOCK_PX as usize;
 /// Pixels of a block.
 const N: f64 = (BLOCK_PX * BLOCK_PX) as f64;
-/// Number of halvings of the step in the search of the weights, which give them to 1 / 256.
+/// Number of halvings of the step in the search of the weights, of which the last is 1 / 256.
 const N_HALVINGS: i32 = 7;
 
 /// Noise that is white noise, averaged along rows and columns with a weight of 1 at the pixel itself
@@ -45,7 +45,7 @@ impl Reach {
     }
 
     pub(super) fn weights(self) -> [f32; 2] {
-        #[allow(clippy::cast_possible_truncation, reason = "multiples of 1 / 256")]
+        #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
         self.weights.map(|weight| weight as f32)
     }
 

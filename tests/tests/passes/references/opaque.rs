@@ -9,9 +9,17 @@ use glam::{DMat4, DQuat, DVec2, DVec3};
 const TOP: [DVec2; 2] = [DVec2::new(-0.06, -0.04), DVec2::new(0.06, 0.04)];
 const HEIGHT_M: f64 = 0.03;
 
-/// Whether a ray from a point beside the book meets it, from its top down to the point's height.
+/// Whether a ray that rises from a point beside the book meets it.
 fn meets_book(from: DVec3, along: DVec3) -> bool {
-    let low = DVec3::new(TOP[0].x, from.y, TOP[0].y);
+    meets_solid(DVec3::Y, from, along)
+}
+
+/// The same for the solid from the top down against `up`.
+fn meets_solid(up: DVec3, from: DVec3, along: DVec3) -> bool {
+    // Points of a vertical line differ in their height over the top alone.
+    let sheared = |at: DVec3| at - up * (at.y / up.y) + DVec3::Y * at.y;
+    let [from, along] = [from, along].map(sheared);
+    let low = DVec3::new(TOP[0].x, f64::NEG_INFINITY, TOP[0].y);
     let high = DVec3::new(TOP[1].x, 0.0, TOP[1].y);
     let [a, b] = [low, high].map(|end| (end - from) / along);
     a.min(b).max_element().max(0.0) < a.max(b).min_element()
@@ -43,29 +51,77 @@ fn check_light(height_m: f64) {
         Light::sphere(DVec3::new(0.1, 0.5, -0.6), 0.08),
         Light::directional(DVec3::new(-0.6, 0.64, -0.48), 0.1),
     ];
-    let (mut n_part, mut largest) = (0, 0.0_f64);
+    let (mut n_part, mut largest) = (0, [0.0_f64; 2]);
     for light in lights {
-        let centre = light.centre_in(&DMat4::IDENTITY);
-        // Nearer to a face, both its edge and the side of the thing cut the disc: off by .08.
-        let along = (0..800).map(|i| DVec3::new(TOP[1].x + 0.0035 + 0.00025 * f64::from(i), 0.0, 0.03));
+        let along = (1..814).map(|i| DVec3::new(TOP[1].x + 0.00025 * f64::from(i), 0.0, 0.03));
         for from in places().chain(along) {
             let from = DVec3::new(from.x, -height_m, from.z);
-            let to_light = centre.truncate() - centre.w * from;
-            let (across, along) = to_light.normalize().any_orthonormal_pair();
-            let is_hidden = |at: &DVec2| {
-                let to = to_light + light.radius() * (at.x * across + at.y * along);
-                meets_book(from, to)
-            };
-            let points: Vec<DVec2> = vogel_disc(2000).collect();
-            let part = points.iter().filter(|at| is_hidden(at)).count() as f64 / points.len() as f64;
-            let hidden = hidden_light(from, DVec3::Y, centre, light.radius(), TOP);
+            let [hidden, part] = parts(from, DVec3::Y, light);
             n_part += usize::from(part > 0.1 && part < 0.9);
-            largest = largest.max((hidden - part).abs());
+            let is_near = from.x < TOP[1].x + AT_FACE_M;
+            let largest = &mut largest[usize::from(is_near)];
+            *largest = largest.max((hidden - part).abs());
         }
     }
     assert!(n_part > 30, "{n_part} points are in a penumbra");
     // Each line cuts the disc by itself. Measured: 0.031.
-    assert!(largest < 0.04, "off by {largest}");
+    assert!(largest[0] < 0.04, "off by {}", largest[0]);
+    // There the edge of a face and the side of the thing both cut the disc, which counts as if they cut
+    // it one by one. Measured: 0.099.
+    assert!(largest[1] < 0.105, "off by {} at a face", largest[1]);
+}
+
+/// Distance from a face up to which its edge and the thing's side both cut a light's disc.
+const AT_FACE_M: f64 = 0.0035;
+
+/// The part of a light that is hidden, and that part by rays.
+fn parts(from: DVec3, up: DVec3, light: Light) -> [f64; 2] {
+    let centre = light.centre_in(&DMat4::IDENTITY);
+    let to_light = centre.truncate() - centre.w * from;
+    let (across, along) = to_light.normalize().any_orthonormal_pair();
+    let points: Vec<DVec2> = vogel_disc(2000).collect();
+    let to = |at: &DVec2| to_light + light.radius() * (at.x * across + at.y * along);
+    let met = points.iter().filter(|at| meets_solid(up, from, to(at)));
+    let part = met.count() as f64 / points.len() as f64;
+    [hidden_light(from, up, centre, light.radius(), TOP), part]
+}
+
+/// A ramp of 30 degrees, whose low edge is on the ground: one light is behind its high edge, 25
+/// degrees high and so below the plane of its top, one is opposite, and two are beside it.
+#[test]
+fn light_behind_a_ramp() {
+    let tilt = DQuat::from_rotation_z(-std::f64::consts::FRAC_PI_6);
+    let up = tilt * DVec3::Y;
+    let lights = [
+        // Small, since it grazes the top: its disc is projected as if the top were far from it.
+        ([1.0, 0.466, 0.0], 0.015),
+        ([-1.0, 0.7, 0.1], 0.06),
+        ([0.3, 0.8, 0.7], 0.06),
+        ([0.6, 0.9, -0.5], 0.06),
+    ];
+    let (mut n_part, mut n_above, mut largest) = (0, 0, 0.0_f64);
+    for (to_light, radius) in lights {
+        let light = Light::directional(tilt * DVec3::from(to_light).normalize(), radius);
+        let line = (0..400)
+            .map(|i| [-0.25 + 0.00125 * f64::from(i), 0.002, 0.06])
+            .map(|[x, z, beside]| {
+                let is_below = x.abs() < 0.06;
+                [x, if is_below { z - beside } else { z }]
+            });
+        for [x, z] in line {
+            let from = tilt * DVec3::new(x, -0.03, z);
+            let [hidden, part] = parts(from, up, light);
+            n_part += usize::from(part > 0.1 && part < 0.9);
+            n_above += usize::from(from.y > 0.0);
+            largest = largest.max((hidden - part).abs());
+        }
+    }
+    assert!(
+        n_part > 20 && n_above > 300,
+        "{n_part} in a penumbra, {n_above} above the top's plane"
+    );
+    // Measured: 0.043.
+    assert!(largest < 0.05, "off by {largest}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 use std::sync::OnceLock;
 
+use app_scene::grain::Noise;
 use bytemuck::Zeroable;
 use wgpu::{StoreOp, TextureFormat};
 
@@ -88,6 +89,8 @@ struct Draws {
 #[derive(Clone, Copy)]
 struct Variant {
     has_grain: bool,
+    /// Whether the plate is as sharp as it was taken, and has noise: with grain alone.
+    has_plate_noise: bool,
     /// Whether the shadow's strength is not the true one.
     has_strength: bool,
     /// Whether there are several receivers.
@@ -95,18 +98,25 @@ struct Variant {
 }
 
 /// Number of variants.
-const N_VARIANTS: usize = 8;
+const N_VARIANTS: usize = 16;
 
 impl Variant {
     const PLAIN: Self = Self {
         has_grain: false,
+        has_plate_noise: false,
         has_strength: false,
         has_edges: false,
     };
 
     fn number(self) -> usize {
-        let of = [self.has_grain, self.has_strength, self.has_edges].map(usize::from);
-        of[0] + 2 * of[1] + 4 * of[2]
+        let Self {
+            has_grain,
+            has_plate_noise,
+            has_strength,
+            has_edges,
+        } = self;
+        let of = [has_grain, has_plate_noise, has_strength, has_edges].map(usize::from);
+        of[0] + 2 * of[1] + 4 * of[2] + 8 * of[3]
     }
 }
 
@@ -140,6 +150,8 @@ pub(crate) struct Inputs<'a> {
     /// Each pixel's own residual; without it the frame's own pixels are used.
     pub(crate) detail: Option<&'a TextureView>,
     pub(crate) grain: Option<PictureGrain>,
+    /// Whether the plate was softened to match the picture.
+    pub(crate) is_plate_soft: bool,
     /// Strength of the shown shadow; 1 is the true one.
     pub(crate) shadow_strength: f32,
     /// Whether a pixel may show two receivers.
@@ -256,6 +268,7 @@ impl Draws {
         let gpu = recorder.gpu;
         let variant = Variant {
             has_grain: inputs.grain.is_some(),
+            has_plate_noise: inputs.has_plate_noise(),
             has_strength: inputs.shadow_strength != 1.0,
             has_edges: inputs.has_edges,
         };
@@ -302,6 +315,7 @@ impl Layered {
         // A shadow without strength leaves the clean plate.
         let variant = Variant {
             has_grain: false,
+            has_plate_noise: false,
             has_strength: true,
             has_edges,
         };
@@ -326,6 +340,7 @@ fn draw(
             constants: vec![
                 form,
                 ("HAS_GRAIN", u32::from(variant.has_grain)),
+                ("HAS_PLATE_NOISE", u32::from(variant.has_plate_noise)),
                 ("HAS_STRENGTH", u32::from(variant.has_strength)),
                 ("HAS_EDGES", u32::from(variant.has_edges)),
             ],
@@ -350,6 +365,11 @@ impl<'a> Inputs<'a> {
                 channels: grain.channels,
                 ..clean
             })
+    }
+
+    fn has_plate_noise(&self) -> bool {
+        let is_noisy = |grain: PictureGrain| grain.grain.plate != Noise::default();
+        !self.is_plate_soft && self.grain.is_some_and(is_noisy)
     }
 
     fn of_all(&self, sampler: &'a Sampler) -> [Resource<'a>; 5] {

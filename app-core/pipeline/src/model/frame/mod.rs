@@ -182,6 +182,7 @@ impl FramePath<'_> {
                 .as_ref()
                 .map(|residual| &residual.view),
             grain: self.grain,
+            is_plate_soft: self.region.uniform.is_soft(),
             shadow_strength: self.shadow_strength,
             has_edges: self.region.plan.n_receivers > 1,
         }
