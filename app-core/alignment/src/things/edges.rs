@@ -19,6 +19,9 @@ const NEAR: RangeInclusive<i32> = -5..=9;
 /// those within which it is where it is listed, and the least contrast over that of the clearest
 /// edge there. With these the sides of a book that is listed exactly stay, and of one that is listed
 /// 10 mm too large or too small they come to within 7 mm.
+/// They do not help if a pattern repeats as far apart as the plane is off: of a book with squares of
+/// 10 mm that is listed 10 mm too large, all four sides stay. A line of squares within `AS_LISTED`
+/// has a contrast of 1.23, .47, 1.11 and .78, the true edge one of .54, .28, 1.45 and .25.
 const LISTED_M: f64 = 0.013;
 const MOST_STEPS: f64 = 100.0;
 const AS_LISTED: i32 = 3;
