@@ -1,7 +1,8 @@
 //! Shadows of things: beside a thing, the place's own colours in the light that a shadow leaves.
 //!
 //! No further shadow of the toy falls there, and the frame keeps them. A group of such pixels counts
-//! if it touches a thing, and if some of them did not get darker in the toy's shadow.
+//! if it touches a thing, and if some of them did not get darker in the toy's shadow, or if it lies where
+//! the thing's shadow would fall if the thing were upright.
 
 use glam::IVec2;
 
@@ -28,13 +29,17 @@ const MEAN_PX: i32 = 2;
 const BESIDE_PX: i32 = 3;
 /// Minimum number of pixels of a group that stay as bright as in the plate.
 const LEAST_UNCHANGED: usize = 8;
+/// Smallest part of the pixels of a group and of the expected shadow of an upright thing that both
+/// have: .45 for a post, whose depth makes the expected shadow longer, .21 and .22 for groups beside a
+/// cup and another post that are parts of a shadow, or two of them.
+const AGREES: f32 = 0.33;
 
 /// The shadows of things in a level's plate.
 pub(super) fn shadows_of(
     things: &Grown,
     seeds: &Seeds,
-    compared: &[Compared],
-    plate: &Codes,
+    (compared, plate): (&[Compared], &Codes),
+    expected: &[Mask],
 ) -> Vec<Vec<usize>> {
     let Some(left) = darkest(compared) else {
         return Vec::new();
@@ -54,18 +59,43 @@ pub(super) fn shadows_of(
         beside.mark(at);
     }
     let beside = beside.grown(BESIDE_PX);
+    let mut open = Mask::new(plate.size_px);
+    for at in compared.iter().map(|pixel| pixel.at) {
+        let is_toys = index_in(plate.size_px, at).is_some_and(|index| is_toy_shadow[index]);
+        if !is_toys && things.of_pixel(at).is_none() {
+            open.mark(at);
+        }
+    }
     let is_shadow = |group: &Vec<usize>| {
         let is_unchanged = |index: &&usize| seeds.seeds[**index] == Seed::Thing;
         group
             .iter()
             .any(|index| beside.has(place_of(*index, plate.size_px)))
-            && group.iter().filter(is_unchanged).count() >= LEAST_UNCHANGED
+            && (group.iter().filter(is_unchanged).count() >= LEAST_UNCHANGED
+                || expected
+                    .iter()
+                    .any(|shadow| agrees(group, shadow, (&open, plate.size_px))))
     };
     let mut found = groups(plate.size_px, |index| {
         likelier[index] > SHADED && !is_toy_shadow[index]
     });
     found.retain(is_shadow);
     found
+}
+
+/// Whether a group is where a shadow is expected, as far as open pixels show.
+fn agrees(group: &[usize], expected: &Mask, (open, size_px): (&Mask, IVec2)) -> bool {
+    let mut in_group = Mask::new(size_px);
+    for index in group {
+        in_group.mark(place_of(*index, size_px));
+    }
+    let (mut both, mut either) = (0, 0);
+    for at in places(size_px).filter(|at| open.has(*at)) {
+        let are_in = [expected.has(at), in_group.has(at)];
+        both += usize::from(are_in == [true; 2]);
+        either += usize::from(are_in != [false; 2]);
+    }
+    both as f32 > AGREES * either as f32
 }
 
 /// The light that the darkest part of the toy's shadow has.

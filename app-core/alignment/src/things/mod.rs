@@ -13,6 +13,7 @@ mod codes;
 mod colors;
 mod edges;
 mod extent;
+mod feet;
 mod found;
 pub(crate) mod groups;
 mod grown;
@@ -31,6 +32,7 @@ mod simplex;
 mod standing;
 mod toy;
 mod upright;
+mod upright_shadows;
 mod wrong_plate;
 
 use std::borrow::Cow;
@@ -199,7 +201,8 @@ impl Sight<'_> {
             self.planes(things, grown.as_ref(), (level, toy), compared)
         });
         let grown = grown.map(|mut grown| {
-            let shadows = cast::shadows_of(&grown, &seeds, &compared.pixels, plate);
+            let expected = self.upright_shadows(&grown, level);
+            let shadows = cast::shadows_of(&grown, &seeds, (&compared.pixels, plate), &expected);
             grown.absorb(&shadows);
             grown
         });

@@ -1,15 +1,14 @@
-//! Points of things that stand on the first receiver, on which the toy's shadow falls: as if each
-//! thing were upright, so that a pixel shows a point above the thing's foot below it.
+//! Points of things that stand on the first receiver, on which the toy's shadow falls, as if each
+//! thing were upright.
 //!
 //! The lights' share of a point's light follows from a thing's shaded parts, as if it had one
 //! colour: what is no brighter than these gets no darker. A thing whose shadow in the picture
 //! contradicts its points has none.
-//!
-//! Source: Badino et al. 2009 (stixels), with the receiver in place of measured depths.
 
-use glam::{DVec2, DVec3, IVec2, Vec3Swizzles};
+use glam::{DVec3, IVec2};
 
 use super::codes::codes_of;
+use super::feet::{Bodies, Feet, WITHIN_PX, pixel_of, shadow_of};
 use super::found::Found;
 use super::groups::{cross, in_level};
 use super::memory::Memory;
@@ -21,11 +20,6 @@ use crate::receivers::SeenReceiver;
 use app_scene::scene::Light;
 use app_scene::things::{Mark, RaisedPoint};
 
-/// Number of steps of a picture's width in which feet are looked for.
-const STEPS_A_WIDTH: i32 = 640;
-/// Most steps without pixels of a thing between one of its pixels and the next one below it: marks
-/// have gaps of single pixels, and two things are further apart.
-const LARGEST_GAP: u32 = 3;
 /// Part of a thing's pixels that are in shadow, or on sides that no light reaches. With .1, .25 and
 /// .4 the shadow's RMS error is 1.89, 1.86 and 1.86 codes for a post, 6.55, 6.44 and 6.44 for a cup,
 /// and 4.54, 3.57 and 4.05 for a white mug on pale stone.
@@ -36,9 +30,6 @@ const SHADED: f64 = 0.25;
 /// things in 18 other captures none has 1 to 28, so that the loss decides.
 const SHADOWED: f32 = 0.1;
 const LEAST_SHADOWED: usize = 8;
-/// Distance in pixels from a thing's outline within which its pixels may show something else: the outline's own error and the blur of
-/// the picture.
-const WITHIN_PX: i32 = 2;
 /// Largest loss of a thing's points, over that without shadows on them: .14, .41 and .45 for those
 /// three, .57 for the post with few shadowed pixels, .08 to .17 for a box and two mugs; 1.5 for a
 /// chequered board whose front no light reaches, which one colour does not describe, .74 to 1.2 for
@@ -97,30 +88,6 @@ impl Sight<'_> {
     }
 }
 
-impl Bodies {
-    /// Without pixels near the outlines that do not have a thing's own colours: they show the place.
-    fn without_rims(self, is_own: impl Fn(IVec2) -> bool) -> Self {
-        let kept = |(at, thing): (IVec2, &Option<usize>)| {
-            thing.filter(|_| cross(at, WITHIN_PX).all(|at| self.of(at) == *thing) || is_own(at))
-        };
-        let thing = places(self.size_px).zip(&self.thing).map(kept).collect();
-        Self { thing, ..self }
-    }
-
-    fn of(&self, at: IVec2) -> Option<usize> {
-        self.thing[index_in(self.size_px, at)?]
-    }
-}
-
-/// What the largest level shows of things.
-pub(super) struct Bodies {
-    pub(super) size_px: IVec2,
-    /// The thing of each pixel, without its shadow.
-    pub(super) thing: Vec<Option<usize>>,
-    /// Its pixels per pixel of the level of the search.
-    pub(super) per_px: f64,
-}
-
 /// A point of a thing: in the space of the receiver, and the lights' share.
 #[derive(Clone, Copy)]
 struct Point {
@@ -163,7 +130,7 @@ impl Upright<'_> {
         let n_things = self.bodies.thing.iter().flatten().max()? + 1;
         let gain = gain(self.level, self.compared, brightness)?;
         let shaded = self.shaded(n_things, gain);
-        let feet = Feet::of(self);
+        let feet = Feet::of(self.bodies, self.largest, self.table);
         let points: Vec<Option<Point>> = places(self.bodies.size_px)
             .zip(&self.bodies.thing)
             .map(|(at, thing)| {
@@ -262,77 +229,7 @@ impl Upright<'_> {
 
     /// The pixel of the level at which the receiver has the shadow that falls on a point.
     fn shadow_px(&self, point: DVec3) -> Option<IVec2> {
-        let to_light = self.light.vector_from(point);
-        if to_light.y <= 0.0 {
-            return None;
-        }
-        let below = point - point.y / to_light.y * to_light;
-        let below = self.table.plane_from_camera.inverse().transform_point3(below);
-        Some(self.level.intrinsics.pixel_of(below)?.floor().as_ivec2())
-    }
-}
-
-/// The feet of things in the largest level.
-struct Feet<'a> {
-    bodies: &'a Bodies,
-    level: &'a Level,
-    /// The receiver without bounds.
-    ground: SeenReceiver,
-    /// The pixel to which upright lines lead downward, times its weight, and the weight: 0 if they are parallel.
-    down: DVec3,
-    step_px: f64,
-}
-
-impl<'a> Feet<'a> {
-    fn of(upright: &'a Upright<'_>) -> Self {
-        let plane_from_camera = upright.table.plane_from_camera;
-        let camera_from_plane = plane_from_camera.inverse();
-        let k = &upright.largest.intrinsics;
-        let down = -camera_from_plane.y_axis.truncate();
-        Self {
-            bodies: upright.bodies,
-            level: upright.largest,
-            ground: SeenReceiver::of_size(plane_from_camera, DVec2::INFINITY),
-            down: DVec3::new(
-                k.fx_px * down.x - k.cx_px * down.z,
-                -k.fy_px * down.y - k.cy_px * down.z,
-                -down.z,
-            ),
-            step_px: f64::from(upright.bodies.size_px.x.max(STEPS_A_WIDTH)) / f64::from(STEPS_A_WIDTH),
-        }
-    }
-
-    /// The point that a pixel of a thing shows, above the thing's foot, in the space of the receiver.
-    fn point_above(&self, at: IVec2) -> Option<DVec3> {
-        let thing = self.thing_at(at.as_dvec2())?;
-        let from = at.as_dvec2() + 0.5;
-        let to = self.down.xy() - self.down.z * from;
-        let step = self.step_px * to / to.abs().max_element();
-        let (mut foot, mut gap) = (from, 0);
-        let mut next = from;
-        while gap <= LARGEST_GAP && step.is_finite() {
-            next += step;
-            if self.thing_at(next) == Some(thing) {
-                (foot, gap) = (next, 0);
-            } else {
-                gap += 1;
-            }
-        }
-        let plane_from_camera = self.ground.plane_from_camera;
-        let eye = plane_from_camera.w_axis.truncate();
-        let ray = |px: DVec2| plane_from_camera.transform_vector3(self.level.intrinsics.ray(px));
-        let to_foot = ray(foot + 0.5 * step);
-        if to_foot.y >= 0.0 {
-            return None;
-        }
-        let foot = eye - eye.y / to_foot.y * to_foot;
-        let along = ray(from);
-        let times = (foot - eye).xz().length() / along.xz().length();
-        let height_m = eye.y + times * along.y;
-        (height_m.is_finite() && height_m > 0.0).then(|| DVec3::new(foot.x, height_m, foot.z))
-    }
-
-    fn thing_at(&self, px: DVec2) -> Option<usize> {
-        self.bodies.of(px.floor().as_ivec2())
+        let below = shadow_of(point, &self.light)?;
+        Some(pixel_of(below, self.table, self.level)?.floor().as_ivec2())
     }
 }

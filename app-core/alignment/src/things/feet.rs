@@ -1,0 +1,122 @@
+//! Things as if each were upright, so that a pixel shows a point above the thing's foot below it.
+//!
+//! Source: Badino et al. 2009 (stixels), with the receiver in place of measured depths.
+
+use glam::{DVec2, DVec3, IVec2, Vec3Swizzles};
+
+use super::groups::cross;
+use crate::picture::{Level, index_in, places};
+use crate::receivers::SeenReceiver;
+use app_scene::scene::Light;
+
+/// Number of steps of a picture's width in which feet are looked for.
+const STEPS_A_WIDTH: i32 = 640;
+/// Most steps without pixels of a thing between one of its pixels and the next one below it: marks
+/// have gaps of single pixels, and two things are further apart.
+const LARGEST_GAP: u32 = 3;
+/// Distance in pixels from a thing's outline within which its pixels may show something else: the
+/// outline's own error and the blur of the picture.
+pub(super) const WITHIN_PX: i32 = 2;
+
+/// What a level shows of things.
+pub(super) struct Bodies {
+    pub(super) size_px: IVec2,
+    /// The thing of each pixel, without its shadow.
+    pub(super) thing: Vec<Option<usize>>,
+    /// Its pixels per pixel of the level of the search.
+    pub(super) per_px: f64,
+}
+
+impl Bodies {
+    /// Without pixels near the outlines that do not have a thing's own colours: they show the place.
+    pub(super) fn without_rims(self, is_own: impl Fn(IVec2) -> bool) -> Self {
+        let kept = |(at, thing): (IVec2, &Option<usize>)| {
+            thing.filter(|_| cross(at, WITHIN_PX).all(|at| self.of(at) == *thing) || is_own(at))
+        };
+        let thing = places(self.size_px).zip(&self.thing).map(kept).collect();
+        Self { thing, ..self }
+    }
+
+    pub(super) fn of(&self, at: IVec2) -> Option<usize> {
+        self.thing[index_in(self.size_px, at)?]
+    }
+}
+
+/// The feet of things in a level.
+pub(super) struct Feet<'a> {
+    bodies: &'a Bodies,
+    level: &'a Level,
+    /// The receiver without bounds.
+    ground: SeenReceiver,
+    /// The pixel to which upright lines lead downward, times its weight, and the weight: 0 if they are parallel.
+    down: DVec3,
+    step_px: f64,
+}
+
+impl<'a> Feet<'a> {
+    /// Of things that stand on a receiver.
+    pub(super) fn of(bodies: &'a Bodies, level: &'a Level, table: &SeenReceiver) -> Self {
+        let plane_from_camera = table.plane_from_camera;
+        let camera_from_plane = plane_from_camera.inverse();
+        let k = &level.intrinsics;
+        let down = -camera_from_plane.y_axis.truncate();
+        Self {
+            bodies,
+            level,
+            ground: SeenReceiver::of_size(plane_from_camera, DVec2::INFINITY),
+            down: DVec3::new(
+                k.fx_px * down.x - k.cx_px * down.z,
+                -k.fy_px * down.y - k.cy_px * down.z,
+                -down.z,
+            ),
+            step_px: f64::from(bodies.size_px.x.max(STEPS_A_WIDTH)) / f64::from(STEPS_A_WIDTH),
+        }
+    }
+
+    /// The point that a pixel of a thing shows, above the thing's foot, in the space of the receiver.
+    pub(super) fn point_above(&self, at: IVec2) -> Option<DVec3> {
+        let thing = self.thing_at(at.as_dvec2())?;
+        let from = at.as_dvec2() + 0.5;
+        let to = self.down.xy() - self.down.z * from;
+        let step = self.step_px * to / to.abs().max_element();
+        let (mut foot, mut gap) = (from, 0);
+        let mut next = from;
+        while gap <= LARGEST_GAP && step.is_finite() {
+            next += step;
+            if self.thing_at(next) == Some(thing) {
+                (foot, gap) = (next, 0);
+            } else {
+                gap += 1;
+            }
+        }
+        let plane_from_camera = self.ground.plane_from_camera;
+        let eye = plane_from_camera.w_axis.truncate();
+        let ray = |px: DVec2| plane_from_camera.transform_vector3(self.level.intrinsics.ray(px));
+        let to_foot = ray(foot + 0.5 * step);
+        if to_foot.y >= 0.0 {
+            return None;
+        }
+        let foot = eye - eye.y / to_foot.y * to_foot;
+        let along = ray(from);
+        let times = (foot - eye).xz().length() / along.xz().length();
+        let height_m = eye.y + times * along.y;
+        (height_m.is_finite() && height_m > 0.0).then(|| DVec3::new(foot.x, height_m, foot.z))
+    }
+
+    fn thing_at(&self, px: DVec2) -> Option<usize> {
+        self.bodies.of(px.floor().as_ivec2())
+    }
+}
+
+/// Where the shadow of a point above the first receiver falls on it, both in its space; `None` if the light
+/// is not above the point.
+pub(super) fn shadow_of(point: DVec3, light: &Light) -> Option<DVec3> {
+    let to_light = light.vector_from(point);
+    (to_light.y > 0.0).then(|| point - point.y / to_light.y * to_light)
+}
+
+/// The place in pixels of a level that shows a point in the space of a receiver.
+pub(super) fn pixel_of(point: DVec3, table: &SeenReceiver, level: &Level) -> Option<DVec2> {
+    let in_camera = table.plane_from_camera.inverse().transform_point3(point);
+    level.intrinsics.pixel_of(in_camera)
+}

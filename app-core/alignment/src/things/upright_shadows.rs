@@ -1,0 +1,68 @@
+//! The shadows that things cast on the first receiver, as if each thing were upright.
+
+use glam::{DVec2, DVec3, IVec2};
+
+use super::feet::{Bodies, Feet, pixel_of, shadow_of};
+use super::grown::Grown;
+use super::sight::Sight;
+use crate::picture::{Level, Mask, places};
+
+/// Distance in pixels by which a shadow is grown, so that the lines of adjacent pixels meet.
+const APART_PX: i32 = 1;
+
+impl Sight<'_> {
+    /// For each thing, the pixels of a level on which its shadow falls; empty without a receiver, or
+    /// with several lights.
+    pub(super) fn upright_shadows(&self, things: &Grown, level: &Level) -> Vec<Mask> {
+        let ([light], Some(table)) = (self.lights, self.receivers.first()) else {
+            return Vec::new();
+        };
+        let size_px = level.frame.size_px;
+        let body = |at: IVec2| {
+            let is_body = !things.is_like_place(at.as_dvec2());
+            things.of_pixel(at).filter(|_| is_body)
+        };
+        let bodies = Bodies {
+            size_px,
+            thing: places(size_px).map(body).collect(),
+            per_px: 1.0,
+        };
+        let feet = Feet::of(&bodies, level, table);
+        let light = light.moved(&(table.plane_from_camera * self.world_from_camera.inverse()));
+        let mut shadows = vec![Mask::new(size_px); things.n_things()];
+        for at in places(size_px) {
+            let Some(thing) = bodies.of(at) else { continue };
+            // The shadow of what is below a top lies between the foot's and the top's.
+            if bodies.of(at - IVec2::Y) == Some(thing) {
+                continue;
+            }
+            let line = feet.point_above(at).and_then(|point| {
+                let foot = DVec3::new(point.x, 0.0, point.z);
+                let ends = [foot, shadow_of(point, &light)?].map(|end| pixel_of(end, table, level));
+                Some([ends[0]?, ends[1]?])
+            });
+            if let Some(line) = line {
+                mark(&mut shadows[thing], line, size_px);
+            }
+        }
+        shadows.into_iter().map(|shadow| shadow.grown(APART_PX)).collect()
+    }
+}
+
+/// Marks the pixels of a line.
+fn mark(shadow: &mut Mask, [from, to]: [DVec2; 2], size_px: IVec2) {
+    let along = to - from;
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "at most the diagonal of the picture"
+    )]
+    let n = along
+        .abs()
+        .max_element()
+        .min(f64::from(size_px.element_sum()))
+        .ceil() as i32;
+    for step in 0..=n {
+        let place = from + along * f64::from(step) / f64::from(n.max(1));
+        shadow.mark(place.floor().as_ivec2());
+    }
+}
