@@ -48,7 +48,9 @@ fn fs_mark(@builtin(position) position: vec4f) -> @location(0) vec4f {
   if code == CODE_BEFORE_TOY { return vec4f(0.0, 0.0, clear, BEFORE_TOY - less); }
   var of_toy = marks.g;
   if of_toy == 1.0 && is_beside_thing_before_toy(position.xy) { of_toy = 0.0; }
-  if code == CODE_THING || code == CODE_HIDDEN_THING || code == CODE_PAINTED_THING { return vec4f(0.0, of_toy, clear, THING - less); }
+  if code == CODE_THING || code == CODE_HIDDEN_THING || code == CODE_PAINTED_THING {
+    return vec4f(0.0, of_toy, clear, THING - less);
+  }
   return vec4f(marks.r, of_toy, marks.ba);
 }
 

@@ -19,7 +19,7 @@ pub(super) fn index_in(size_px: IVec2, place: IVec2) -> Option<usize> {
 }
 
 /// All places of a rectangle, in the order of their indices.
-pub(super) fn places(size_px: IVec2) -> impl Iterator<Item = IVec2> + Clone + use<> {
+pub(super) fn places(size_px: IVec2) -> impl DoubleEndedIterator<Item = IVec2> + Clone + use<> {
     (0..size_px.y).flat_map(move |y| (0..size_px.x).map(move |x| IVec2::new(x, y)))
 }
 
@@ -373,6 +373,11 @@ impl Mask {
             size_px,
             pixels: vec![false; (size_px.x * size_px.y) as usize],
         }
+    }
+
+    /// Whether no pixel is marked.
+    pub(super) fn is_empty(&self) -> bool {
+        !self.pixels.contains(&true)
     }
 
     /// Whether a pixel is marked; false outside the picture.

@@ -12,6 +12,7 @@ use super::Aligner;
 use super::found_planes::FoundPlanes;
 use super::kept_lights::KeptLights;
 use super::light_search::Looked;
+use super::photograph::Photograph;
 use super::view::Seen;
 use crate::things::{Colored, Memory};
 use app_scene::scene::{Light, Scene};
@@ -76,27 +77,26 @@ impl Aligner {
         planes_of: Option<Colored>,
     ) -> Result<Option<Explained>, ToyError> {
         let mut all_things: Vec<Things> = things.into_iter().collect();
-        if let Some(photograph) = seen.photograph.around_base(&self.scene, &seen.input)? {
-            let lights = self.find_lights(Arc::clone(given), &seen.with_photograph(photograph))?;
-            if lights.are_found() {
-                let before = self.searched();
-                match self.look_for_things(lights.in_use(), seen, planes_of)? {
-                    Looked::Things(things) => all_things.extend(things),
-                    Looked::Planes(again) => {
-                        if lights.explain_latest() || self.is_explained(given, &lights, &again)? {
-                            return Ok(Some(Explained::Planes(again)));
-                        }
-                        self.replaced(before);
+        let around_base = seen.photograph.around_base(&self.scene, &seen.input)?;
+        if let Some(lights) = self.lights_of_part(given, seen, around_base)? {
+            let before = self.searched();
+            match self.look_for_things(lights.in_use(), seen, planes_of)? {
+                Looked::Things(things) => all_things.extend(things),
+                Looked::Planes(again) => {
+                    if lights.explain_latest() || self.is_explained(given, &lights, &again)? {
+                        return Ok(Some(Explained::Planes(again)));
                     }
+                    self.replaced(before);
                 }
             }
         }
         let mut beside: Option<KeptLights> = None;
         for things in all_things {
-            let lights = self.find_lights(Arc::clone(given), &seen.clear_of(&things))?;
-            if !lights.are_found() || !lights.explain_latest() {
+            let beside_things = seen.photograph.clear_of(&things);
+            let lights = self.lights_of_part(given, seen, Some(beside_things))?;
+            let Some(lights) = lights.filter(KeptLights::explain_latest) else {
                 continue;
-            }
+            };
             if let Looked::Planes(again) = self.look_for_things(lights.in_use(), seen, planes_of)? {
                 return Ok(Some(Explained::Planes(again)));
             }
@@ -147,7 +147,18 @@ impl Aligner {
         given: &Arc<[Light]>,
         seen: &Seen,
     ) -> Result<Option<KeptLights>, ToyError> {
-        let Some(photograph) = seen.photograph.without_tops() else {
+        self.lights_of_part(given, seen, seen.photograph.without_tops())
+    }
+
+    /// The lights by a part of a view's photograph; `None` if it does not show them, or if there is no
+    /// such part.
+    fn lights_of_part(
+        &self,
+        given: &Arc<[Light]>,
+        seen: &Seen,
+        part: Option<Photograph>,
+    ) -> Result<Option<KeptLights>, ToyError> {
+        let Some(photograph) = part else {
             return Ok(None);
         };
         let lights = self.find_lights(Arc::clone(given), &seen.with_photograph(photograph))?;

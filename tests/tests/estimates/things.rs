@@ -111,26 +111,28 @@ impl Found {
         let all = self.things.as_ref().map_or(0, |things| things.count(mark));
         all as f64 / self.size() - self.part(mark)
     }
+
+    /// Checks that a mark covers the rectangle, and little besides.
+    #[track_caller]
+    fn assert_whole(&self, mark: Mark) {
+        let [of_it, beyond] = [self.part(mark), self.beyond(mark)];
+        assert!(
+            of_it > 0.9 && beyond < 0.2,
+            "{of_it:.2} of it, {beyond:.2} beyond"
+        );
+    }
 }
 
 #[test]
 fn a_thing_in_the_shadow_is_found() {
     let found = Found::of([true, true], IN_SHADOW);
-    let [of_it, beyond] = [found.part(Mark::Thing), found.beyond(Mark::Thing)];
-    assert!(
-        of_it > 0.9 && beyond < 0.2,
-        "{of_it:.2} of it, {beyond:.2} beyond"
-    );
+    found.assert_whole(Mark::Thing);
 }
 
 #[test]
 fn a_thing_before_the_toy_is_found() {
     let found = Found::of([true, true], OVER_LEGS);
-    let [of_it, beyond] = [found.part(Mark::BeforeToy), found.beyond(Mark::BeforeToy)];
-    assert!(
-        of_it > 0.9 && beyond < 0.2,
-        "{of_it:.2} of it, {beyond:.2} beyond"
-    );
+    found.assert_whole(Mark::BeforeToy);
 }
 
 /// What is found where the frame alone shows a rectangle.
@@ -145,11 +147,7 @@ fn in_frame_alone((color, rect): ([u8; 3], Rect), is_painted: impl Fn(usize) -> 
 #[test]
 fn a_hand_before_a_toy_of_its_hue_is_whole() {
     let found = in_frame_alone((SKIN, OVER_LEGS), |_| true);
-    let [of_it, beyond] = [found.part(Mark::BeforeToy), found.beyond(Mark::BeforeToy)];
-    assert!(
-        of_it > 0.9 && beyond < 0.2,
-        "{of_it:.2} of it, {beyond:.2} beyond"
-    );
+    found.assert_whole(Mark::BeforeToy);
 }
 
 #[test]

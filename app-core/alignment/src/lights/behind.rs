@@ -5,7 +5,6 @@ use glam::{DVec2, DVec3, DVec4, Vec3Swizzles};
 use super::lamp::Lamp;
 use super::receiver_pixels::ReceiverPixel;
 use crate::receivers::SeenReceiver;
-use crate::shape::Shape;
 use app_scene::geometry::opaque::{hidden_light, is_top};
 
 /// Receivers that may hide a lamp from each other.
@@ -20,7 +19,8 @@ pub(super) struct Behind<'a> {
 }
 
 impl<'a> Behind<'a> {
-    pub(super) fn new(shape: &Shape, receivers: &'a [SeenReceiver], lamp: &Lamp) -> Self {
+    /// `middles` are the lamp's centre in the space of each receiver.
+    pub(super) fn new(receivers: &'a [SeenReceiver], lamp: &Lamp, middles: Vec<DVec4>) -> Self {
         let up = |below: &SeenReceiver, top: &SeenReceiver| {
             let top_from_below = top.plane_from_camera * below.plane_from_camera.inverse();
             is_top(&top_from_below.inverse()).then(|| top_from_below.y_axis.truncate())
@@ -31,13 +31,10 @@ impl<'a> Behind<'a> {
                 .filter_map(|top| Some((top, up(&receivers[below], &receivers[top])?)))
                 .collect()
         });
-        let middle = |receiver: &SeenReceiver| {
-            lamp.points(&receiver.plane_from_camera, shape.centre, &[DVec2::ZERO])[0]
-        };
         Self {
             receivers,
             tops: tops.collect(),
-            middles: receivers.iter().map(middle).collect(),
+            middles,
             radius: if lamp.is_far() {
                 lamp.spread
             } else {
@@ -46,9 +43,9 @@ impl<'a> Behind<'a> {
         }
     }
 
-    /// The part of the lamp that a pixel sees, 0 to 1: what the top that hides most of it leaves. A
-    /// pixel that would show its receiver through a side of the thing shows that side, of which the
-    /// top tells nothing: there it is 1.
+    /// The part of the lamp that a pixel sees, 0 to 1: what the top that hides most of it leaves; if two
+    /// tops hide different parts, the shader adds both. A pixel that would show its receiver through a
+    /// side of the thing shows that side, which the top does not describe: there it is 1.
     pub(super) fn seen(&self, pixel: &ReceiverPixel) -> f64 {
         let hidden = self.tops[pixel.receiver].iter().map(|(top, up)| {
             let receiver = &self.receivers[*top];

@@ -116,11 +116,12 @@ impl<'a> Caster<'a> {
         let seen = self.receivers.iter().map(|receiver| {
             let plane_from_camera = receiver.plane_from_camera;
             let foot = plane_from_camera.transform_point3(self.shape.centre) * DVec3::new(1.0, 0.0, 1.0);
-            let middle = lamp.points(&plane_from_camera, self.shape.centre, &[DVec2::ZERO])[0];
+            let middle = lamp.middle(&plane_from_camera, self.shape.centre);
             (plane_from_camera, middle, irradiance(middle, foot))
         });
         let seen: Vec<_> = seen.collect();
-        let behind = Behind::new(self.shape, self.receivers, lamp);
+        let middles = seen.iter().map(|(_, middle, _)| *middle).collect();
+        let behind = Behind::new(self.receivers, lamp, middles);
         let lit = pixels.iter().map(|pixel| {
             let (plane_from_camera, middle, at_foot) = seen[pixel.receiver];
             let open = if lamp.is_far() || at_foot <= 0.0 {

@@ -78,6 +78,11 @@ impl Lamp {
         };
         disc.iter().map(point).collect()
     }
+
+    /// Its centre in a space, homogeneous.
+    pub(super) fn middle(&self, space_from_camera: &DMat4, toy: DVec3) -> DVec4 {
+        self.points(space_from_camera, toy, &[DVec2::ZERO])[0]
+    }
 }
 
 /// At least three points over the unit disc, of equal areas, with the disc's own mean and variance,

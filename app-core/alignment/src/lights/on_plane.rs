@@ -45,7 +45,7 @@ impl<'a> OnPlane<'a> {
         let at_foot = comparison
             .lamps
             .iter()
-            .map(|lamp| irradiance(middle(lamp, shape, table), foot));
+            .map(|lamp| irradiance(lamp.middle(&table.plane_from_camera, shape.centre), foot));
         let factors = comparison.shading.factors[receiver].map(|factors| factors / factors[0].max(PRIOR));
         Self {
             shape,
@@ -88,7 +88,7 @@ impl<'a> OnPlane<'a> {
             .iter()
             .zip(&self.at_foot)
             .map(|(lamp, at_foot)| {
-                let middle = middle(lamp, self.shape, plane);
+                let middle = lamp.middle(&plane.plane_from_camera, self.shape.centre);
                 let over_foot = |point: &DVec3| {
                     let at = plane.plane_from_camera.transform_point3(*point);
                     irradiance(middle, at) / at_foot.max(f64::MIN_POSITIVE)
@@ -120,9 +120,4 @@ impl<'a> OnPlane<'a> {
         };
         (0..pixels.len()).map(ratio).collect()
     }
-}
-
-/// The centre of a lamp in a plane's space, homogeneous.
-fn middle(lamp: &Lamp, shape: &Shape, plane: &SeenReceiver) -> glam::DVec4 {
-    lamp.points(&plane.plane_from_camera, shape.centre, &[DVec2::ZERO])[0]
 }

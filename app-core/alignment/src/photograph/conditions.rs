@@ -14,7 +14,7 @@ use app_scene::gloss::Gloss;
 use app_scene::grain::Grain;
 use app_scene::scene::{Camera, Light, Scene};
 use app_scene::sharpness::{Sharpness, Spread};
-use app_scene::things::Things;
+use app_scene::things::{Mark, Things};
 use app_scene::toy::ToyError;
 
 /// Things beside the toy.
@@ -37,8 +37,12 @@ impl Photograph {
 
     /// With unknown pixels at things and at wrong parts of the plate.
     pub(crate) fn clear_of(&self, things: &Things) -> Self {
+        self.with_unknown(things.marks())
+    }
+
+    fn with_unknown(&self, marks: &[Mark]) -> Self {
         Self {
-            pyramid: self.pyramid.clear_of(things.marks()),
+            pyramid: self.pyramid.clear_of(marks),
             receivers: self.receivers.clone(),
             camera_from_world: self.camera_from_world,
         }
@@ -46,24 +50,15 @@ impl Photograph {
 
     /// With unknown pixels at listed planes of things and around them; `None` if none is listed.
     pub(crate) fn without_tops(&self) -> Option<Self> {
-        let level = self.pyramid.level(0);
-        let marks = things::marks_of_listed(&self.receivers, level)?;
-        Some(Self {
-            pyramid: self.pyramid.clear_of(&marks),
-            receivers: self.receivers.clone(),
-            camera_from_world: self.camera_from_world,
-        })
+        let marks = things::marks_of_listed(&self.receivers, self.pyramid.level(0))?;
+        Some(self.with_unknown(&marks))
     }
 
     /// With unknown pixels except on the table around the toy's base; `None` without a table.
     pub(crate) fn around_base(&self, scene: &Scene, input: &FrameInput) -> Result<Option<Self>, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let marks = base::marks_beyond(&shape, &self.receivers, self.pyramid.level(0));
-        Ok(marks.map(|marks| Self {
-            pyramid: self.pyramid.clear_of(&marks),
-            receivers: self.receivers.clone(),
-            camera_from_world: self.camera_from_world,
-        }))
+        Ok(marks.map(|marks| self.with_unknown(&marks)))
     }
 
     /// Reflection of the receiver below the toy, in given lights; `None` if the picture does not

@@ -379,27 +379,34 @@ impl Sight<'_> {
             }
         };
         let mut marks: Vec<Mark> = places(size_px).map(mark).collect();
-        if let Some(plate) = largest.plate.as_ref().filter(|_| found.in_frame.is_some()) {
-            let (mut things, mut is_any) = (Mask::new(size_px), false);
-            for (at, mark) in places(size_px).zip(&marks) {
-                let there = (at.as_dvec2() + 0.5) * per_px;
-                let is_thing = matches!(mark, Mark::Thing | Mark::BeforeToy);
-                if is_thing && found.in_frame_at(there) != Mark::None {
-                    is_any = true;
-                    things.mark(at);
-                }
-            }
-            let seen = painted::Seen {
-                things: &things,
-                coverage: &toy.coverage,
-                frame: &largest.frame,
-                plate,
-                gain: gains(level, found.compared).unwrap_or([1.0; 3]),
-            };
-            if is_any {
-                seen.paint(&mut marks);
+        self.paint_behind_toy(level, found, &toy, &mut marks);
+        (size_px, marks)
+    }
+
+    /// Marks in the largest level the parts behind the toy of things that the frame alone shows.
+    fn paint_behind_toy(&self, level: &Level, found: &Found<'_>, toy: &Toy, marks: &mut [Mark]) {
+        let largest = self.pyramid.level(0);
+        let Some(plate) = largest.plate.as_ref().filter(|_| found.in_frame.is_some()) else {
+            return;
+        };
+        let per_px = level.intrinsics.fx_px / largest.intrinsics.fx_px;
+        let mut things = Mask::new(largest.frame.size_px);
+        for (at, mark) in places(largest.frame.size_px).zip(marks.iter()) {
+            let is_thing = matches!(mark, Mark::Thing | Mark::BeforeToy);
+            if is_thing && found.in_frame_at((at.as_dvec2() + 0.5) * per_px) != Mark::None {
+                things.mark(at);
             }
         }
-        (size_px, marks)
+        if things.is_empty() {
+            return;
+        }
+        let seen = painted::Seen {
+            things: &things,
+            coverage: &toy.coverage,
+            frame: &largest.frame,
+            plate,
+            gain: gains(level, found.compared).unwrap_or([1.0; 3]),
+        };
+        seen.paint(marks);
     }
 }

@@ -26,8 +26,8 @@ const LINES: [IVec2; 8] = [
     IVec2::new(1, 2),
     IVec2::new(1, -2),
 ];
-/// Number of lines on which a pixel lies between visible parts, of which one is as long as the gap: what
-/// lies between two hands beside the toy is seen to be of neither. No other number was tried.
+/// Number of lines on which a pixel of a thing lies between visible parts, of which one is as long as the
+/// gap: no part of two separate hands is as long as the gap between them. No other number was tried.
 const LEAST_LINES: usize = 2;
 
 /// What a level shows of the things in its frame alone.
@@ -147,8 +147,7 @@ fn reached((things, behind): (&Mask, &Mask), size_px: IVec2, step: IVec2) -> Vec
     if step.y > 0 || (step.y == 0 && step.x > 0) {
         places(size_px).for_each(&mut visit);
     } else {
-        let all: Vec<IVec2> = places(size_px).collect();
-        all.into_iter().rev().for_each(&mut visit);
+        places(size_px).rev().for_each(&mut visit);
     }
     reached
 }

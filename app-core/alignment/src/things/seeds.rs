@@ -178,20 +178,26 @@ impl Seeds {
     /// Keeps receivers whose colours in the plate are not a thing's: if a shadow on a thing
     /// coincides with the one that the receiver would catch, the thing looks like the receiver.
     fn drop_like_things(&mut self, plate: &Codes) {
+        let learn = |seeds: &mut Self| seeds.colors = seeds.colors_against(&seeds.of(Seed::Receiver), plate);
+        self.drop_like_thing(self.of(Seed::Receiver), plate, learn);
+    }
+
+    /// Drops those of given seeds whose colours in a picture are a thing's, and learns the colours
+    /// again after each round.
+    fn drop_like_thing(&mut self, mut kept: Vec<usize>, picture: &Codes, learn: impl Fn(&mut Self)) {
         for _ in 0..N_DROPS {
-            let is_like_thing = |index: usize| {
-                let likelier = self.colors[0].likelier(plate.pixels[index]);
+            let is_like_thing = |index: &usize| {
+                let likelier = self.colors[0].likelier(picture.pixels[*index]);
                 likelier.is_some_and(|likelier| likelier > LIKE_THING)
             };
-            let dropped: Vec<usize> = self
-                .of(Seed::Receiver)
-                .into_iter()
-                .filter(|index| is_like_thing(*index))
-                .collect();
+            let dropped: Vec<usize> = kept.extract_if(.., |index| is_like_thing(index)).collect();
+            if dropped.is_empty() {
+                return;
+            }
             for index in dropped {
                 self.seeds[index] = Seed::None;
             }
-            self.colors = self.colors_against(&self.of(Seed::Receiver), plate);
+            learn(self);
         }
     }
 
@@ -226,17 +232,7 @@ impl Seeds {
         };
         found.learn_in_frame(frame);
         // Skin in less light is like a pale toy.
-        for _ in 0..N_DROPS {
-            let is_like_thing = |index: &usize| {
-                let likelier = found.colors[0].likelier(frame.pixels[*index]);
-                likelier.is_some_and(|likelier| likelier > LIKE_THING)
-            };
-            let dropped: Vec<usize> = toy.iter().copied().filter(is_like_thing).collect();
-            for index in dropped {
-                found.seeds[index] = Seed::None;
-            }
-            found.learn_in_frame(frame);
-        }
+        found.drop_like_thing(toy.to_vec(), frame, |found| found.learn_in_frame(frame));
         found
     }
 

@@ -142,23 +142,16 @@ pub(super) struct Upright<'a> {
 
 /// Exposure of the frame over that of the plate, for each channel.
 pub(super) fn gains(level: &Level, compared: &[Compared]) -> Option<Color> {
-    let of = |channel: usize| {
-        let gain = |pixel: &Compared| {
-            let (frame, plate) = (level.frame.get(pixel.at)?, level.plate.as_ref()?.get(pixel.at)?);
-            let gain = frame[channel] / (plate[channel] * pixel.ratio[channel]);
-            gain.is_finite().then_some(gain)
-        };
-        median(compared.iter().filter_map(gain), f32::total_cmp)
-    };
+    let of = |channel: usize| gain(level, compared, |color| color[channel]);
     Some([of(0)?, of(1)?, of(2)?])
 }
 
-/// The same for their brightness.
-pub(super) fn gain(level: &Level, compared: &[Compared]) -> Option<f32> {
+/// The same for one value of their colours.
+fn gain(level: &Level, compared: &[Compared], value: impl Fn(&Color) -> f32) -> Option<f32> {
     let of = |pixel: &Compared| {
-        let frame = brightness(&level.frame.get(pixel.at)?);
-        let plate = brightness(&level.plate.as_ref()?.get(pixel.at)?);
-        let gain = frame / (plate * brightness(&pixel.ratio));
+        let frame = value(&level.frame.get(pixel.at)?);
+        let plate = value(&level.plate.as_ref()?.get(pixel.at)?);
+        let gain = frame / (plate * value(&pixel.ratio));
         gain.is_finite().then_some(gain)
     };
     median(compared.iter().filter_map(of), f32::total_cmp)
@@ -168,7 +161,7 @@ impl Upright<'_> {
     /// The point of each pixel of the largest level; `None` if no thing has any.
     pub(super) fn raised(&self) -> Option<Vec<RaisedPoint>> {
         let n_things = self.bodies.thing.iter().flatten().max()? + 1;
-        let gain = gain(self.level, self.compared)?;
+        let gain = gain(self.level, self.compared, brightness)?;
         let shaded = self.shaded(n_things, gain);
         let feet = Feet::of(self);
         let points: Vec<Option<Point>> = places(self.bodies.size_px)

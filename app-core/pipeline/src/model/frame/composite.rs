@@ -314,10 +314,9 @@ impl Layered {
     fn new(gpu: &Gpu, has_edges: bool) -> Self {
         // A shadow without strength leaves the clean plate.
         let variant = Variant {
-            has_grain: false,
-            has_plate_noise: false,
             has_strength: true,
             has_edges,
+            ..Variant::PLAIN
         };
         let formats = (variant, &[LAYER_FORMAT; N_LAYERS][..]);
         Self {
