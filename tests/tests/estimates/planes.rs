@@ -333,14 +333,14 @@ fn a_listed_plane_is_corrected_in_the_lights_of_the_ground() {
     let mut listed = shot.scene.receivers[1].clone();
     listed.world_from_plane.w_axis.y -= 0.002;
     scene.receivers.push(listed);
-    let lamp = scene.lights[0].clone();
+    let lamp = scene.lights[0];
     let mut aligner = Aligner::new(scene);
     let lights = aligner.align(&shot.input).unwrap().lights;
     let planes = &aligner.scene().receivers[1..];
     assert_eq!(planes.len(), 1, "a board has no upright sides");
     let off_m = planes[0].world_from_plane.w_axis.y - world_from_board.w_axis.y;
     assert!(off_m.abs() < HEIGHT_M, "{:.2} mm off", 1e3 * off_m);
-    let vectors = [lights.map_or(lamp.clone(), |lights| lights[0].clone()), lamp];
+    let vectors = [lights.map_or(lamp, |lights| lights[0]), lamp];
     let [found, listed] = vectors.map(|light| light.vector_from(DVec3::ZERO));
     let off_rad = found.angle_between(listed);
     assert!(off_rad < LIGHT_RAD, "{:.2} degrees off", off_rad.to_degrees());
