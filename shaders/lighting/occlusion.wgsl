@@ -215,12 +215,15 @@ fn vs_upright(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: 
 
 // Where a thing's own shadow is, the toy's takes nothing.
 @fragment
-fn fs_upright(drawn: OnUpright) -> Hidden {
+fn fs_upright(
+  @location(0) on_first: vec3f,
+  @location(1) heights: vec2f,
+  @location(2) @interpolate(flat, either) what: u32,
+  @location(3) @interpolate(flat, either) depth: f32,
+) -> Hidden {
   var part = 1.0;
-  if drawn.what > 0u {
-    let seen = point_on(0u, drawn.on_first.xy / drawn.on_first.z);
-    part = LIT_PART / f32(globals.n_lights) * unhidden(drawn.what - 1u, seen);
+  if what > 0u {
+    part = LIT_PART / f32(globals.n_lights) * unhidden(what - 1u, point_on(0u, on_first.xy / on_first.z));
   }
-  let is_hidden = all(drawn.heights >= vec2f(0.0));
-  return Hidden(part * light_points.share, select(0.0, drawn.depth, is_hidden));
+  return Hidden(part * light_points.share, select(0.0, depth, all(heights >= vec2f(0.0))));
 }

@@ -202,10 +202,13 @@ fn a_fault_in_the_light_of_a_side_is_found() {
         ("LIT_PART: f32 = 0.6", "LIT_PART: f32 = 0.9"),
         ("0.125 * f32(what)", "0.125"),
         ("depth_of_rank(rank + 1.0)", "depth_of_rank(rank + 0.1)"),
-        ("* unhidden(drawn.what - 1u, seen)", ""),
+        (
+            "* unhidden(what - 1u, point_on(0u, on_first.xy / on_first.z))",
+            "",
+        ),
         ("direction) < 0.0", "direction) < 2.0"),
         ("direction.y * in_plane.w", "direction.y"),
-        ("all(drawn.heights >= vec2f(0.0))", "drawn.heights.x >= 0.0"),
+        ("all(heights >= vec2f(0.0))", "heights.x >= 0.0"),
     ];
     for (from, to) in faults {
         assert_eq!(text.matches(from).count(), 1, "places of \"{from}\"");
