@@ -323,6 +323,29 @@ fn a_plane_that_is_listed_a_little_off_is_corrected() {
     assert!(off_m.abs() < HEIGHT_M, "{:.2} mm off", 1e3 * off_m);
 }
 
+/// Lights that are fitted to a board that is listed too low agree with it, so it is corrected in those
+/// that its surroundings show.
+#[test]
+fn a_listed_plane_is_corrected_in_the_lights_of_the_ground() {
+    let mut world_from_board = board_at(-0.12, 0.018, 0.0);
+    world_from_board.w_axis.z = 0.06;
+    let (mut scene, shot) = session(&[(world_from_board, 1.2 * HALF_M)]);
+    let mut listed = shot.scene.receivers[1].clone();
+    listed.world_from_plane.w_axis.y -= 0.002;
+    scene.receivers.push(listed);
+    let lamp = scene.lights[0];
+    let mut aligner = Aligner::new(scene);
+    let lights = aligner.align(&shot.input).unwrap().lights;
+    let planes = &aligner.scene().receivers[1..];
+    assert_eq!(planes.len(), 1, "a board has no upright sides");
+    let off_m = planes[0].world_from_plane.w_axis.y - world_from_board.w_axis.y;
+    assert!(off_m.abs() < HEIGHT_M, "{:.2} mm off", 1e3 * off_m);
+    let vectors = [lights.map_or(lamp, |lights| lights[0]), lamp];
+    let [found, listed] = vectors.map(|light| light.vector_from(DVec3::ZERO));
+    let off_rad = found.angle_between(listed);
+    assert!(off_rad < LIGHT_RAD, "{:.2} degrees off", off_rad.to_degrees());
+}
+
 /// Lights that nobody lists are a compromise at first: they follow the shadow on the board, too.
 #[test]
 fn a_plane_is_found_in_unknown_lights() {

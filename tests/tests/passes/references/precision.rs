@@ -19,6 +19,7 @@ fn shadow<R: Real>() -> Raster<f64> {
     let caster = Caster {
         occluder: square::<R>(),
         light_points,
+        is_ambient: false,
     };
     visibility_map(&[caster], &region, region.size_px)
 }
