@@ -361,7 +361,7 @@ impl Sight<'_> {
             let color = frame.get(at);
             color.is_some_and(|color| found.is_own_color_in_frame(color))
         };
-        let lit = lit(found.compared, level.frame.size_px);
+        let is_lit = lit(largest, (level, per_px), found.compared);
         let mark = |at: IVec2| {
             let there = (at.as_dvec2() + 0.5) * per_px;
             let Some([frame, plate]) = &codes else {
@@ -374,7 +374,7 @@ impl Sight<'_> {
                     Mark::BeforeToy if !is_shade(at, frame, plate) => Mark::BeforeToy,
                     Mark::Thing if toy.coverage.at(at) > 0.0 || is_shade(at, frame, plate) => Mark::None,
                     // The table beside a hand is not all in its shadow.
-                    Mark::BeforeToy if lit.has(there.floor().as_ivec2()) => Mark::None,
+                    Mark::BeforeToy if is_lit(at) => Mark::None,
                     Mark::BeforeToy | Mark::Thing => Mark::Thing,
                     mark => mark,
                 },
