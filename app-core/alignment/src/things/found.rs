@@ -8,7 +8,6 @@ use super::known::Known;
 use super::planes::FoundPlane;
 use super::seeds::Colored;
 use super::shade::Brightness;
-use super::upright::gain;
 use crate::lights::Compared;
 use crate::picture::{Color, Level, Mask, brightness, index_in, places};
 use app_scene::things::{Mark, Things};
@@ -46,16 +45,16 @@ pub(super) struct Found<'a> {
     pub(super) colored: Colored,
 }
 
-/// Whether each pixel of the largest level has about the light that a level's pixels are expected to have.
+/// Whether each pixel of the largest level has about the light that a level's pixels are expected to have. `gain` is
+/// the exposure of the frame over that of the plate.
 pub(super) fn lit<'a>(
     largest: &'a Level,
     (level, per_px): (&'a Level, f64),
-    compared: &[Compared],
+    (compared, gain): (&[Compared], f32),
 ) -> impl Fn(IVec2) -> bool + use<'a> {
     let expected = in_level(level.frame.size_px, compared, f32::NAN, |pixel| {
         brightness(&pixel.model)
     });
-    let gain = gain(level, compared, brightness).unwrap_or(f32::NAN);
     move |at| {
         let there = ((at.as_dvec2() + 0.5) * per_px).floor().as_ivec2();
         let index = index_in(level.frame.size_px, there);

@@ -39,7 +39,7 @@ use std::collections::HashSet;
 use glam::IVec2;
 
 use crate::lights::Comparison;
-use crate::picture::{Level, Mask, places};
+use crate::picture::{Level, Mask, brightness, places};
 use crate::receivers::receiver_at;
 use app_scene::scene::MAX_RECEIVERS;
 use app_scene::things::{Mark, RaisedPoint};
@@ -60,7 +60,7 @@ use shade::Brightness;
 pub(crate) use sight::Sight;
 use standing::standing;
 use toy::{Toy, is_shade};
-use upright::gains;
+use upright::{gain, gains};
 use wrong_plate::wrong_plate;
 
 /// Maximum number of pixels of the level for the search: more take longer and find no more.
@@ -361,7 +361,8 @@ impl Sight<'_> {
             let color = frame.get(at);
             color.is_some_and(|color| found.is_own_color_in_frame(color))
         };
-        let is_lit = lit(largest, (level, per_px), found.compared);
+        let gain = gain(level, found.compared, brightness).unwrap_or(f32::NAN);
+        let is_lit = lit(largest, (level, per_px), (found.compared, gain));
         let mark = |at: IVec2| {
             let there = (at.as_dvec2() + 0.5) * per_px;
             let Some([frame, plate]) = &codes else {
