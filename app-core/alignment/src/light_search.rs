@@ -235,7 +235,8 @@ impl Aligner {
         // Without lights no highlight constrains it: a later view may.
         if are_trusted && self.gloss.is_none() && !lights.in_use().is_empty() {
             let toy = &seen.input.world_from_object;
-            self.gloss = Some(looked_at.photograph.gloss(&self.scene, toy, lights.in_use())?);
+            let in_light = (lights.in_use(), things.as_ref());
+            self.gloss = Some(seen.photograph.gloss(&self.scene, toy, in_light)?);
         }
         things::adopt(&mut self.things, things);
         Ok(lights)

@@ -94,11 +94,7 @@ impl Observer {
         }
         let gloss = match self.gloss {
             Some(gloss) => gloss,
-            None => {
-                let clear = things.as_ref().map(|things| photograph.clear_of(things));
-                let photograph = clear.as_ref().unwrap_or(&photograph);
-                photograph.gloss(scene, &input.world_from_object, &lights)?
-            }
+            None => photograph.gloss(scene, &input.world_from_object, (&lights, things.as_ref()))?,
         };
         // Without lights no highlight constrains it: a later frame may.
         self.gloss = (!lights.is_empty()).then_some(gloss);

@@ -113,6 +113,12 @@ impl Mark {
         is_possible.then_some(Self::PaintedThing { light })
     }
 
+    /// Whether the toy hides the thing, so that the picture shows the toy there.
+    #[must_use]
+    pub fn is_behind_toy(self) -> bool {
+        matches!(self, Self::HiddenThing { .. } | Self::PaintedThing { .. })
+    }
+
     /// Index in the counts; `None` for no mark.
     fn kind(self) -> Option<usize> {
         match self {
@@ -251,8 +257,7 @@ impl Things {
     /// Whether any pixel's plate needs another light.
     #[must_use]
     pub fn has_light(&self) -> bool {
-        let is_hidden = |mark: &Mark| matches!(mark, Mark::HiddenThing { .. } | Mark::PaintedThing { .. });
-        self.counts[3] > 0 || self.marks.iter().any(is_hidden)
+        self.counts[3] > 0 || self.marks.iter().any(|mark| mark.is_behind_toy())
     }
 }
 

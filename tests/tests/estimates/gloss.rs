@@ -7,7 +7,7 @@ use app_core::frame::FrameInput;
 use app_core::gloss::Gloss;
 use app_core::scene::{Image, Scene};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
-use glam::DVec3;
+use glam::{DVec3, UVec2};
 use measure::photographer::{Part, Shape, Sheen, Shot, Stance, World};
 
 /// A figure of three balls on a box, with two paints.
@@ -85,4 +85,38 @@ fn a_matt_toy_has_none() {
         .clone()
         .with_image(Arc::new(through_a_camera(input.image.rgba())));
     assert_eq!(seen(&scene, &input), Gloss::NONE);
+}
+
+/// A hand behind a toy of which one ball alone shows a highlight, before that hand.
+#[test]
+fn a_toy_before_a_hand_is_as_glossy() {
+    const HAND: [UVec2; 2] = [UVec2::new(121, 15), UVec2::new(369, 144)];
+    let sheen = Some(Sheen {
+        roughness: 0.25,
+        strength: 1.0,
+    });
+    let mut world = figure(sheen);
+    world.parts.truncate(world.parts.len() - 2);
+    let Shot {
+        scene, input, truth, ..
+    } = Shot::of(&world).unwrap();
+    let mut image = Image::clone(input.image.rgba());
+    let [first, end] = HAND;
+    for at in (first.y..end.y).flat_map(|y| (first.x..end.x).map(move |x| UVec2::new(x, y))) {
+        let index = 4 * (at.y * image.width_px + at.x) as usize;
+        if truth.mask.rgba8[index + 1] == 0 {
+            // Not of one code, as no hand is.
+            let grain = ((7 * at.x + 13 * at.y) % 5) as u8;
+            image.rgba8[index..index + 3].copy_from_slice(&[20, 120, 130].map(|code| code + grain));
+        }
+    }
+    let found = Observer::default()
+        .observed(&scene, &input.with_image(Arc::new(image)))
+        .unwrap();
+    let behind = found.things.as_ref().unwrap().marks().iter();
+    let n_behind = behind.filter(|mark| mark.is_behind_toy()).count();
+    assert!(n_behind > 2000, "{n_behind} pixels");
+    let (found, alone) = (found.gloss, seen(&scene, &Shot::of(&world).unwrap().input));
+    assert_eq!(found, alone);
+    assert_ne!(found, Gloss::NONE);
 }

@@ -151,6 +151,21 @@ fn a_hand_before_a_toy_of_its_hue_is_whole() {
 }
 
 #[test]
+fn the_table_beside_a_hand_is_its_shadow_only_where_it_is_dark() {
+    let (scene, input) = &*SESSION;
+    let parts = [0.85, 0.5].map(|light| {
+        let [_, end] = OVER_LEGS;
+        let rect = [UVec2::new(OVER_LEGS[0].x, end.y), end + UVec2::new(0, 4)];
+        let image = shaded(input.image.rgba(), rect, light);
+        let image = painted_where(&image, (SKIN, OVER_LEGS), |_| true);
+        let input = input.clone().with_image(Arc::new(image));
+        let things = Observer::default().observed(scene, &input).unwrap().things;
+        Found { things, rect }.part(Mark::Thing)
+    });
+    assert!(parts[0] < 0.2 && parts[1] > 0.5, "{parts:.2?} of it");
+}
+
+#[test]
 fn a_hand_behind_the_toy_has_its_colours_where_the_toy_hides_it() {
     let labels = bundled_session().truth(0).unwrap().unwrap().mask;
     let is_toy = |index: usize| labels.rgba8[4 * index + 1] > 0;

@@ -173,16 +173,18 @@ impl Photograph {
         })
     }
 
-    /// Gloss of the toy at its place, in given lights.
+    /// Gloss of the toy at its place, in given lights, by its pixels before things and beside them.
     pub(crate) fn gloss(
         &self,
         scene: &Scene,
         world_from_object: &DMat4,
-        lights: &[Light],
+        (lights, things): (&[Light], Option<&Things>),
     ) -> Result<Gloss, ToyError> {
         let shape = self.shape(scene, world_from_object)?;
         let paint = pose::Paint::new(scene, &self.camera_from_object(world_from_object))?;
-        let level = self.pyramid.level(0);
+        let shown = things.map(|things| things.only(|mark| !mark.is_behind_toy()));
+        let clear = shown.map(|others| self.pyramid.clear_of(others.marks()));
+        let level = clear.as_ref().unwrap_or(&self.pyramid).level(0);
         let surfels = paint.surfels(level, &pose::covered(&shape, level), gloss::MOST_SURFELS);
         let lights = gloss::Lights::new(lights, &self.camera_from_world);
         Ok(gloss::gloss(&gloss::Look::new(&shape, &surfels, &lights)))

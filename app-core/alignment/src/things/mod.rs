@@ -41,7 +41,7 @@ use std::collections::HashSet;
 use glam::IVec2;
 
 use crate::lights::Comparison;
-use crate::picture::{Level, Mask, places};
+use crate::picture::{Level, Mask, brightness, places};
 use crate::receivers::receiver_at;
 use app_scene::scene::MAX_RECEIVERS;
 use app_scene::things::{Mark, RaisedPoint};
@@ -51,7 +51,7 @@ pub(crate) use listed::marks_of_listed;
 pub(crate) use memory::Memory;
 
 use codes::Codes;
-use found::Found;
+use found::{Found, lit};
 use grown::Grown;
 use known::Known;
 use memory::Place;
@@ -62,7 +62,7 @@ use shade::Brightness;
 pub(crate) use sight::Sight;
 use standing::standing;
 use toy::{Toy, is_shade};
-use upright::gains;
+use upright::{gain, gains};
 use wrong_plate::wrong_plate;
 
 /// Maximum number of pixels of the level for the search: more take longer and find no more.
@@ -364,6 +364,8 @@ impl Sight<'_> {
             let color = frame.get(at);
             color.is_some_and(|color| found.is_own_color_in_frame(color))
         };
+        let gain = gain(level, found.compared, brightness).unwrap_or(f32::NAN);
+        let is_lit = lit(largest, (level, per_px), (found.compared, gain));
         let mark = |at: IVec2| {
             let there = (at.as_dvec2() + 0.5) * per_px;
             let Some([frame, plate]) = &codes else {
@@ -375,6 +377,8 @@ impl Sight<'_> {
                     Mark::BeforeToy if toy.is_shown(at, frame) && !is_own(at, frame) => Mark::None,
                     Mark::BeforeToy if !is_shade(at, frame, plate) => Mark::BeforeToy,
                     Mark::Thing if toy.coverage.at(at) > 0.0 || is_shade(at, frame, plate) => Mark::None,
+                    // The table beside a hand is not all in its shadow.
+                    Mark::BeforeToy if is_lit(at) => Mark::None,
                     Mark::BeforeToy | Mark::Thing => Mark::Thing,
                     mark => mark,
                 },

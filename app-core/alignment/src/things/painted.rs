@@ -42,55 +42,81 @@ pub(super) struct Seen<'a> {
     pub(super) gain: Color,
 }
 
+/// The toy's rectangle, and as much to each side of it as a visible part must be long.
+struct Window {
+    first_px: IVec2,
+    size_px: IVec2,
+}
+
+impl Window {
+    fn around(coverage: &Coverage, size_px: IVec2) -> Self {
+        let reach_px = coverage.size_px + 2 * MIXED_PX;
+        let first_px = (coverage.origin_px - reach_px).clamp(IVec2::ZERO, size_px);
+        let end_px = coverage.origin_px + coverage.size_px + reach_px;
+        Self {
+            first_px,
+            size_px: end_px.clamp(first_px, size_px) - first_px,
+        }
+    }
+
+    /// The pixels of the window with a property of the picture's.
+    fn mask(&self, has: impl Fn(IVec2) -> bool) -> Mask {
+        let mut mask = Mask::new(self.size_px);
+        for at in places(self.size_px).filter(|at| has(self.first_px + *at)) {
+            mask.mark(at);
+        }
+        mask
+    }
+}
+
 impl Seen<'_> {
     /// Marks the parts behind the toy among pixels without a mark.
     pub(super) fn paint(&self, marks: &mut [Mark]) {
         let size_px = self.frame.size_px;
-        let mut behind = Mask::new(size_px);
-        for (at, mark) in places(size_px).zip(marks.iter()) {
-            if *mark == Mark::None && self.coverage.is_near(at, MIXED_PX) {
-                behind.mark(at);
-            }
-        }
-        let mut hidden = between((self.things, &behind), size_px);
-        // Pixels of a thing beside the toy are mixed with it.
-        let is_mixed = |(at, mark): &(IVec2, &Mark)| {
-            **mark == Mark::Thing && self.things.has(*at) && self.coverage.is_near(*at, MIXED_PX)
+        let window = Window::around(self.coverage, size_px);
+        let is_near = |at: IVec2, mark: Mark| {
+            index_in(size_px, at).is_some_and(|index| marks[index] == mark)
+                && self.coverage.is_near(at, MIXED_PX)
         };
-        let mixed = places(size_px).zip(marks.iter()).filter(is_mixed);
-        hidden.extend(mixed.map(|(at, _)| at));
+        let behind = window.mask(|at| is_near(at, Mark::None));
+        let things = window.mask(|at| self.things.has(at));
+        let mut hidden = between((&things, &behind), window.size_px);
+        // Pixels of a thing beside the toy are mixed with it.
+        let is_mixed = |at: &IVec2| things.has(*at) && is_near(window.first_px + *at, Mark::Thing);
+        hidden.extend(places(window.size_px).filter(is_mixed));
         if hidden.is_empty() {
             return;
         }
-        let colors = self.colors(&hidden);
+        let colors = self.colors(&window, &hidden);
         for at in hidden {
-            let Some(index) = index_in(size_px, at) else {
+            let there = window.first_px + at;
+            let [Some(index), Some(of)] = [index_in(window.size_px, at), index_in(size_px, there)] else {
                 continue;
             };
-            let Some(plate) = self.plate.get(at).filter(|_| !colors[index][0].is_nan()) else {
+            let Some(plate) = self.plate.get(there).filter(|_| !colors[index][0].is_nan()) else {
                 continue;
             };
             let light =
                 [0, 1, 2].map(|channel| colors[index][channel].exp() / (self.gain[channel] * plate[channel]));
             if let Some(mark) = Mark::painted_thing(light) {
-                marks[index] = mark;
+                marks[of] = mark;
             }
         }
     }
 
-    /// Logarithms of colours: those of the things, and between them those of hidden pixels.
-    fn colors(&self, hidden: &[IVec2]) -> Vec<Color> {
-        let size_px = self.frame.size_px;
-        let is_clear = |at: IVec2| cross(at, MIXED_PX).all(|at| self.things.has(at));
-        let of = |at: IVec2| match self.frame.get(at) {
+    /// Logarithms of a window's colours: those of the things, and between them those of hidden pixels.
+    fn colors(&self, window: &Window, hidden: &[IVec2]) -> Vec<Color> {
+        let there = |at: IVec2| window.first_px + at;
+        let is_clear = |at: IVec2| cross(there(at), MIXED_PX).all(|at| self.things.has(at));
+        let of = |at: IVec2| match self.frame.get(there(at)) {
             Some(color) if is_clear(at) => logarithm(color),
             _ => UNKNOWN,
         };
-        let mut colors: Vec<Color> = places(size_px).map(of).collect();
-        let rims = places(size_px).filter(|at| self.things.has(*at) && !is_clear(*at));
+        let mut colors: Vec<Color> = places(window.size_px).map(of).collect();
+        let rims = places(window.size_px).filter(|at| self.things.has(there(*at)) && !is_clear(*at));
         let unknown: Vec<IVec2> = hidden.iter().copied().chain(rims).collect();
         let unmeasured = vec![UNKNOWN; colors.len()];
-        interpolate(&mut colors, (&unmeasured, size_px), &unknown);
+        interpolate(&mut colors, (&unmeasured, window.size_px), &unknown);
         colors
     }
 }

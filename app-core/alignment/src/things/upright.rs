@@ -114,7 +114,7 @@ pub(super) fn gains(level: &Level, compared: &[Compared]) -> Option<Color> {
 }
 
 /// The same for one value of their colours.
-fn gain(level: &Level, compared: &[Compared], value: impl Fn(&Color) -> f32) -> Option<f32> {
+pub(super) fn gain(level: &Level, compared: &[Compared], value: impl Fn(&Color) -> f32) -> Option<f32> {
     let of = |pixel: &Compared| {
         let frame = value(&level.frame.get(pixel.at)?);
         let plate = value(&level.plate.as_ref()?.get(pixel.at)?);
