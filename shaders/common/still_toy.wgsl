@@ -1,12 +1,14 @@
 // A surface of the toy that has not moved: the camera's own pixel, relit.
 //
-// Its colour is not taken from neighbours, so that folds and lines of the texture remain as they are, and
-// both lights are those of one point.
-// The importing shader declares `gbuffer_depth`, `rim`, `moved_mask`, `seen_under` and IS_COARSE.
+// Its colour is not a mean over neighbours, so that lines of the texture remain as they are, and both
+// lights are those of one point.
+// The importing shader declares `gbuffer_depth`, `appearance_source` and `rim`.
 
+//#import common/camera_paint
 //#import common/globals
 //#import common/depth
 //#import common/self_shadow
+//#import common/source
 //#import common/spread
 //#import common/toy_radiance
 
@@ -29,34 +31,17 @@ fn light_on(is_physical: bool, place: mat3x3f, normal: vec3f) -> vec3f {
   return toy_radiance_over_base(normal, received);
 }
 
-// Whether nothing at a texel of the toy box, or near enough to be mixed with it, has moved.
-fn is_all_still(in_box: vec2i) -> bool {
-  var most = textureLoad(moved_mask, clamped_to_box(in_box), 0).r;
-  for (var k = 0u; k < 4u; k++) {
-    let side = select(vec2i(1, 0), vec2i(0, 1), k >= 2u) * (1 - 2 * i32(k & 1u));
-    most = max(most, textureLoad(moved_mask, clamped_to_box(in_box + side), 0).r);
-  }
-  if most > 0.0 || !is_soft() { return most == 0.0; }
-  for (var k = 0u; k < N_ON_RING; k++) {
-    most = max(most, textureLoad(moved_mask, clamped_to_box(on_ring(in_box, 0.5 * soft_reach_px(), k)), 0).r);
-    most = max(most, textureLoad(moved_mask, clamped_to_box(on_ring(in_box, soft_reach_px(), k)), 0).r);
-  }
-  return most == 0.0;
+// Whether a pixel mixes the toy with a receiver alone, in known parts.
+fn is_unmixed(texel: vec2i) -> bool {
+  if !is_soft() { return false; }
+  let part = textureLoad(rim, texel, 0).a;
+  return part >= LEAST_PART && part < 1.0;
 }
 
-// Whether a texel of the physical box shows nothing but the toy, or the part of it that does is known.
-fn is_inside_outline(texel: vec2i) -> bool {
-  if is_soft() { return textureLoad(rim, texel, 0).a >= LEAST_PART; }
-  for (var k = 0u; k < 9u; k++) {
-    let other = texel + vec2i(vec2u(k % 3u, k / 3u)) - 1;
-    if !is_in_physical_box(other) || textureLoad(gbuffer_depth, other, 0) == 0.0 { return false; }
-  }
-  return true;
-}
-
-// Whether the camera's pixel at a texel of the region shows a still surface of this depth.
-fn is_seen_still(in_region: vec2i, in_box: vec2i, depth: f32) -> bool {
+// Whether the camera's pixel at a texel of the region shows a surface of this depth, and no other one
+// of the toy.
+fn is_seen_still(in_region: vec2i, depth: f32) -> bool {
   let texel = physical_texel(in_region);
   if !is_in_physical_box(texel) || !is_same_surface(textureLoad(gbuffer_depth, texel, 0), depth) { return false; }
-  return is_inside_outline(texel) && is_all_still(in_box);
+  return number_at(textureLoad(appearance_source, texel, 0)) == number_of(vec2i(0)) || is_unmixed(texel);
 }

@@ -64,8 +64,7 @@ override HAS_EDGES: bool = false;
 @group(3) @binding(2) var toy_1: texture_2d<f32>;
 @group(3) @binding(3) var toy_2: texture_2d<f32>;
 @group(3) @binding(4) var toy_3: texture_2d<f32>;
-// Parts of a pixel in which the toy differs from the frame, and in which the shown toy's surface has
-// moved; in which the real toy's has moved.
+// Parts of a pixel in which the shown, and the real toy's surface has moved.
 @group(3) @binding(5) var toy_moved: texture_2d<f32>;
 @group(3) @binding(6) var moved_mask: texture_2d<f32>;
 // COVERED_POSITION for each position that the shown toy covers.

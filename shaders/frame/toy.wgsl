@@ -7,7 +7,7 @@
 // offsets make a denser pattern.
 //
 // Reads: both poses, materials, frame, the source pixels of the toy's colours and the light on
-// them, gbuffer, fit, depth maps from the lights, tints, moved mask. Writes: linear radiance,
+// them, gbuffer, fit, depth maps from the lights, tints. Writes: linear radiance,
 // premultiplied, with the fraction of hit samples in alpha; difference from the camera's pixel.
 
 //#import common/fit
@@ -41,8 +41,6 @@
 // Reflected radiance of a glossy toy, relative to the gain; alpha is the visibility of the paint.
 @group(1) @binding(8) var reflected: texture_2d<f32>;
 @group(1) @binding(9) var<uniform> specular: Specular;
-// Part of a pixel of the toy box in which the real toy's surface has moved.
-@group(1) @binding(10) var moved_mask: texture_2d<f32>;
 
 // Whether the light of the camera's pixel replaces the point's own in the test for changes.
 override IS_COARSE: bool = false;
@@ -230,7 +228,7 @@ fn tint(material: u32, physical_in_anchor: vec3f) -> vec3f {
 
 struct Drawn {
   @location(0) radiance: vec4f,
-  // r is 1 if the toy differs from the camera's pixel, g if its surface has moved.
+  // 1 if the surface has moved, less if its light alone has changed.
   @location(1) change: vec4f,
 }
 
@@ -273,12 +271,12 @@ fn fs_toy(
     let reflects_before = reflected_before(in_region, material, physical_in_anchor, physical_normal);
     let before = light_before(in_region, place, normal, physical_place, physical_normal, &after);
     relit_part = light_change(looks(base, after, reflects), looks(base, before, reflects_before));
-    if is_seen_still(in_region, vec2i(at.xy), clip.z / clip.w) {
+    if is_seen_still(in_region, clip.z / clip.w) {
       let own = paint_color(physical_texel(in_region));
       paint = mix(paint, relit(own.rgb, after, before, unseen), own.a * (1.0 - is_moved));
     }
   }
-  let change = vec4f(max(is_moved, relit_part), is_moved, 0.0, 0.0);
+  let change = vec4f(written_change(is_moved, relit_part));
   if !IS_GLOSSY { return Drawn(vec4f(paint, 1.0), change); }
   return Drawn(vec4f(paint + fit.gain.rgb * reflects, 1.0), change);
 }

@@ -134,7 +134,6 @@ impl FramePath<'_> {
             rim: self.captured.by_pass.rim.mixed.as_ref().map(|mixed| &mixed.view),
             reflected: self.captured.by_pass.gloss.view(),
             specular: &self.region.specular,
-            moved_mask: &self.drawn.by_pass.moved_mask.moved.view,
         }
     }
 

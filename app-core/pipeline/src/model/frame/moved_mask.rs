@@ -18,7 +18,7 @@ pub(crate) const SHADER: Shader = shader!("frame/moved_mask");
 /// Vertices of both poses; the physical one is drawn.
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3), (1, VertexFormat::Float32x3)];
 /// Format of the mask, a fraction of each pixel.
-const MOVED_FORMAT: TextureFormat = TextureFormat::R8Unorm;
+pub(crate) const MOVED_FORMAT: TextureFormat = TextureFormat::R8Unorm;
 /// Samples per pixel, so that parts thinner than a pixel count as well; if the toy is drawn with
 /// one sample, so is its mask.
 const N_SAMPLES: u32 = 4;

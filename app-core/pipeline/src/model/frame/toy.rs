@@ -15,6 +15,7 @@ use crate::gpu::recorder::{Attachment, Recorder, discarded, sampled};
 use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::appearance;
+use crate::model::frame::moved_mask::MOVED_FORMAT;
 use crate::model::lighting::self_shadow;
 use crate::model::lighting::self_shadow::{GROUP_SELF_SHADOW, SELF_SHADOW_GROUP};
 use crate::model::plan::Plan;
@@ -38,7 +39,6 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
     Slot::uniform::<Specular>(),
-    Slot::Texture,
 ];
 /// Streams of a draw with materials, followed by the physical pose.
 const STREAMS: &[Stream] = &[
@@ -54,8 +54,6 @@ const STREAMS: &[Stream] = &[
 const CODED_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// Format for draws that are still to be averaged.
 const FINE_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-/// Format of the changed and the moved part of a pixel.
-const CHANGE_FORMAT: TextureFormat = TextureFormat::Rg8Unorm;
 const N_SAMPLES: u32 = 4;
 /// Offsets of the draws: the multisample positions at half their size around the pixel's centre.
 /// The 16 samples of four draws then lie in rows and columns and leave no hole. RMS error of the
@@ -121,8 +119,6 @@ pub(crate) struct Inputs<'a> {
     /// Radiance that a glossy toy reflected.
     pub(crate) reflected: Option<&'a TextureView>,
     pub(crate) specular: &'a Buffer,
-    /// The part of each pixel in which the real toy's surface has moved.
-    pub(crate) moved_mask: &'a TextureView,
 }
 
 /// Targets of the toy box's size: one for each draw, and those that stay in tile memory.
@@ -131,8 +127,8 @@ pub(crate) struct Targets {
     samples: Option<Samples>,
     depth: Texture,
     drawn: Vec<Texture>,
-    /// Share of the pixel that differs from the camera's picture, and that shows a surface which the
-    /// camera did not see in that place.
+    /// Share of the pixel that shows a surface which the camera did not see in that place; a small
+    /// share for one in other light (`common/moved`).
     pub(crate) moved: Texture,
 }
 
@@ -152,13 +148,13 @@ impl Targets {
         Self {
             samples: (n_samples > 1).then(|| Samples {
                 drawn: on_chip("toy samples", format),
-                moved: on_chip("toy moved samples", CHANGE_FORMAT),
+                moved: on_chip("toy moved samples", MOVED_FORMAT),
             }),
             depth: on_chip("toy depth", TextureFormat::Depth32Float),
             drawn: (0..n_draws)
                 .map(|_| Texture::target(gpu, "toy", size_px, format))
                 .collect(),
-            moved: Texture::target(gpu, "toy moved", size_px, CHANGE_FORMAT),
+            moved: Texture::target(gpu, "toy moved", size_px, MOVED_FORMAT),
         }
     }
 
@@ -255,14 +251,14 @@ fn sides(gpu: &Gpu, (format, n_samples): (TextureFormat, u32), is_glossy: bool) 
                 constants: vec![form, is_coarse, is_glossy],
                 depth: Some(nearest_surface()),
                 culled,
-                ..DrawSpec::fullscreen(&SHADER, "fs_toy", groups, &[format, CHANGE_FORMAT])
+                ..DrawSpec::fullscreen(&SHADER, "fs_toy", groups, &[format, MOVED_FORMAT])
             })
         })
     })
 }
 
 impl<'a> Inputs<'a> {
-    fn resources(&self) -> [Resource<'a>; 11] {
+    fn resources(&self) -> [Resource<'a>; 10] {
         [
             Resource::PerUse,
             self.gbuffer_depth.into(),
@@ -275,7 +271,6 @@ impl<'a> Inputs<'a> {
             self.rim.unwrap_or(&self.appearance.base.view).into(),
             self.reflected.unwrap_or(&self.appearance.base.view).into(),
             self.specular.into(),
-            self.moved_mask.into(),
         ]
     }
 }
