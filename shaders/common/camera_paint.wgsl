@@ -1,10 +1,11 @@
 // Paint of the toy as the camera's pixels show it, relit.
 //
-// The importing shader declares `appearance_base`, `appearance_received`, `rim`, `reflected` and
-// IS_GLOSSY.
+// The importing shader declares `appearance_base`, `appearance_received`, `appearance_source`, `rim`,
+// `reflected` and IS_GLOSSY.
 
 //#import common/fit
 //#import common/frame
+//#import common/source
 //#import common/spread
 //#import common/toy_radiance
 
@@ -18,6 +19,18 @@ const OTHER_PAINT: f32 = 1.1;
 const LEAST_PART: f32 = 0.35;
 // Smallest part of the paint in a pixel's light.
 const LEAST_PAINT: f32 = 0.1;
+// Distance in pixels within which the camera's brightness is compared with the model's; largest
+// difference of the upward parts of two surfaces with the same light.
+const COMPARED_PX: i32 = 2;
+const SAME_UP: f32 = 0.1;
+// Factors between the two up to which the model's brightness stays, and from which the camera's is
+// taken; the largest one. A photographed cube has 190 pixels beyond 40 codes of those around them
+// without it, 142 with it, and its true picture 121; if small factors count, too, the toy's error
+// rises from 2.97 to 3.09 codes where model and light are exact, since texture is taken for light.
+const SAME_BRIGHTNESS: f32 = 1.2;
+const OTHER_BRIGHTNESS: f32 = 1.6;
+const MOST_BRIGHTNESS: f32 = 2.0;
+const LUMINANCE = vec3f(0.2126, 0.7152, 0.0722);
 
 // The light on the camera's colour at a texel of the physical box, as radiance over base colour.
 fn seen_under(texel: vec2i) -> vec3f {
@@ -54,4 +67,27 @@ fn paint_color(texel: vec2i) -> vec4f {
   if !IS_GLOSSY { return vec4f(color, 1.0); }
   let there = textureLoad(reflected, texel, 0);
   return vec4f(max(color - fit.gain.rgb * there.rgb, LEAST_PAINT * color), there.a);
+}
+
+// Factor for the model's colour at a point of which no camera pixel shows the paint: the camera's
+// brightness around a texel of the physical box over the model's, on surfaces that face up as much as
+// `up`. `tint` is the point's. The pooled tint may be that of other sides nearby.
+fn brightness_beside(texel: vec2i, up: f32, tint: vec3f) -> f32 {
+  var sum = vec2f(0.0);
+  for (var y = -COMPARED_PX; y <= COMPARED_PX; y++) {
+    for (var x = -COMPARED_PX; x <= COMPARED_PX; x++) {
+      let other = texel + vec2i(x, y);
+      if !is_in_physical_box(other) { continue; }
+      if number_at(textureLoad(appearance_source, other, 0)) != number_of(vec2i(0)) { continue; }
+      let base = textureLoad(appearance_base, other, 0);
+      if abs(base.a - up) > SAME_UP { continue; }
+      let shown = paint_color(other);
+      let expected = fit.gain.rgb * tint * base.rgb * seen_under(other);
+      sum += shown.a * vec2f(dot(shown.rgb, LUMINANCE), dot(expected, LUMINANCE));
+    }
+  }
+  if sum.x == 0.0 || sum.y == 0.0 { return 1.0; }
+  let ratio = sum.x / sum.y;
+  let part = smoothstep(log(SAME_BRIGHTNESS), log(OTHER_BRIGHTNESS), abs(log(ratio)));
+  return pow(clamp(ratio, 1.0 / MOST_BRIGHTNESS, MOST_BRIGHTNESS), part);
 }

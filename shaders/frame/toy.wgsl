@@ -144,13 +144,14 @@ fn is_point_shown(low: vec2f, t: vec2f, depth: f32) -> bool {
 }
 
 // The camera's colour of the paint, under the light `lit`, of the point of the physical toy at
-// `physical_px` and `depth` with the base colour `base`; alpha is 0 if it is hidden.
+// `physical_px` and `depth` with the base colour `base`; alpha is 0 if it is hidden. `is_beside`
+// becomes whether other paint is beside it.
 //
 // Of the four pixels around it only those count that show its surface and material, or lie beyond the
 // outline, with colours from `appearance`. Their mean is relit from their mean light. If the camera saw
 // this point at a similar angle, pixels of other paint count, too: a line of the texture may be thinner
 // than a pixel, and beside the camera's colours the model's own would be a speck.
-fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, expected: vec3f, stretch: f32) -> vec4f {
+fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, expected: vec3f, stretch: f32, is_beside: ptr<function, bool>) -> vec4f {
   let at = physical_px - 0.5;
   let low = floor(at);
   let t = at - low;
@@ -166,9 +167,12 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, expecte
     if surface > depth && !is_same_surface(surface, depth) { continue; }
     let seen_base = textureLoad(appearance_base, texel, 0);
     let is_other = is_other_material(seen_base.rgb, base);
-    if is_other && !is_shown { continue; }
     let number = number_at(textureLoad(appearance_source, texel, 0));
     if number == NO_SOURCE { continue; }
+    if is_other && !is_shown {
+      *is_beside = true;
+      continue;
+    }
     let color = paint_color(source_texel(texel, number));
     let corner = vec2f(vec2u(k & 1u, k >> 1u));
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
@@ -222,7 +226,7 @@ fn light_before(in_region: vec2i, shown: mat3x3f, normal: vec3f, before: mat3x3f
 }
 
 // Tint of a material at a point of the physical pose.
-fn tint(material: u32, physical_in_anchor: vec3f) -> vec3f {
+fn tint_at(material: u32, physical_in_anchor: vec3f) -> vec3f {
   return between_tints(TINT_PYRAMID * tint_grid_of(material), TINT_SIDE, tint_place(physical_in_anchor)).rgb;
 }
 
@@ -256,8 +260,13 @@ fn fs_toy(
   let received = light_received(false, normal, in_anchor);
   let lit = toy_radiance_over_base(normal, received);
   let reflects = reflected_at(material, normal, in_anchor, received);
-  let unseen = fit.gain.rgb * base * tint(material, physical_in_anchor) * lit;
-  let pixel = camera_color(physical_px, clip.z / clip.w, base, lit, unseen, stretch);
+  let tint = tint_at(material, physical_in_anchor);
+  var unseen = fit.gain.rgb * base * tint * lit;
+  var is_beside = false;
+  let pixel = camera_color(physical_px, clip.z / clip.w, base, lit, unseen, stretch, &is_beside);
+  if pixel.a == 0.0 && is_beside {
+    unseen *= brightness_beside(physical_texel(vec2i(physical_px)), hemispheres(physical_normal).x, tint);
+  }
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
   // Nothing is discarded, so that depth is tested first: surfaces behind this one are behind the
   // receiver, too.
