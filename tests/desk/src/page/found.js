@@ -46,7 +46,7 @@ function showAlignment() {
   const searched = hemisphere ? [el("figure", {}, el("img", { src: data.presets[0].folder + hemisphere.file, alt: "Directions that a light was looked for in" }),
     el("figcaption", { class: "soft" }, "The hemisphere above the table, seen from above with the camera below: the brighter, the more of the shadow a light there explains. Yellow ring: found; red: listed."))] : [];
   at("alignment").replaceChildren(el("h2", {}, "Aligned by the picture"), ...searched,
-    rows.length > 0 ? table(`took ${ms(cpu_ms)}`, ["", "", "difference from what was given", ""], rows)
+    rows.length > 0 ? table(`Alignment took ${ms(cpu_ms)}`, ["", "", "difference from what was given", ""], rows)
       : el("p", { class: "soft" }, "Too little of the toy's outline is seen to align anything."));
 }
 
