@@ -1,23 +1,16 @@
 // Appearance of the toy in a soft picture, beyond its drawn pixels.
 //
-// The importing shader declares `drawn_toy` and `change_at`.
+// The importing shader declares `drawn_toy` and `moved_at`.
 
 //#import common/globals
 //#import common/spread
 
-// Number of rings around a pixel in which the toy is searched for, and of positions on each.
+// Number of rings around a pixel in which the toy is searched for.
 const N_RINGS: u32 = 4u;
-const N_ON_RING: u32 = 12u;
-const TURN: f32 = 6.2831853;
 // Rings for the colours of moved surfaces, nearest first: their radii in standard deviations of the
 // picture's spread, and the weights of their positions relative to the centre.
 const NEAR_RINGS = vec2f(0.6, 1.2);
 const NEAR_WEIGHTS = vec2f(0.6, 0.25);
-
-fn on_ring(texel: vec2i, reach_px: f32, k: u32) -> vec2i {
-  let turn = f32(k) * (TURN / f32(N_ON_RING));
-  return texel + vec2i(round(reach_px * vec2f(cos(turn), sin(turn))));
-}
 
 // Sum of the toy's colours around a texel, from the nearest ring on which it is drawn.
 fn toy_color_beyond(texel: vec2i, n_draws: u32) -> vec4f {
@@ -33,8 +26,8 @@ fn toy_color_beyond(texel: vec2i, n_draws: u32) -> vec4f {
 // The toy's colour at a drawn texel, premultiplied. A moved surface is about as soft as the
 // picture, but folds between its parts, and surfaces that no camera has seen, are drawn sharp.
 fn softened_toy(texel: vec2i, own: vec4f, n_draws: u32) -> vec4f {
-  let change = change_at(texel);
-  if change == 0.0 { return own; }
+  let moved = moved_at(texel);
+  if moved == 0.0 { return own; }
   var sum = own;
   for (var ring = 0u; ring < 2u; ring++) {
     for (var k = 0u; k < N_ON_RING; k++) {
@@ -44,15 +37,15 @@ fn softened_toy(texel: vec2i, own: vec4f, n_draws: u32) -> vec4f {
       sum += NEAR_WEIGHTS[ring] * drawn_toy(tap, n_draws);
     }
   }
-  return mix(own / own.a, sum / sum.a, change);
+  return mix(own / own.a, sum / sum.a, moved);
 }
 
-// The largest change around a texel, within its spread.
-fn change_around(texel: vec2i) -> f32 {
+// The largest moved part around a texel, within its spread.
+fn moved_around(texel: vec2i) -> f32 {
   var most = 0.0;
   for (var k = 0u; k < N_ON_RING; k++) {
-    most = max(most, change_at(on_ring(texel, 0.5 * soft_reach_px(), k)));
-    most = max(most, change_at(on_ring(texel, soft_reach_px(), k)));
+    most = max(most, moved_at(on_ring(texel, 0.5 * soft_reach_px(), k)));
+    most = max(most, moved_at(on_ring(texel, soft_reach_px(), k)));
   }
   return most;
 }

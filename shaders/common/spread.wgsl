@@ -55,3 +55,12 @@ fn spread_position_px(lattice: vec2f) -> vec2f {
 fn spread_px(deviations: vec2f) -> vec2f {
   return vec2f(globals.spread.x * deviations.x, globals.spread.y * deviations.x + globals.spread.z * deviations.y);
 }
+
+// Positions on a ring around a pixel.
+const N_ON_RING: u32 = 12u;
+const TURN: f32 = 6.2831853;
+
+fn on_ring(texel: vec2i, reach_px: f32, k: u32) -> vec2i {
+  let turn = f32(k) * (TURN / f32(N_ON_RING));
+  return texel + vec2i(round(reach_px * vec2f(cos(turn), sin(turn))));
+}

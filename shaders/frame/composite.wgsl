@@ -23,6 +23,7 @@
 //#import common/marks
 //#import common/reflection
 //#import common/relit
+//#import common/stillness
 //#import common/two_receivers
 //#import common/unknown
 
@@ -197,21 +198,6 @@ fn before_toy(texel: vec2i, f: vec3f) -> vec3f {
   let b = textureLoad(plate, texel, 0);
   if !is_relit(b) { return f; }
   return relit(b, f);
-}
-
-// Difference of a texel of the toy box from the camera's picture, 0 to 1.
-fn change_at(texel: vec2i) -> f32 {
-  let clamped = clamped_to_box(texel);
-  return max(textureLoad(toy_moved, clamped, 0).r, textureLoad(moved_mask, clamped, 0).r);
-}
-
-// 1 if a texel of the toy box and its four neighbours agree with the camera's picture.
-fn stillness(texel: vec2i) -> f32 {
-  let beside = max(change_at(texel - vec2i(1, 0)), change_at(texel + vec2i(1, 0)));
-  let above_and_below = max(change_at(texel - vec2i(0, 1)), change_at(texel + vec2i(0, 1)));
-  let most = max(change_at(texel), max(beside, above_and_below));
-  if most == 1.0 || !is_soft() { return 1.0 - most; }
-  return 1.0 - max(most, change_around(texel));
 }
 
 fn composed(position: vec4f, n_draws: u32) -> vec4f {

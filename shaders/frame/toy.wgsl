@@ -1,13 +1,14 @@
 // The toy in the shown pose, textured with its camera pixels.
 //
 // Visible points of the physical pose take the camera's pixels, scaled by the change of the fitted
-// light; hidden points take the model's base colour under the fitted light, times the tint. The old
-// reflection of a glossy toy is subtracted from its pixels, and the new one is added. Drawn once
-// for each offset; with the multisample positions the offsets make a denser pattern.
+// light, and those that have not moved each their own; hidden points take the model's base colour
+// under the fitted light, times the tint. The old reflection of a glossy toy is subtracted from its
+// pixels, and the new one is added. Drawn once for each offset; with the multisample positions the
+// offsets make a denser pattern.
 //
 // Reads: both poses, materials, frame, the source pixels of the toy's colours and the light on
-// them, gbuffer, fit, depth maps from the lights, tints. Writes: linear radiance, premultiplied,
-// with the fraction of hit samples in alpha; difference from the camera's pixel.
+// them, gbuffer, fit, depth maps from the lights, tints. Writes: linear radiance,
+// premultiplied, with the fraction of hit samples in alpha; difference from the camera's pixel.
 
 //#import common/fit
 //#import common/frame
@@ -21,8 +22,10 @@
 //#import common/tint_grid
 //#import common/between_tints
 //#import common/behind
+//#import common/camera_paint
 //#import common/source
 //#import common/spread
+//#import common/still_toy
 //#import common/gloss
 
 // Offset of the whole picture, in pixels to the right and down.
@@ -44,8 +47,6 @@ override IS_COARSE: bool = false;
 // Whether any part of the toy is glossy.
 override IS_GLOSSY: bool = false;
 
-// Maximum factor by which a camera pixel is brightened or darkened for a turned surface.
-const MAX_TURN: f32 = 4.0;
 // Surface area per pixel, shown relative to physical pose, above which camera pixels are used in full,
 // and below which not at all: a surface seen at a grazing angle has too few pixels.
 const STRETCH_ALL: f32 = 0.3;
@@ -62,14 +63,10 @@ const OTHER_PAINT_WEIGHT: f32 = 0.3;
 // Relative change of the light on a surface that is invisible, and that is fully visible.
 const SAME_LIGHT: f32 = 0.02;
 const OTHER_LIGHT: f32 = 0.08;
-// Part of a pixel from which the toy's own colour is unmixed: below, noise would be amplified.
-const LEAST_PART: f32 = 0.35;
 // Weight of colours extrapolated past the outline, relative to the surface's own.
 const CARRIED_WEIGHT: f32 = 1e-3;
 // Weight of a pixel whose paint is hidden, relative to a visible one.
 const UNTOLD_WEIGHT: f32 = 1e-3;
-// Smallest part of the paint in a pixel's light.
-const LEAST_PAINT: f32 = 0.1;
 
 struct Vertex {
   @builtin(instance_index) material: u32,
@@ -108,43 +105,9 @@ fn vs_toy(in: Vertex) -> Surface {
   );
 }
 
-// The light on the camera's colour at a texel of the physical box, as radiance over base colour.
-fn seen_under(texel: vec2i) -> vec3f {
-  let up = textureLoad(appearance_base, texel, 0).a;
-  return toy_radiance_from(vec2f(up, 1.0 - up), textureLoad(appearance_received, texel, 0));
-}
-
-// Reflected radiance at a texel of the physical box.
-fn seen_reflected(texel: vec2i) -> vec3f {
-  return select(vec3f(0.0), textureLoad(reflected, texel, 0).rgb, IS_GLOSSY);
-}
-
 // Whether a base colour belongs to another material of the model.
 fn is_other_material(other: vec3f, base: vec3f) -> bool {
   return largest(abs(other - base)) > OTHER_MATERIAL * max(largest(other), largest(base));
-}
-
-// A camera pixel relit from `was_lit` to `lit`, both radiance over base colour.
-fn relit(color: vec3f, lit: vec3f, was_lit: vec3f) -> vec3f {
-  let turn = select(vec3f(1.0), lit / was_lit, was_lit > vec3f(0.0));
-  return color * clamp(turn, vec3f(1.0 / MAX_TURN), vec3f(MAX_TURN));
-}
-
-// The toy's own colour at a texel of the physical box, without what a soft picture mixes into it.
-fn own_color(texel: vec2i) -> vec3f {
-  let seen = frame_at(region_texel(texel));
-  if !is_soft() { return seen; }
-  let mixed = textureLoad(rim, texel, 0);
-  let part = max(mixed.a, LEAST_PART);
-  return max(seen - (1.0 - part) * fit.gain.rgb * mixed.rgb, vec3f(0.0)) / part;
-}
-
-// The colour of the paint at a texel of the physical box, with its visibility in alpha.
-fn paint_color(texel: vec2i) -> vec4f {
-  let color = own_color(texel);
-  if !IS_GLOSSY { return vec4f(color, 1.0); }
-  let there = textureLoad(reflected, texel, 0);
-  return vec4f(max(color - fit.gain.rgb * there.rgb, LEAST_PAINT * color), there.a);
 }
 
 // Reflection of a surface in the shown pose, or with its light in the physical one, over the gain.
@@ -181,13 +144,14 @@ fn is_point_shown(low: vec2f, t: vec2f, depth: f32) -> bool {
 }
 
 // The camera's colour of the paint, under the light `lit`, of the point of the physical toy at
-// `physical_px` and `depth` with the base colour `base`; alpha is 0 if it is hidden.
+// `physical_px` and `depth` with the base colour `base`; alpha is 0 if it is hidden. `is_beside`
+// becomes whether other paint is beside it.
 //
 // Of the four pixels around it only those count that show its surface and material, or lie beyond the
 // outline, with colours from `appearance`. Their mean is relit from their mean light. If the camera saw
 // this point at a similar angle, pixels of other paint count, too: a line of the texture may be thinner
 // than a pixel, and beside the camera's colours the model's own would be a speck.
-fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, stretch: f32) -> vec4f {
+fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, expected: vec3f, stretch: f32, is_beside: ptr<function, bool>) -> vec4f {
   let at = physical_px - 0.5;
   let low = floor(at);
   let t = at - low;
@@ -203,9 +167,12 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, stretch
     if surface > depth && !is_same_surface(surface, depth) { continue; }
     let seen_base = textureLoad(appearance_base, texel, 0);
     let is_other = is_other_material(seen_base.rgb, base);
-    if is_other && !is_shown { continue; }
     let number = number_at(textureLoad(appearance_source, texel, 0));
     if number == NO_SOURCE { continue; }
+    if is_other && !is_shown {
+      *is_beside = true;
+      continue;
+    }
     let color = paint_color(source_texel(texel, number));
     let corner = vec2f(vec2u(k & 1u, k >> 1u));
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
@@ -218,7 +185,7 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, stretch
   }
   if sum.a == 0.0 { return sum; }
   let was_lit = toy_radiance_from(vec2f(up, sum.a - up) / sum.a, received / sum.a);
-  return vec4f(relit(sum.rgb / sum.a, lit, was_lit), told / sum.a);
+  return vec4f(relit(sum.rgb / sum.a, lit, was_lit, expected), told / sum.a);
 }
 
 // Cosine between the triangle's normal and the direction to the camera; `normal` selects its outer side.
@@ -235,30 +202,38 @@ fn light_change(lit: vec3f, was_lit: vec3f) -> f32 {
   return smoothstep(SAME_LIGHT, OTHER_LIGHT, largest(abs(lit - was_lit)) / brighter);
 }
 
-// 1 if the toy differs from the camera's pixel: its surface has moved, or its light has changed.
+// The reflection of a still place before, over the gain.
+fn reflected_before(in_region: vec2i, material: u32, place: vec3f, normal: vec3f) -> vec3f {
+  if !IS_GLOSSY { return vec3f(0.0); }
+  if IS_COARSE { return seen_reflected(clamped_to_physical_box(physical_texel(in_region))); }
+  return reflected_at(material, normal, place, light_received(true, normal, place));
+}
+
+// The light on a still place before, as radiance over base colour, if the light after is `lit` at
+// its centre; that becomes the mean over a soft picture's spread.
 //
-// The old light is that of the same point in the physical pose, since the centre of a pixel may not
-// represent a fold or a shadow's edge in it. Most still pixels are unchanged in both.
-fn difference(in_region: vec2i, moved: f32, shown: vec3f, base: vec3f, material: u32, normal: vec3f, in_anchor: vec3f) -> f32 {
-  if moved == 1.0 { return 1.0; }
-  let texel = clamped_to_physical_box(physical_texel(in_region));
-  let seen_change = light_change(shown, looks(base, seen_under(texel), seen_reflected(texel)));
-  if IS_COARSE { return max(moved, seen_change); }
-  if seen_change == 0.0 { return moved; }
-  let received = light_received(true, normal, in_anchor);
-  let reflects = reflected_at(material, normal, in_anchor, received);
-  return max(moved, light_change(shown, looks(base, toy_radiance_over_base(normal, received), reflects)));
+// It is that of the same point, since the centre of a pixel may not represent a fold or a shadow's
+// edge in it. Most still pixels are unchanged in both.
+fn light_before(in_region: vec2i, shown: mat3x3f, normal: vec3f, before: mat3x3f, normal_before: vec3f, lit: ptr<function, vec3f>) -> vec3f {
+  let seen = seen_under(clamped_to_physical_box(physical_texel(in_region)));
+  if IS_COARSE { return seen; }
+  if is_soft() {
+    *lit = light_on(false, shown, normal);
+    return light_on(true, before, normal_before);
+  }
+  if light_change(*lit, seen) == 0.0 { return *lit; }
+  return toy_radiance_over_base(normal_before, light_received(true, normal_before, before[0]));
 }
 
 // Tint of a material at a point of the physical pose.
-fn tint(material: u32, physical_in_anchor: vec3f) -> vec3f {
+fn tint_at(material: u32, physical_in_anchor: vec3f) -> vec3f {
   return between_tints(TINT_PYRAMID * tint_grid_of(material), TINT_SIDE, tint_place(physical_in_anchor)).rgb;
 }
 
 struct Drawn {
   @location(0) radiance: vec4f,
-  // 1 if the toy differs from the camera's pixel.
-  @location(1) moved: vec4f,
+  // 1 if the surface has moved, less if its light alone has changed.
+  @location(1) change: vec4f,
 }
 
 @fragment
@@ -280,20 +255,37 @@ fn fs_toy(
     select(0.0, physical_facing / max(facing(in_anchor, normal), physical_facing), physical_facing > 0.0);
   let clip = globals.clip_from_anchor * vec4f(physical_in_anchor, 1.0);
   let physical_px = region_px(clip);
+  let place = mat3x3f(in_anchor, dpdx(in_anchor), dpdy(in_anchor));
+  let physical_place = mat3x3f(physical_in_anchor, dpdx(physical_in_anchor), dpdy(physical_in_anchor));
   let received = light_received(false, normal, in_anchor);
   let lit = toy_radiance_over_base(normal, received);
   let reflects = reflected_at(material, normal, in_anchor, received);
-  let unseen = fit.gain.rgb * base * tint(material, physical_in_anchor) * lit;
-  let pixel = camera_color(physical_px, clip.z / clip.w, base, lit, stretch);
+  let tint = tint_at(material, physical_in_anchor);
+  var unseen = fit.gain.rgb * base * tint * lit;
+  var is_beside = false;
+  let pixel = camera_color(physical_px, clip.z / clip.w, base, lit, unseen, stretch, &is_beside);
+  if pixel.a == 0.0 && is_beside {
+    unseen *= brightness_beside(physical_texel(vec2i(physical_px)), hemispheres(physical_normal).x, tint);
+  }
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
   // Nothing is discarded, so that depth is tested first: surfaces behind this one are behind the
   // receiver, too.
   if is_behind_receiver(at.xy + globals.toy_box_origin_px - offset_px, at.w) { return Drawn(vec4f(0.0), vec4f(0.0)); }
   let is_moved = moved(region_px(globals.clip_from_anchor * vec4f(in_anchor, 1.0)), physical_px);
-  let shown = looks(base, lit, reflects);
-  let in_region = vec2i(at.xy + globals.toy_box_origin_px);
-  let is_other = difference(in_region, is_moved, shown, base, material, physical_normal, physical_in_anchor);
-  let paint = mix(unseen, pixel.rgb, seen);
-  if !IS_GLOSSY { return Drawn(vec4f(paint, 1.0), vec4f(is_other)); }
-  return Drawn(vec4f(paint + fit.gain.rgb * reflects, 1.0), vec4f(is_other));
+  var paint = mix(unseen, pixel.rgb, seen);
+  var relit_part = 0.0;
+  if is_moved < 1.0 {
+    let in_region = vec2i(at.xy + globals.toy_box_origin_px);
+    var after = lit;
+    let reflects_before = reflected_before(in_region, material, physical_in_anchor, physical_normal);
+    let before = light_before(in_region, place, normal, physical_place, physical_normal, &after);
+    relit_part = light_change(looks(base, after, reflects), looks(base, before, reflects_before));
+    if is_seen_still(in_region, clip.z / clip.w) {
+      let own = paint_color(physical_texel(in_region));
+      paint = mix(paint, relit(own.rgb, after, before, unseen), own.a * (1.0 - is_moved));
+    }
+  }
+  let change = vec4f(written_change(is_moved, relit_part));
+  if !IS_GLOSSY { return Drawn(vec4f(paint, 1.0), change); }
+  return Drawn(vec4f(paint + fit.gain.rgb * reflects, 1.0), change);
 }

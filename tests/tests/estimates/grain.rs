@@ -71,3 +71,29 @@ fn noise_that_reaches_far_is_measured() {
     let found = codes(&found);
     assert!((found - 1.5).abs() < 0.15, "{found:.2} codes");
 }
+
+/// In three tenths of two pictures, darker ones, they differ; everywhere else they are equal.
+#[test]
+fn a_part_that_differs_is_no_noise_of_the_whole() {
+    let dark_rows = 0.3 * f64::from(SIDE_PX);
+    let texture = |x: f64, y: f64| {
+        let wave = 12.0 * (0.9 * x).sin() * (0.7 * y).sin();
+        if y < dark_rows { -60.0 } else { wave }
+    };
+    let noisy = |number: u32| picture(texture, (2.0, [0.0; 2]), number);
+    let clean = picture(texture, (0.0, [0.0; 2]), 0);
+    let with_clean_rest = |noisy: Image| {
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a number of bytes"
+        )]
+        let n_dark = 4 * dark_rows as usize * SIDE_PX as usize;
+        let rgba8 = [&noisy.rgba8[..n_dark], &clean.rgba8[n_dark..]].concat();
+        Image { rgba8, ..noisy }
+    };
+    let everywhere = [1, 2].map(noisy);
+    let in_part = [1, 2].map(|number| with_clean_rest(noisy(number)));
+    assert!(Grain::measured(&everywhere[0], &everywhere[1]).is_some());
+    assert_eq!(Grain::measured(&in_part[0], &in_part[1]), None);
+}

@@ -53,6 +53,7 @@ mod self_shadow;
 mod setups;
 mod soften;
 mod stand;
+mod still;
 mod things;
 mod tint;
 mod toy;

@@ -127,7 +127,8 @@ pub(crate) struct Targets {
     samples: Option<Samples>,
     depth: Texture,
     drawn: Vec<Texture>,
-    /// Share of the pixel that shows a surface which the camera did not see in that place.
+    /// Share of the pixel that shows a surface which the camera did not see in that place; a small
+    /// share for one in other light (`common/moved`).
     pub(crate) moved: Texture,
 }
 

@@ -1,0 +1,47 @@
+// A surface of the toy that has not moved: the camera's own pixel, relit.
+//
+// Its colour is not a mean over neighbours, so that lines of the texture remain as they are, and both
+// lights are those of one point.
+// The importing shader declares `gbuffer_depth`, `appearance_source` and `rim`.
+
+//#import common/camera_paint
+//#import common/globals
+//#import common/depth
+//#import common/self_shadow
+//#import common/source
+//#import common/spread
+//#import common/toy_radiance
+
+// Positions of a normal distribution along one axis, in deviations, and their weights.
+// Source: Gauss-Hermite quadrature with three points.
+const NODE: f32 = 1.7320508;
+const SIDE_WEIGHT: f32 = 0.16666667;
+
+// The light on a point of the toy, as radiance over base colour: the mean over the picture's spread.
+// `place` is the point with its changes from a pixel to the next on the right, and below.
+fn light_on(is_physical: bool, place: mat3x3f, normal: vec3f) -> vec3f {
+  var received = vec4f(0.0);
+  for (var k = 0u; k < 9u; k++) {
+    let step = vec2f(vec2u(k % 3u, k / 3u)) - 1.0;
+    let offset_px = spread_px(NODE * step);
+    let weights = select(vec2f(1.0 - 2.0 * SIDE_WEIGHT), vec2f(SIDE_WEIGHT), step != vec2f(0.0));
+    let at = place * vec3f(1.0, offset_px);
+    received += weights.x * weights.y * light_received(is_physical, normal, at);
+  }
+  return toy_radiance_over_base(normal, received);
+}
+
+// Whether a pixel mixes the toy with a receiver alone, in known parts.
+fn is_unmixed(texel: vec2i) -> bool {
+  if !is_soft() { return false; }
+  let part = textureLoad(rim, texel, 0).a;
+  return part >= LEAST_PART && part < 1.0;
+}
+
+// Whether the camera's pixel at a texel of the region shows a surface of this depth, and no other one
+// of the toy.
+fn is_seen_still(in_region: vec2i, depth: f32) -> bool {
+  let texel = physical_texel(in_region);
+  if !is_in_physical_box(texel) || !is_same_surface(textureLoad(gbuffer_depth, texel, 0), depth) { return false; }
+  return number_at(textureLoad(appearance_source, texel, 0)) == number_of(vec2i(0)) || is_unmixed(texel);
+}
