@@ -113,7 +113,7 @@ impl Mark {
         is_possible.then_some(Self::PaintedThing { light })
     }
 
-    /// Whether the toy hides the thing, so that the picture shows the toy there.
+    /// Whether the mark has the light of a thing that the toy hides.
     #[must_use]
     pub fn is_behind_toy(self) -> bool {
         matches!(self, Self::HiddenThing { .. } | Self::PaintedThing { .. })

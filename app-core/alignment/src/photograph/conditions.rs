@@ -173,7 +173,7 @@ impl Photograph {
         })
     }
 
-    /// Gloss of the toy at its place, in given lights, by its pixels before things and beside them.
+    /// Gloss of the toy at its place, in given lights, by its pixels that no thing hides.
     pub(crate) fn gloss(
         &self,
         scene: &Scene,
@@ -182,7 +182,8 @@ impl Photograph {
     ) -> Result<Gloss, ToyError> {
         let shape = self.shape(scene, world_from_object)?;
         let paint = pose::Paint::new(scene, &self.camera_from_object(world_from_object))?;
-        let shown = things.map(|things| things.only(|mark| !mark.is_behind_toy()));
+        // Other marks of the toy's pixels are about what is behind it.
+        let shown = things.map(|things| things.only(|mark| mark == Mark::BeforeToy));
         let clear = shown.map(|others| self.pyramid.clear_of(others.marks()));
         let level = clear.as_ref().unwrap_or(&self.pyramid).level(0);
         let surfels = paint.surfels(level, &pose::covered(&shape, level), gloss::MOST_SURFELS);

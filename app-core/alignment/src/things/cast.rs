@@ -2,7 +2,10 @@
 //!
 //! No further shadow of the toy falls there, and the frame keeps them. A group of such pixels counts
 //! if it touches a thing, and if some of them did not get darker in the toy's shadow, or if it lies where
-//! the thing's shadow would fall if the thing were upright.
+//! the thing's shadow would fall if the thing were upright, below a single light.
+
+use std::cell::LazyCell;
+use std::collections::BTreeSet;
 
 use glam::IVec2;
 
@@ -13,7 +16,7 @@ use super::grown::Grown;
 use super::seeds::{Seed, Seeds};
 use crate::lights::Compared;
 use crate::median::median;
-use crate::picture::{Color, Mask, index_in, places};
+use crate::picture::{Color, Mask, index_in, places, square};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 
 /// Share of the light that the darkest part of the toy's shadow loses at least, part of it that
@@ -33,13 +36,15 @@ const LEAST_UNCHANGED: usize = 8;
 /// have: .45 for a post, whose depth makes the expected shadow longer, .21 and .22 for groups beside a
 /// cup and another post that are parts of a shadow, or two of them.
 const AGREES: f32 = 0.33;
+/// Minimum number of pixels that both have: that post has 401, and no capture 25 to 100.
+const LEAST_IN_SHADOW: usize = 50;
 
-/// The shadows of things in a level's plate.
+/// The shadows of things in a level's plate. `expected` are those of upright things, if they are needed.
 pub(super) fn shadows_of(
     things: &Grown,
     seeds: &Seeds,
     (compared, plate): (&[Compared], &Codes),
-    expected: &[Mask],
+    expected: impl FnOnce() -> Vec<Mask>,
 ) -> Vec<Vec<usize>> {
     let Some(left) = darkest(compared) else {
         return Vec::new();
@@ -59,22 +64,23 @@ pub(super) fn shadows_of(
         beside.mark(at);
     }
     let beside = beside.grown(BESIDE_PX);
-    let mut open = Mask::new(plate.size_px);
-    for at in compared.iter().map(|pixel| pixel.at) {
-        let is_toys = index_in(plate.size_px, at).is_some_and(|index| is_toy_shadow[index]);
-        if !is_toys && things.of_pixel(at).is_none() {
-            open.mark(at);
-        }
-    }
+    let upright = LazyCell::new(|| {
+        let is_open = |at: &IVec2| {
+            let index = index_in(plate.size_px, *at);
+            index.is_some_and(|index| !is_toy_shadow[index]) && things.of_pixel(*at).is_none()
+        };
+        let open = compared.iter().map(|pixel| pixel.at).filter(is_open);
+        UprightShadows::of(expected(), open, plate.size_px)
+    });
     let is_shadow = |group: &Vec<usize>| {
         let is_unchanged = |index: &&usize| seeds.seeds[**index] == Seed::Thing;
         group
             .iter()
             .any(|index| beside.has(place_of(*index, plate.size_px)))
             && (group.iter().filter(is_unchanged).count() >= LEAST_UNCHANGED
-                || expected
-                    .iter()
-                    .any(|shadow| agrees(group, shadow, (&open, plate.size_px))))
+                || touched(things, group)
+                    .into_iter()
+                    .any(|thing| upright.has(thing, group)))
     };
     let mut found = groups(plate.size_px, |index| {
         likelier[index] > SHADED && !is_toy_shadow[index]
@@ -83,19 +89,53 @@ pub(super) fn shadows_of(
     found
 }
 
-/// Whether a group is where a shadow is expected, as far as open pixels show.
-fn agrees(group: &[usize], expected: &Mask, (open, size_px): (&Mask, IVec2)) -> bool {
-    let mut in_group = Mask::new(size_px);
-    for index in group {
-        in_group.mark(place_of(*index, size_px));
+/// The things beside a group of pixels.
+fn touched(things: &Grown, group: &[usize]) -> BTreeSet<usize> {
+    let around = |index: &usize| square(place_of(*index, things.size_px()), BESIDE_PX);
+    let pixels = group.iter().flat_map(around);
+    pixels.filter_map(|at| things.of_pixel(at)).collect()
+}
+
+/// Where the shadow of each thing would fall if the thing were upright.
+struct UprightShadows {
+    size_px: IVec2,
+    /// Pixels of receivers that the toy's shadow does not reach.
+    open: Mask,
+    shadows: Vec<Mask>,
+    /// Number of open pixels of each shadow.
+    n_open: Vec<usize>,
+}
+
+impl UprightShadows {
+    fn of(shadows: Vec<Mask>, open_pixels: impl Iterator<Item = IVec2>, size_px: IVec2) -> Self {
+        let (mut open, mut n_open) = (Mask::new(size_px), vec![0; shadows.len()]);
+        for at in open_pixels {
+            open.mark(at);
+            for (n, shadow) in n_open.iter_mut().zip(&shadows) {
+                *n += usize::from(shadow.has(at));
+            }
+        }
+        Self {
+            size_px,
+            open,
+            shadows,
+            n_open,
+        }
     }
-    let (mut both, mut either) = (0, 0);
-    for at in places(size_px).filter(|at| open.has(*at)) {
-        let are_in = [expected.has(at), in_group.has(at)];
-        both += usize::from(are_in == [true; 2]);
-        either += usize::from(are_in != [false; 2]);
+
+    /// Whether a group lies where the shadow of a thing falls, as far as open pixels show.
+    fn has(&self, thing: usize, group: &[usize]) -> bool {
+        let Some((shadow, n_shadow)) = self.shadows.get(thing).zip(self.n_open.get(thing)) else {
+            return false;
+        };
+        let open = || {
+            let pixels = group.iter().map(|index| place_of(*index, self.size_px));
+            pixels.filter(|at| self.open.has(*at))
+        };
+        let both = open().filter(|at| shadow.has(*at)).count();
+        let either = n_shadow + open().count() - both;
+        both >= LEAST_IN_SHADOW && both as f32 > AGREES * either as f32
     }
-    both as f32 > AGREES * either as f32
 }
 
 /// The light that the darkest part of the toy's shadow has.

@@ -22,8 +22,9 @@ const NEAR: RangeInclusive<i32> = -5..=9;
 /// They do not help if a pattern repeats as far apart as the plane is off: of a book with squares of
 /// 10 mm that is listed 10 mm too large, all four sides stay. A line of squares within `AS_LISTED`
 /// has a contrast of 1.23, .47, 1.11 and .78, the true edge one of .54, .28, 1.45 and .25.
-/// To take the clearest line above a face that the camera sees finds the true edge there, at 1.3 times
-/// the contrast, but moves a side of the same book listed exactly to a line 12 mm inside, at 2.4 times.
+/// The clearest line above a face that the camera sees is the true edge there, with 1.3 times the
+/// contrast; but a side of the same book listed exactly would move to a line 12 mm inside, with 2.4
+/// times.
 const LISTED_M: f64 = 0.013;
 const MOST_STEPS: f64 = 100.0;
 const AS_LISTED: i32 = 3;

@@ -73,12 +73,17 @@ impl<'a> Feet<'a> {
         }
     }
 
+    /// Whether a pixel of a thing is the highest one above its foot.
+    pub(super) fn is_top(&self, at: IVec2) -> bool {
+        let from = at.as_dvec2() + 0.5;
+        self.thing_at(from - self.step_down(from)) != self.thing_at(from)
+    }
+
     /// The point that a pixel of a thing shows, above the thing's foot, in the space of the receiver.
     pub(super) fn point_above(&self, at: IVec2) -> Option<DVec3> {
         let thing = self.thing_at(at.as_dvec2())?;
         let from = at.as_dvec2() + 0.5;
-        let to = self.down.xy() - self.down.z * from;
-        let step = self.step_px * to / to.abs().max_element();
+        let step = self.step_down(from);
         let (mut foot, mut gap) = (from, 0);
         let mut next = from;
         while gap <= LARGEST_GAP && step.is_finite() {
@@ -101,6 +106,12 @@ impl<'a> Feet<'a> {
         let times = (foot - eye).xz().length() / along.xz().length();
         let height_m = eye.y + times * along.y;
         (height_m.is_finite() && height_m > 0.0).then(|| DVec3::new(foot.x, height_m, foot.z))
+    }
+
+    /// A step in pixels along an upright line; not finite where the line is seen as a point.
+    fn step_down(&self, from: DVec2) -> DVec2 {
+        let to = self.down.xy() - self.down.z * from;
+        self.step_px * to / to.abs().max_element()
     }
 
     fn thing_at(&self, px: DVec2) -> Option<usize> {

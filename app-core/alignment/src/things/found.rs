@@ -2,22 +2,14 @@
 
 use glam::{DVec2, IVec2};
 
-use super::groups::in_level;
 use super::grown::Grown;
 use super::known::Known;
 use super::planes::FoundPlane;
 use super::seeds::Colored;
 use super::shade::Brightness;
 use crate::lights::Compared;
-use crate::picture::{Color, Level, Mask, brightness, index_in, places};
+use crate::picture::{Color, Mask, places};
 use app_scene::things::{Mark, Things};
-
-/// Light over the expected one, with the toy's shadow, from which on a pixel is not in the shadow of a
-/// hand, or is in the outer half of its penumbra. With .5, .65 and .8 of a pixel of the level of the
-/// search the shadow's RMS error is 11.50, 11.53 and 11.60 codes beside a hand around a llama's legs, and
-/// 3.26, 3.26 and 3.24 beside one around a figure's; with .65 of a pixel of the largest level 11.50 and
-/// 3.26, and with all beside a hand as its shadow 12.60 and 4.94.
-const LIT: f32 = 0.65;
 
 /// Things in a level.
 pub(super) struct Found<'a> {
@@ -43,29 +35,6 @@ pub(super) struct Found<'a> {
     pub(super) compared: &'a [Compared],
     /// The colours of the things that plate and frame show.
     pub(super) colored: Colored,
-}
-
-/// Whether each pixel of the largest level has about the light that a level's pixels are expected to have. `gain` is
-/// the exposure of the frame over that of the plate.
-pub(super) fn lit<'a>(
-    largest: &'a Level,
-    (level, per_px): (&'a Level, f64),
-    (compared, gain): (&[Compared], f32),
-) -> impl Fn(IVec2) -> bool + use<'a> {
-    let expected = in_level(level.frame.size_px, compared, f32::NAN, |pixel| {
-        brightness(&pixel.model)
-    });
-    move |at| {
-        let there = ((at.as_dvec2() + 0.5) * per_px).floor().as_ivec2();
-        let index = index_in(level.frame.size_px, there);
-        let colors = largest
-            .frame
-            .get(at)
-            .zip(largest.plate.as_ref().and_then(|plate| plate.get(at)));
-        index.zip(colors).is_some_and(|(index, (frame, plate))| {
-            brightness(&frame) > LIT * gain * expected[index] * brightness(&plate)
-        })
-    }
 }
 
 impl Found<'_> {

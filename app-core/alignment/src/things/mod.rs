@@ -12,6 +12,7 @@ mod cast;
 mod codes;
 mod colors;
 mod edges;
+mod expected_light;
 mod extent;
 mod feet;
 mod found;
@@ -51,7 +52,8 @@ pub(crate) use listed::marks_of_listed;
 pub(crate) use memory::Memory;
 
 use codes::Codes;
-use found::{Found, lit};
+use expected_light::ExpectedLight;
+use found::Found;
 use grown::Grown;
 use known::Known;
 use memory::Place;
@@ -201,8 +203,8 @@ impl Sight<'_> {
             self.planes(things, grown.as_ref(), (level, toy), compared)
         });
         let grown = grown.map(|mut grown| {
-            let expected = self.upright_shadows(&grown, level);
-            let shadows = cast::shadows_of(&grown, &seeds, (&compared.pixels, plate), &expected);
+            let expected = || self.upright_shadows(&grown, level);
+            let shadows = cast::shadows_of(&grown, &seeds, (&compared.pixels, plate), expected);
             grown.absorb(&shadows);
             grown
         });
@@ -364,8 +366,15 @@ impl Sight<'_> {
             let color = frame.get(at);
             color.is_some_and(|color| found.is_own_color_in_frame(color))
         };
-        let gain = gain(level, found.compared, brightness).unwrap_or(f32::NAN);
-        let is_lit = lit(largest, (level, per_px), (found.compared, gain));
+        let light = found.in_frame.as_ref().and_then(|_| {
+            let gain = gain(level, found.compared, brightness)?;
+            Some(ExpectedLight::new(
+                largest,
+                (level, per_px),
+                (found.compared, gain),
+            ))
+        });
+        let is_lit = |at: IVec2| light.as_ref().is_some_and(|light| light.is_about_at(at));
         let mark = |at: IVec2| {
             let there = (at.as_dvec2() + 0.5) * per_px;
             let Some([frame, plate]) = &codes else {
@@ -378,7 +387,7 @@ impl Sight<'_> {
                     Mark::BeforeToy if !is_shade(at, frame, plate) => Mark::BeforeToy,
                     Mark::Thing if toy.coverage.at(at) > 0.0 || is_shade(at, frame, plate) => Mark::None,
                     // The table beside a hand is not all in its shadow.
-                    Mark::BeforeToy if is_lit(at) => Mark::None,
+                    Mark::BeforeToy if is_lit(at) && !is_own(at, frame) => Mark::None,
                     Mark::BeforeToy | Mark::Thing => Mark::Thing,
                     mark => mark,
                 },

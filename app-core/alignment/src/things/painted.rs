@@ -14,7 +14,7 @@ use app_scene::things::Mark;
 /// Distance in pixels from the toy up to which a pixel may be mixed with it, and from a thing's outline.
 const MIXED_PX: i32 = 2;
 /// Lines through a pixel, of which each has two directions. Without painting, with the first four of
-/// them, and with all and the mixed pixels, the shadow's RMS error is 13.11, 12.80 and 12.60 codes
+/// them, and with all and the mixed pixels, the shadow's RMS error was 13.11, 12.80 and 12.60 codes
 /// for a hand around a llama's legs, and 7.04, 6.24 and 6.05 for one around a heron's.
 const LINES: [IVec2; 8] = [
     IVec2::X,

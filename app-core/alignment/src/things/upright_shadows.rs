@@ -31,11 +31,10 @@ impl Sight<'_> {
         let light = light.moved(&(table.plane_from_camera * self.world_from_camera.inverse()));
         let mut shadows = vec![Mask::new(size_px); things.n_things()];
         for at in places(size_px) {
-            let Some(thing) = bodies.of(at) else { continue };
             // The shadow of what is below a top lies between the foot's and the top's.
-            if bodies.of(at - IVec2::Y) == Some(thing) {
+            let Some(thing) = bodies.of(at).filter(|_| feet.is_top(at)) else {
                 continue;
-            }
+            };
             let line = feet.point_above(at).and_then(|point| {
                 let foot = DVec3::new(point.x, 0.0, point.z);
                 let ends = [foot, shadow_of(point, &light)?].map(|end| pixel_of(end, table, level));
@@ -49,20 +48,14 @@ impl Sight<'_> {
     }
 }
 
-/// Marks the pixels of a line.
+/// Marks the pixels of a line, up to the length of a picture.
 fn mark(shadow: &mut Mask, [from, to]: [DVec2; 2], size_px: IVec2) {
-    let along = to - from;
-    #[allow(
-        clippy::cast_possible_truncation,
-        reason = "at most the diagonal of the picture"
-    )]
-    let n = along
-        .abs()
-        .max_element()
-        .min(f64::from(size_px.element_sum()))
-        .ceil() as i32;
-    for step in 0..=n {
-        let place = from + along * f64::from(step) / f64::from(n.max(1));
-        shadow.mark(place.floor().as_ivec2());
+    let length_px = (to - from).abs().max_element();
+    let longest_px = f64::from(size_px.element_sum());
+    #[allow(clippy::cast_possible_truncation, reason = "at most a picture's length")]
+    let n_steps = length_px.min(longest_px).ceil() as i32;
+    let step = (to - from) / length_px.max(1.0);
+    for k in 0..=n_steps {
+        shadow.mark((from + f64::from(k) * step).floor().as_ivec2());
     }
 }

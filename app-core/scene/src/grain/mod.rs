@@ -405,11 +405,20 @@ impl Statistics {
 
     /// Without the frame's rounding.
     fn without_rounding(self) -> Self {
-        let rounding = ROUNDING_CODES2 * light_per_code(self.light).powi(2);
         Self {
-            frame: self.frame - rounding,
+            frame: self.frame - self.rounding(),
             ..self
         }
+    }
+
+    fn rounding(&self) -> f64 {
+        ROUNDING_CODES2 * light_per_code(self.light).powi(2)
+    }
+
+    /// Whether a frame without its rounding has no noise. A plate that is sharper than the frame has more
+    /// texture, which counts against the frame's noise.
+    fn is_clean(&self) -> bool {
+        self.frame <= 0.0 && self.frame > -2.0 * self.rounding()
     }
 }
 
@@ -446,15 +455,18 @@ fn classes(statistics: Vec<Statistics>) -> Vec<Statistics> {
     .collect()
 }
 
-/// The classes in which the frame has noise; `None` if most blocks are of classes that have none: what
+/// The classes in which the frame has noise; `None` if more blocks are of classes that have none: what
 /// is left are rims of shadows and things. Measured: a path-traced picture equal to its plate but for the
 /// toy had 3.7 codes of noise in the plate by one class alone.
 fn noisy_of(classes: Vec<Statistics>) -> Option<Vec<Statistics>> {
-    let blocks_of = |classes: &[Statistics]| classes.iter().map(|class| class.n_blocks).sum::<f64>();
-    let n_blocks = blocks_of(&classes);
-    let mut noisy = classes;
-    noisy.retain(|class| class.frame > 0.0);
-    (2.0 * blocks_of(&noisy) >= n_blocks && n_blocks > 0.0).then_some(noisy)
+    let (noisy, others): (Vec<_>, Vec<_>) = classes.into_iter().partition(|class| class.frame > 0.0);
+    let n_clean: f64 = others
+        .iter()
+        .filter(|class| class.is_clean())
+        .map(|class| class.n_blocks)
+        .sum();
+    let n_noisy: f64 = noisy.iter().map(|class| class.n_blocks).sum();
+    (n_noisy > 0.0 && n_noisy >= n_clean).then_some(noisy)
 }
 
 /// 0 for an empty list.
