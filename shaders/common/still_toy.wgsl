@@ -2,7 +2,8 @@
 //
 // Its colour is not a mean over neighbours, so that lines of the texture remain as they are, and both
 // lights are those of one point.
-// The importing shader declares `gbuffer_depth`, `appearance_source` and `rim`.
+// The importing shader declares `gbuffer_depth`, `appearance_base`, `appearance_source`, `rim`,
+// `is_other_material` and `is_point_shown`.
 
 //#import common/camera_paint
 //#import common/globals
@@ -38,10 +39,15 @@ fn is_unmixed(texel: vec2i) -> bool {
   return part >= LEAST_PART && part < 1.0;
 }
 
-// Whether the camera's pixel at a texel of the region shows a surface of this depth, and no other one
-// of the toy.
-fn is_seen_still(in_region: vec2i, depth: f32) -> bool {
+// Whether the camera's pixel at a texel of the region shows a point of the physical toy at `physical_px`
+// and `depth` with the base colour `base`, and no other surface of the toy. A thin part of other paint
+// that lies on the point has about its depth, so other paint counts only if the point itself is shown.
+fn is_seen_still(in_region: vec2i, physical_px: vec2f, depth: f32, base: vec3f) -> bool {
   let texel = physical_texel(in_region);
   if !is_in_physical_box(texel) || !is_same_surface(textureLoad(gbuffer_depth, texel, 0), depth) { return false; }
-  return number_at(textureLoad(appearance_source, texel, 0)) == number_of(vec2i(0)) || is_unmixed(texel);
+  let is_one = number_at(textureLoad(appearance_source, texel, 0)) == number_of(vec2i(0));
+  if !is_one && !is_unmixed(texel) { return false; }
+  if !is_other_material(textureLoad(appearance_base, texel, 0).rgb, base) { return true; }
+  let low = floor(physical_px - 0.5);
+  return is_point_shown(low, physical_px - 0.5 - low, depth);
 }

@@ -280,7 +280,7 @@ fn fs_toy(
     let reflects_before = reflected_before(in_region, material, physical_in_anchor, physical_normal);
     let before = light_before(in_region, place, normal, physical_place, physical_normal, &after);
     relit_part = light_change(looks(base, after, reflects), looks(base, before, reflects_before));
-    if is_seen_still(in_region, clip.z / clip.w) {
+    if is_seen_still(in_region, physical_px, clip.z / clip.w, base) {
       let own = paint_color(physical_texel(in_region));
       paint = mix(paint, relit(own.rgb, after, before, unseen), own.a * (1.0 - is_moved));
     }
