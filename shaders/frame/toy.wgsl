@@ -261,7 +261,8 @@ fn fs_toy(
   let lit = toy_radiance_over_base(normal, received);
   let reflects = reflected_at(material, normal, in_anchor, received);
   let tint = tint_at(material, physical_in_anchor);
-  var unseen = fit.gain.rgb * base * tint * lit;
+  let model = fit.gain.rgb * base * tint;
+  var unseen = model * lit;
   var is_beside = false;
   let pixel = camera_color(physical_px, clip.z / clip.w, base, lit, unseen, stretch, &is_beside);
   if pixel.a == 0.0 && is_beside {
@@ -282,7 +283,7 @@ fn fs_toy(
     relit_part = light_change(looks(base, after, reflects), looks(base, before, reflects_before));
     if is_seen_still(in_region, physical_px, clip.z / clip.w, base) {
       let own = paint_color(physical_texel(in_region));
-      paint = mix(paint, relit(own.rgb, after, before, unseen), own.a * (1.0 - is_moved));
+      paint = mix(paint, relit(own.rgb, after, before, model * after), own.a * (1.0 - is_moved));
     }
   }
   let change = vec4f(written_change(is_moved, relit_part));
