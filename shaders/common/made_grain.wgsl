@@ -91,7 +91,7 @@ fn grained(color: vec3f, texel: vec2i, variance: vec3f) -> vec3f {
 }
 
 // A pixel with this part of a moved toy: its colours are means over neighbours, which have less
-// noise.
+// noise. A still surface in other light keeps the camera's.
 fn grained_toy(color: vec3f, texel: vec2i, moved: f32) -> vec3f {
   if !HAS_GRAIN { return color; }
   let of_toy = (1.0 - resampled_variance(drawing.grain_weights)) * variance_of(drawing.frame_noise, color);

@@ -12,14 +12,18 @@ fn moved_at(texel: vec2i) -> f32 {
   return max(moved_of(textureLoad(toy_moved, clamped, 0).r), textureLoad(moved_mask, clamped, 0).r);
 }
 
-// 1 if a texel of the toy box shows the same light, and it and its four neighbours the same surfaces
-// as the camera's picture. A still surface in other light mixes nothing into its neighbours that
-// they do not have.
-fn stillness(texel: vec2i) -> f32 {
+// The largest moved part of a texel of the toy box, its four neighbours and, in a soft picture, the
+// texels within its spread.
+fn moved_part(texel: vec2i) -> f32 {
   let beside = max(moved_at(texel - vec2i(1, 0)), moved_at(texel + vec2i(1, 0)));
   let above_and_below = max(moved_at(texel - vec2i(0, 1)), moved_at(texel + vec2i(0, 1)));
-  let moved = max(moved_at(texel), max(beside, above_and_below));
-  let most = max(moved, changed_of(textureLoad(toy_moved, clamped_to_box(texel), 0).r));
-  if most == 1.0 || !is_soft() { return 1.0 - most; }
-  return 1.0 - max(most, moved_around(texel));
+  let most = max(moved_at(texel), max(beside, above_and_below));
+  if most == 1.0 || !is_soft() { return most; }
+  return max(most, moved_around(texel));
+}
+
+// 1 if a texel of the toy box, whose moved part is `moved`, agrees with the camera's picture in its
+// light, too. A still surface in other light mixes nothing into its neighbours that they do not have.
+fn stillness(texel: vec2i, moved: f32) -> f32 {
+  return 1.0 - max(moved, changed_of(textureLoad(toy_moved, clamped_to_box(texel), 0).r));
 }

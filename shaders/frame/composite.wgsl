@@ -210,8 +210,9 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let in_box = box_texel(vec2i(texel));
   let toy = toy_layer(in_box, n_draws);
   if toy.a == 1.0 {
-    let still = stillness(in_box);
-    return vec4f(grained_toy(mix(toy.rgb, frame_color, still), vec2i(texel), 1.0 - still), 1.0);
+    let moved = moved_part(in_box);
+    let color = mix(toy.rgb, frame_color, stillness(in_box, moved));
+    return vec4f(grained_toy(color, vec2i(texel), moved), 1.0);
   }
   var change = vec4f(0.0);
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
@@ -219,10 +220,11 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   // Most pixels show the receiver alone and need no test of the toy.
   if change.a == 0.0 { return vec4f(grained_toy(laid, vec2i(texel), toy.a), 1.0); }
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
-  let still = stillness(in_box);
+  let moved = moved_part(in_box);
+  let still = stillness(in_box, moved);
   missing *= 1.0 - still * change.a;
   let color = max(mix(laid, kept, still * change.a), vec3f(0.0));
-  return vec4f(grained_toy(color, vec2i(texel), toy.a * (1.0 - still)), 1.0);
+  return vec4f(grained_toy(color, vec2i(texel), toy.a * moved), 1.0);
 }
 
 // The plate of a pixel under a model and the pooled residual, no brighter than white.

@@ -60,9 +60,6 @@ const SHOWN_DEPTH: f32 = 1e-4;
 // Weight of other paint around a visible point: with less of it lines are ragged, with all of it they
 // are soft. It reduced the bundled toy's error from 3.89 to 3.75 codes.
 const OTHER_PAINT_WEIGHT: f32 = 0.3;
-// Relative change of the light on a surface that is invisible, and that is fully visible.
-const SAME_LIGHT: f32 = 0.02;
-const OTHER_LIGHT: f32 = 0.08;
 // Weight of colours extrapolated past the outline, relative to the surface's own.
 const CARRIED_WEIGHT: f32 = 1e-3;
 // Weight of a pixel whose paint is hidden, relative to a visible one.
@@ -195,13 +192,6 @@ fn facing(in_anchor: vec3f, normal: vec3f) -> f32 {
   return dot(outward, normalize(globals.camera_in_anchor - in_anchor));
 }
 
-// Visible change of the light on a surface from `was_lit` to `lit`, from 0 to 1.
-fn light_change(lit: vec3f, was_lit: vec3f) -> f32 {
-  let brighter = max(largest(was_lit), largest(lit));
-  if brighter == 0.0 { return 0.0; }
-  return smoothstep(SAME_LIGHT, OTHER_LIGHT, largest(abs(lit - was_lit)) / brighter);
-}
-
 // The reflection of a still place before, over the gain.
 fn reflected_before(in_region: vec2i, material: u32, place: vec3f, normal: vec3f) -> vec3f {
   if !IS_GLOSSY { return vec3f(0.0); }
@@ -217,11 +207,13 @@ fn reflected_before(in_region: vec2i, material: u32, place: vec3f, normal: vec3f
 fn light_before(in_region: vec2i, shown: mat3x3f, normal: vec3f, before: mat3x3f, normal_before: vec3f, lit: ptr<function, vec3f>) -> vec3f {
   let seen = seen_under(clamped_to_physical_box(physical_texel(in_region)));
   if IS_COARSE { return seen; }
+  let is_same = light_change(*lit, seen) == 0.0;
   if is_soft() {
+    if is_same && is_lit_alike(shown, normal, before, normal_before) { return *lit; }
     *lit = light_on(false, shown, normal);
     return light_on(true, before, normal_before);
   }
-  if light_change(*lit, seen) == 0.0 { return *lit; }
+  if is_same { return *lit; }
   return toy_radiance_over_base(normal_before, light_received(true, normal_before, before[0]));
 }
 
@@ -261,7 +253,8 @@ fn fs_toy(
   let lit = toy_radiance_over_base(normal, received);
   let reflects = reflected_at(material, normal, in_anchor, received);
   let tint = tint_at(material, physical_in_anchor);
-  var unseen = fit.gain.rgb * base * tint * lit;
+  let model = fit.gain.rgb * base * tint;
+  var unseen = model * lit;
   var is_beside = false;
   let pixel = camera_color(physical_px, clip.z / clip.w, base, lit, unseen, stretch, &is_beside);
   if pixel.a == 0.0 && is_beside {
@@ -280,9 +273,9 @@ fn fs_toy(
     let reflects_before = reflected_before(in_region, material, physical_in_anchor, physical_normal);
     let before = light_before(in_region, place, normal, physical_place, physical_normal, &after);
     relit_part = light_change(looks(base, after, reflects), looks(base, before, reflects_before));
-    if is_seen_still(in_region, clip.z / clip.w) {
+    if is_seen_still(in_region, physical_px, clip.z / clip.w, base) {
       let own = paint_color(physical_texel(in_region));
-      paint = mix(paint, relit(own.rgb, after, before, unseen), own.a * (1.0 - is_moved));
+      paint = mix(paint, relit(own.rgb, after, before, model * after), own.a * (1.0 - is_moved));
     }
   }
   let change = vec4f(written_change(is_moved, relit_part));
