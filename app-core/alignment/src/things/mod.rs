@@ -387,7 +387,7 @@ impl Sight<'_> {
                     Mark::BeforeToy if !is_shade(at, frame, plate) => Mark::BeforeToy,
                     Mark::Thing if toy.coverage.at(at) > 0.0 || is_shade(at, frame, plate) => Mark::None,
                     // The table beside a hand is not all in its shadow.
-                    Mark::BeforeToy if is_lit(at) && !is_own(at, frame) => Mark::None,
+                    Mark::BeforeToy if is_lit(at) => Mark::None,
                     Mark::BeforeToy | Mark::Thing => Mark::Thing,
                     mark => mark,
                 },
