@@ -72,8 +72,9 @@ fn paint_color(texel: vec2i) -> vec4f {
 }
 
 // Factor for the model's colour at a point of which no camera pixel shows the paint: the camera's
-// brightness around a texel of the physical box over the model's, on surfaces that face up as much as
-// `up`. `tint` is the point's. The pooled tint may be that of other sides nearby.
+// brightness around a texel of the physical box over the model's, if that is brighter, down to a half,
+// on surfaces that face up as much as `up`. `tint` is the point's. The pooled tint may be that of other
+// sides nearby.
 fn brightness_beside(texel: vec2i, up: f32, tint: vec3f) -> f32 {
   var sum = vec2f(0.0);
   for (var y = -COMPARED_PX; y <= COMPARED_PX; y++) {
