@@ -6,6 +6,7 @@
 // `is_other_material` and `is_point_shown`.
 
 //#import common/camera_paint
+//#import common/channels
 //#import common/globals
 //#import common/depth
 //#import common/self_shadow
