@@ -19,7 +19,6 @@
 // projections). Here the blending of one pass accumulates, and not one pass per point.
 
 //#import common/flatten
-//#import common/plate_light
 //#import common/spread
 //#import common/tiles
 
@@ -91,11 +90,8 @@ fn in_plane_of(instance: u32, in_anchor: vec3f) -> vec3f {
 // Clip position of a point's shadow, moved so that its light point's position comes to the pixel's
 // centre, where the rasteriser samples.
 fn moved_clip(instance: u32, in_plane: vec3f) -> vec4f {
-  return moved_to_centre(instance, flatten(light_points.points[instance], in_plane));
-}
-
-fn moved_to_centre(instance: u32, shadow: vec3f) -> vec4f {
-  let clip = clip_from_flattened(instance / light_points.n_points, shadow);
+  let receiver = instance / light_points.n_points;
+  let clip = clip_from_flattened(receiver, flatten(light_points.points[instance], in_plane));
   let to_centre_px = (0.5 - position_in_texel(instance % light_points.n_points)) * light_points.texel_px;
   return clip + vec4f(clip.w * vec2f(2.0, -2.0) * to_centre_px / globals.region_size_px, 0.0, 0.0);
 }
@@ -164,66 +160,4 @@ fn fs_cover_plain(@location(0) height_m: f32) -> @location(0) vec4f {
 fn fs_cover(@location(0) height_m: f32, @location(1) @interpolate(flat, either) depth: f32) -> Hidden {
   // Parts under the receiver cast no shadow on it: their depth is not above that of any point.
   return Hidden(light_points.share, select(0.0, depth, height_m >= 0.0));
-}
-
-// Part of the light from a place of the first receiver that all lights together give it, before any
-// fit. After a blur, the shadow's error at a book whose lit table lights its side is .94 codes with
-// 0, and .67, .63, .64 and .66 with .4, .6, .8 and 1; at a box 1.22, and 1.11, 1.06 and 1.05 with .4,
-// .6 and .8.
-const LIT_PART: f32 = 0.6;
-// Clip position of what is not drawn.
-const OUTSIDE = vec4f(0.0, 0.0, 2.0, 1.0);
-
-struct OnUpright {
-  @builtin(position) clip: vec4f,
-  // Homogeneous point (x, z, w) of the first receiver, if a light's shadow there is drawn.
-  @location(0) on_first: vec3f,
-  // Heights that are positive where something is hidden: above the first receiver, and above the
-  // upright one.
-  @location(1) heights: vec2f,
-  // 0 for the toy itself, 1 for its shadow from the first light, and so on.
-  @location(2) @interpolate(flat, either) what: u32,
-  @location(3) @interpolate(flat, either) depth: f32,
-}
-
-// The ambient light of an upright receiver, such as a wall or the side of a book. Downwards it sees
-// the first receiver, and where that is in the toy's shadow, a part of its light is missing. So for
-// each direction the toy itself is drawn, then its shadow from each light: flattened onto the first
-// receiver, and from there along the direction. The shadow's depth is above that of the direction
-// before, and below that of the toy, which hides the first receiver.
-@vertex
-fn vs_upright(@location(0) in_anchor: vec3f, @builtin(instance_index) instance: u32) -> OnUpright {
-  let n_each = globals.n_lights + 1u;
-  let point = instance / n_each;
-  let what = instance % n_each;
-  let rank = f32(point % light_points.n_points);
-  if what == 0u {
-    let in_plane = in_plane_of(point, in_anchor);
-    return OnUpright(moved_clip(point, in_plane), vec3f(0.0), vec2f(0.0, in_plane.y), 0u, depth_of_rank(rank + 1.0));
-  }
-  let light = globals.lights[what - 1u];
-  let on_first = flatten(light, in_anchor);
-  let plane_from_anchor = globals.receivers[point / light_points.n_points].plane_from_anchor;
-  let in_plane = plane_from_anchor * vec4f(on_first.x, 0.0, on_first.yz);
-  let direction = light_points.points[point].xyz;
-  let shadow = vec3f(direction.y * in_plane.xz - in_plane.y * direction.xz, direction.y * in_plane.w);
-  let is_seen = light.y > 0.0 && dot(plane_from_anchor[1].xyz, direction) < 0.0;
-  let clip = select(OUTSIDE, moved_to_centre(point, shadow), is_seen);
-  let heights = vec2f(in_anchor.y, in_plane.y);
-  return OnUpright(clip, on_first, heights, what, depth_of_rank(rank + 0.125 * f32(what)));
-}
-
-// Where a thing's own shadow is, the toy's takes nothing.
-@fragment
-fn fs_upright(
-  @location(0) on_first: vec3f,
-  @location(1) heights: vec2f,
-  @location(2) @interpolate(flat, either) what: u32,
-  @location(3) @interpolate(flat, either) depth: f32,
-) -> Hidden {
-  var part = 1.0;
-  if what > 0u {
-    part = LIT_PART / f32(globals.n_lights) * unhidden(what - 1u, point_on(0u, on_first.xy / on_first.z));
-  }
-  return Hidden(part * light_points.share, select(0.0, depth, all(heights >= vec2f(0.0))));
 }

@@ -220,12 +220,6 @@ impl Region {
     /// that no top of a thing hides.
     #[must_use]
     pub fn falloff(&self, i: usize, point: ReceiverPoint) -> f64 {
-        self.plane_of(point).open_falloff(i, point.in_plane) * self.unhidden(i, point)
-    }
-
-    /// Part of light `i` that tops of things leave at a point.
-    #[must_use]
-    pub fn unhidden(&self, i: usize, point: ReceiverPoint) -> f64 {
         let own = self.plane_of(point);
         let from = DVec3::new(point.in_plane.x, 0.0, point.in_plane.y);
         let in_anchor = own.plane_from_anchor.inverse().transform_point3(from);
@@ -235,7 +229,7 @@ impl Region {
             let up = plane.plane_from_anchor.transform_vector3(in_anchor);
             plane.hidden(i, [here, up], self.light_radii[i])
         });
-        (1.0 - hidden).max(0.0)
+        own.open_falloff(i, point.in_plane) * (1.0 - hidden).max(0.0)
     }
 
     /// Part of the sky that the faces below other receivers leave at a point, by integration over

@@ -5,7 +5,7 @@
 
 use glam::{DVec2, DVec3, DVec4, UVec2};
 
-use super::model::{ReceiverPoint, Region};
+use super::model::Region;
 use super::real::{Real, Vector};
 
 /// Sample position of light point `i` of `n_points` within a pixel, from its top left corner, in
@@ -116,42 +116,6 @@ pub struct Caster<R = f64> {
     pub occluder: Occluder<R>,
     /// Homogeneous: (position, 1) or (direction, 0).
     pub light_points: Vec<DVec4>,
-    /// Whether these are directions of the ambient light, some of which show an upright receiver the
-    /// first one.
-    pub is_ambient: bool,
-}
-
-/// Part of the light from a place of the first receiver that all lights together give it.
-const LIT_PART: f64 = 0.6;
-
-/// Part of the light from a direction that an upright receiver lacks, because the first receiver, which it
-/// sees there, is in the mesh's shadow; 0 for another receiver.
-fn missing_below<R: Real>(
-    occluder: &Occluder<R>,
-    region: &Region,
-    (from, direction): (ReceiverPoint, DVec3),
-) -> f64 {
-    let plane = region.plane_of(from);
-    let anchor_from_plane = plane.plane_from_anchor.inverse();
-    let at = DVec3::new(from.in_plane.x, 0.0, from.in_plane.y);
-    let is_upright = anchor_from_plane.transform_vector3(DVec3::Y).y < 0.5;
-    let height = anchor_from_plane.transform_point3(at).y;
-    let fall = -anchor_from_plane.transform_vector3(direction).y;
-    if !is_upright || height < 0.0 || fall <= 0.0 {
-        return 0.0;
-    }
-    let seen = at + direction * (height / fall);
-    let in_anchor = anchor_from_plane.transform_point3(seen);
-    let point = ReceiverPoint {
-        receiver: 0,
-        in_plane: DVec2::new(in_anchor.x, in_anchor.z),
-    };
-    let lights = region.lights.iter().enumerate();
-    let missing = lights.map(|(i, in_anchor)| {
-        let is_hidden = in_anchor.y > 0.0 && occluder.stands_between(seen, plane.lights[i]);
-        f64::from(u8::from(is_hidden)) * region.unhidden(i, point)
-    });
-    LIT_PART * missing.sum::<f64>() / region.lights.len().max(1) as f64
 }
 
 /// Share of the light points, each sampled at its position, that the mesh hides from `texel` of a
@@ -192,12 +156,8 @@ pub fn hidden_share_from<R: Real>(
         let position = texel.as_dvec2() + place(i, caster.light_points.len());
         let in_plane = plane.plane_point(position * region_px_per_texel)?;
         // A point behind the receiver does not illuminate it.
-        if light_point.y > 0.0 && caster.occluder.hides(in_plane, *light_point) {
-            n_hidden += 1.0;
-        } else if caster.is_ambient {
-            let from = ReceiverPoint { receiver, in_plane };
-            n_hidden += missing_below(&caster.occluder, region, (from, light_point.truncate()));
-        }
+        let is_hidden = light_point.y > 0.0 && caster.occluder.hides(in_plane, *light_point);
+        n_hidden += f64::from(u8::from(is_hidden));
     }
     let n_points = caster.light_points.len() as f64;
     Some(n_hidden / n_points)

@@ -50,16 +50,9 @@ impl Stand {
     pub(crate) fn ambient_casters(&self, posed: &PosedMesh, n_directions: usize) -> Vec<Caster> {
         let directions = ambient_directions(n_directions);
         // Each receiver has its own hemisphere.
-        let casters = self.casters(posed, |_| {
+        self.casters(posed, |_| {
             directions.iter().map(|point| point.as_dvec4()).collect()
-        });
-        let casters = casters.into_iter();
-        casters
-            .map(|caster| Caster {
-                is_ambient: true,
-                ..caster
-            })
-            .collect()
+        })
     }
 
     fn casters(&self, posed: &PosedMesh, light_points: impl Fn(&DMat4) -> Vec<DVec4>) -> Vec<Caster> {
@@ -71,7 +64,6 @@ impl Stand {
             .map(|plane_from_anchor| Caster {
                 occluder: self.occluder_in(posed, &plane_from_anchor),
                 light_points: light_points(&plane_from_anchor),
-                is_ambient: false,
             })
             .collect()
     }

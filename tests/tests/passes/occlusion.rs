@@ -1,26 +1,18 @@
 //! `occlusion`: flattened meshes compared with rays.
 
-use std::fs;
-use std::sync::Arc;
-
-use app_core::gpu::ShaderTexts;
 use app_core::preset::Preset;
-use app_core::scene::Image;
 use app_core::shadow_style::ShadowStyle;
 use app_core::sharpness::{Sharpness, Spread};
-use app_pipeline::core::inspect::Inspect;
-use app_pipeline::readback::Map;
 use glam::DVec4;
 use reference::occlusion::Caster;
 use reference::raster::Raster;
 use reference::visibility::{soft_visibility_map, visibility_map};
 
-use crate::cores::any_core;
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::photograph;
-use crate::run::{Run, input, raster, runs, scene};
-use crate::setups::{FOUR_LIGHTS, SETUPS, SIDE, Setup, WALL};
+use crate::run::{Run, runs};
+use crate::setups::{FOUR_LIGHTS, SETUPS, Setup};
 use crate::stand::Stand;
 
 /// Share of a region's texels that may differ by more than half a step of one light point.
@@ -136,88 +128,6 @@ fn visibility_of_the_ambient_light() {
             &run.shown_ambient,
             ("shown ambient", MAX_AMBIENT_SHARE, AMBIENT_STORED),
         );
-    }
-}
-
-const PASS: &str = "lighting/occlusion";
-/// Half the share of one of the 64 directions of `balanced`.
-const HALF_A_DIRECTION: f64 = 0.5 / 64.0;
-
-/// The maps of the ambient light before and after, drawn by `text`, and the references', of a setup
-/// with a side or a wall that sees the toy's shadows on the table.
-fn ambient_of(setup: Setup, text: &str) -> Vec<(f64, f64)> {
-    let stand = Stand::new(setup);
-    let mut core = any_core();
-    core.replace_shaders([(PASS.to_owned(), text.to_owned())].into_iter().collect())
-        .unwrap();
-    core.set_scene(scene(&stand, &blank(&stand)), Preset::Balanced)
-        .unwrap();
-    core.frame(&input(&stand, &blank(&stand))).unwrap();
-    let plan = core.plan().unwrap().clone();
-    let region = stand.region(&plan.region);
-    let maps = [
-        (Map::PhysicalAmbient, &stand.physical),
-        (Map::Ambient, &stand.shown),
-    ];
-    let maps = maps.map(|(map, posed)| (raster(&core.read_map(map).unwrap().unwrap()), posed));
-    core.replace_shaders(ShaderTexts::default()).unwrap();
-    let pairs = maps.map(|(actual, posed)| {
-        let casters = stand.ambient_casters(posed, plan.n_ambient_directions);
-        let expected = visibility_map(&casters, &region, actual.size());
-        let actual = actual.texels().iter().map(|texel| texel.x);
-        actual.zip(expected.texels().iter().copied()).collect::<Vec<_>>()
-    });
-    pairs.concat()
-}
-
-/// A uniform picture, since visibility is independent of what it shows.
-fn blank(stand: &Stand) -> Arc<Image> {
-    let [width_px, height_px] = stand.setup.image_px.to_array();
-    Arc::new(Image {
-        width_px,
-        height_px,
-        rgba8: vec![128; 4 * (width_px * height_px) as usize],
-    })
-}
-
-fn shader() -> String {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../shaders");
-    fs::read_to_string(format!("{folder}/{PASS}.wgsl")).unwrap()
-}
-
-#[test]
-fn a_side_sees_the_shadows_on_the_table() {
-    let pairs = ambient_of(SIDE, &shader());
-    let dark = pairs.iter().filter(|(_, expected)| *expected < 0.8).count();
-    assert!(dark > 20, "{dark} texels are dark");
-    let allowed = (HALF_A_DIRECTION, MAX_AMBIENT_SHARE);
-    Errors::between(pairs).check("side", allowed, MAX_POINTS * 2.0 * HALF_A_DIRECTION);
-}
-
-#[test]
-fn a_fault_in_the_light_of_a_side_is_found() {
-    let text = shader();
-    let faults = [
-        ("LIT_PART: f32 = 0.6", "LIT_PART: f32 = 0.0"),
-        ("LIT_PART: f32 = 0.6", "LIT_PART: f32 = 0.9"),
-        ("0.125 * f32(what)", "0.125"),
-        ("depth_of_rank(rank + 1.0)", "depth_of_rank(rank + 0.1)"),
-        (
-            "* unhidden(what - 1u, point_on(0u, on_first.xy / on_first.z))",
-            "",
-        ),
-        ("direction) < 0.0", "direction) < 2.0"),
-        ("direction.y * in_plane.w", "direction.y"),
-        ("all(heights >= vec2f(0.0))", "heights.x >= 0.0"),
-    ];
-    for (from, to) in faults {
-        assert_eq!(text.matches(from).count(), 1, "places of \"{from}\"");
-        let is_found = [SIDE, WALL].into_iter().any(|setup| {
-            let errors = Errors::between(ambient_of(setup, &text.replace(from, to)));
-            errors.share_beyond(HALF_A_DIRECTION) > MAX_AMBIENT_SHARE
-                || errors.max() > MAX_POINTS * 2.0 * HALF_A_DIRECTION
-        });
-        assert!(is_found, "\"{to}\" for \"{from}\" is not found");
     }
 }
 

@@ -27,8 +27,6 @@ pub(crate) enum Beside {
     Book,
     /// Three equal books, each lying on another.
     Pile,
-    /// A book, of which the top and the side before the camera are receivers.
-    Side,
     /// A ramp with its high edge to the left: its top is tilted.
     Ramp,
 }
@@ -84,16 +82,6 @@ const RAMP_BULB: Light = Light::Sphere {
     radius_m: 0.03,
 };
 
-/// Behind the toy and the book.
-const FAR_BULB: Light = Light::Sphere {
-    position_in_world: DVec3::new(0.35, 0.45, -0.5),
-    radius_m: 0.03,
-};
-const LEFT_BULB: Light = Light::Sphere {
-    position_in_world: DVec3::new(0.1, 0.5, -0.3),
-    radius_m: 0.02,
-};
-
 const NEAR: Setup = Setup {
     name: "bulb",
     image_px: UVec2::new(97, 61),
@@ -132,14 +120,6 @@ pub(crate) const RAMP: Setup = Setup {
     name: "ramp",
     lights: &[RAMP_BULB, BULB],
     beside: Beside::Ramp,
-    ..BOOK
-};
-/// The side of the book is lit by the table alone, on which the toy's shadows fall before it, partly
-/// within the book's own.
-pub(crate) const SIDE: Setup = Setup {
-    name: "side",
-    lights: &[FAR_BULB, LEFT_BULB],
-    beside: Beside::Side,
     ..BOOK
 };
 /// Ambient light alone.

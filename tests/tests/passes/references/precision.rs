@@ -19,7 +19,6 @@ fn shadow<R: Real>() -> Raster<f64> {
     let caster = Caster {
         occluder: square::<R>(),
         light_points,
-        is_ambient: false,
     };
     visibility_map(&[caster], &region, region.size_px)
 }

@@ -172,7 +172,6 @@ fn map_looks_through_the_four_positions_of_a_pixel() {
     let caster: Caster = Caster {
         occluder: Occluder::new(&corners, &[0, 1, 2, 0, 2, 3]),
         light_points: vec![DVec4::Y; 4],
-        is_ambient: false,
     };
     let map = visibility_map(&[caster], &region, region.size_px);
     // The edge is in the centre of column 69: two of four positions are on each side.

@@ -209,9 +209,6 @@ pub(crate) struct Pass {
 
 struct Draws {
     cover: CountingDraws,
-    /// Counts on an upright receiver, on which the light from the first one is missing, too, where
-    /// that is in shadow; for the ambient light alone.
-    upright: Option<Draw>,
     /// Masks pixels that show another receiver, if there are several.
     route: Draw,
 }
@@ -233,13 +230,7 @@ impl Draws {
             depth: Some(ordered(CompareFunction::Greater)),
             ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
         };
-        let upright = DrawSpec {
-            vertex: "vs_upright",
-            fragment: "fs_upright",
-            ..cover.clone()
-        };
         Self {
-            upright: (format == AMBIENT_FORMAT).then(|| gpu.draw(&upright)),
             // A face that is counter-clockwise from outside is counter-clockwise in the shadow,
             // too: light and camera are above the receiver.
             cover: CountingDraws::new(gpu, &cover),
@@ -305,16 +296,9 @@ impl Pass {
                     render.begin(&draws.route, &groups);
                     render.draw(0..3, receiver..receiver + 1);
                 }
-                let instances = |n: u32| receiver * n..(receiver + 1) * n;
-                if let Some(upright) = draws.upright.as_ref().filter(|_| inputs.sees_shadows(receiver)) {
-                    let n_each = 1 + inputs.globals.uniform.n_lights;
-                    render.begin(upright, &groups);
-                    corners.draw_each(&mut render, inputs.pose, instances(n_each * points.n_points));
-                    continue;
-                }
+                let instances = receiver * points.n_points..(receiver + 1) * points.n_points;
                 let n_plain = inputs.n_whole_shadows(points, receiver);
                 let drawn = (&corners, inputs.pose);
-                let instances = instances(points.n_points);
                 draws.cover.count(&mut render, &groups, drawn, instances, n_plain);
             }
         }
@@ -343,12 +327,6 @@ impl<'a> Inputs<'a> {
             lod: self.caster,
         };
         self.toy.corners(gpu, &seen, target)
-    }
-
-    /// Whether a receiver is lit by the first one, on which lights cast shadows.
-    fn sees_shadows(&self, receiver: u32) -> bool {
-        let globals = self.globals.uniform;
-        globals.n_lights > 0 && globals.is_upright(receiver as usize)
     }
 
     /// Number of a light's points, from the first on, whose shadows of the toy on a receiver need
