@@ -57,6 +57,14 @@ fn centre(pixel: UVec2) -> DVec2 {
     pixel.as_dvec2() + 0.5
 }
 
+/// Codes of a painted pixel in a part of the light.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
+fn teal_codes(at: UVec2, left: f32) -> [u8; 3] {
+    // Not of one code, as no object is.
+    let grain = ((7 * at.x + 13 * at.y) % 5) as u8;
+    TEAL.map(|teal| (255.0 * srgb_from_linear(left * teal)).round() as u8 + grain)
+}
+
 /// The point of the table on which the shadow of a point falls.
 fn shadow_of(scene: &Scene, point: DVec3) -> DVec3 {
     let to_light = scene.lights[0].vector_from(point);
@@ -94,14 +102,8 @@ fn found(has_shadow: bool) -> Option<Things> {
             1.0
         };
         let index = 4 * (at.y * frame.width_px + at.x) as usize;
-        // Not of one code, as no object is.
-        let grain = ((7 * at.x + 13 * at.y) % 5) as u8;
-        #[allow(clippy::cast_possible_truncation, reason = "a code")]
-        let code = |light: f32| (255.0 * srgb_from_linear(light)).round() as u8 + grain;
-        for (channel, teal) in TEAL.into_iter().enumerate() {
-            frame.rgba8[index + channel] = code(left * teal);
-            plate.rgba8[index + channel] = code(teal);
-        }
+        frame.rgba8[index..index + 3].copy_from_slice(&teal_codes(at, left));
+        plate.rgba8[index..index + 3].copy_from_slice(&teal_codes(at, 1.0));
     }
     let mut scene = Scene::clone(scene);
     scene.plates[0].image = Arc::new(plate);
@@ -177,11 +179,9 @@ fn part_marked((scene, input): (&Scene, &FrameInput), dark: &BTreeSet<[u32; 2]>)
         }
         let rows = |x: u32| POST_TOP..foot_row_of_post(f64::from(x)) as u32;
         let [first, end] = POST_COLUMNS;
-        for [x, y] in (first..end).flat_map(|x| rows(x).map(move |y| [x, y])) {
-            // Not of one code, as no object is.
-            let grain = ((7 * x + 13 * y) % 5) as u8;
-            let codes = TEAL.map(|teal| (255.0 * srgb_from_linear(teal)).round() as u8 + grain);
-            image.rgba8[4 * index_of([x, y])..4 * index_of([x, y]) + 3].copy_from_slice(&codes);
+        for at in (first..end).flat_map(|x| rows(x).map(move |y| [x, y])) {
+            let codes = teal_codes(UVec2::from(at), 1.0);
+            image.rgba8[4 * index_of(at)..4 * index_of(at) + 3].copy_from_slice(&codes);
         }
     }
     let mut scene = Scene::clone(scene);

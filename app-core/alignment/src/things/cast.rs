@@ -12,11 +12,11 @@ use glam::IVec2;
 use super::codes::Codes;
 use super::colors::Colors;
 use super::groups::{groups, place_of};
-use super::grown::Grown;
+use super::grown::{Grown, TOUCH_PX};
 use super::seeds::{Seed, Seeds};
 use crate::lights::Compared;
 use crate::median::median;
-use crate::picture::{Color, Mask, index_in, places, square};
+use crate::picture::{Color, Mask, index_in, places};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 
 /// Share of the light that the darkest part of the toy's shadow loses at least, part of it that
@@ -28,8 +28,6 @@ const LEAST_PIXELS: usize = 30;
 /// this radius in pixels.
 const SHADED: f32 = 1.5;
 const MEAN_PX: i32 = 2;
-/// Distance in pixels from a thing.
-const BESIDE_PX: i32 = 3;
 /// Minimum number of pixels of a group that stay as bright as in the plate.
 const LEAST_UNCHANGED: usize = 8;
 /// Smallest part of the pixels of a group and of the expected shadow of an upright thing that both
@@ -63,7 +61,7 @@ pub(super) fn shadows_of(
     for at in places(plate.size_px).filter(|at| things.of_pixel(*at).is_some()) {
         beside.mark(at);
     }
-    let beside = beside.grown(BESIDE_PX);
+    let beside = beside.grown(TOUCH_PX);
     let upright = LazyCell::new(|| {
         let is_open = |at: &IVec2| {
             let index = index_in(plate.size_px, *at);
@@ -77,23 +75,16 @@ pub(super) fn shadows_of(
         group
             .iter()
             .any(|index| beside.has(place_of(*index, plate.size_px)))
-            && (group.iter().filter(is_unchanged).count() >= LEAST_UNCHANGED
-                || touched(things, group)
-                    .into_iter()
-                    .any(|thing| upright.has(thing, group)))
+            && (group.iter().filter(is_unchanged).count() >= LEAST_UNCHANGED || {
+                let touched: BTreeSet<usize> = things.touched(group).collect();
+                touched.into_iter().any(|thing| upright.has(thing, group))
+            })
     };
     let mut found = groups(plate.size_px, |index| {
         likelier[index] > SHADED && !is_toy_shadow[index]
     });
     found.retain(is_shadow);
     found
-}
-
-/// The things beside a group of pixels.
-fn touched(things: &Grown, group: &[usize]) -> BTreeSet<usize> {
-    let around = |index: &usize| square(place_of(*index, things.size_px()), BESIDE_PX);
-    let pixels = group.iter().flat_map(around);
-    pixels.filter_map(|at| things.of_pixel(at)).collect()
 }
 
 /// Where the shadow of each thing would fall if the thing were upright.

@@ -36,8 +36,8 @@ const FARTHEST: f32 = 40.0;
 /// Minimum number of seeds of a thing that is not before the toy: fewer may come from the camera's
 /// own processing.
 pub(super) const LEAST_ALONE: usize = 60;
-/// Distance in pixels at which an added group touches a thing, and its distance from the receiver.
-const TOUCH_PX: i32 = 3;
+/// Distance in pixels at which a group touches a thing, and an added one's distance from the receiver.
+pub(super) const TOUCH_PX: i32 = 3;
 const ABSORBED: f32 = 10.0;
 
 /// Things of a level.
@@ -108,15 +108,20 @@ impl Grown {
         }
     }
 
+    /// For each pixel of a group, the things of the pixels around it.
+    pub(super) fn touched(&self, group: &[usize]) -> impl Iterator<Item = usize> {
+        group.iter().flat_map(|index| {
+            let at = place_of(*index, self.size_px);
+            square(at, TOUCH_PX).filter_map(|at| self.of_pixel(at))
+        })
+    }
+
     /// Adds groups of pixels, each to the thing that most of it touches or is part of.
     pub(super) fn absorb(&mut self, groups: &[Vec<usize>]) {
         for group in groups {
-            let touched = group.iter().flat_map(|index| {
-                let at = place_of(*index, self.size_px);
-                square(at, TOUCH_PX).filter_map(|at| self.of_pixel(at))
-            });
             let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
-            touched.for_each(|thing| *counts.entry(thing).or_default() += 1);
+            self.touched(group)
+                .for_each(|thing| *counts.entry(thing).or_default() += 1);
             let most = counts.into_iter().max_by_key(|(_, n)| *n);
             let Some(thing) = most.and_then(|(thing, _)| u32::try_from(thing).ok()) else {
                 continue;

@@ -122,6 +122,12 @@ impl Sight<'_> {
         self.pyramid.largest_within(MOST_PIXELS)
     }
 
+    /// A level's pixels per pixel of the largest one. A level omits an odd last row and column: it is
+    /// half as large as the one above, not stretched.
+    fn per_px(&self, level: &Level) -> f64 {
+        level.intrinsics.fx_px / self.pyramid.level(0).intrinsics.fx_px
+    }
+
     fn compared(&self, level: &Level) -> Option<Comparison> {
         let seen = (self.shape, self.receivers);
         crate::lights::compare(self.lights, seen, level, self.world_from_camera)
@@ -142,7 +148,7 @@ impl Sight<'_> {
         let (size_px, marks) = self.marks(level, &found);
         let marks = match self.memory {
             Some(before) => {
-                let per_px = level.intrinsics.fx_px / self.pyramid.level(0).intrinsics.fx_px;
+                let per_px = self.per_px(level);
                 before.steadied(&memory, (size_px, per_px), marks)
             }
             None => marks,
@@ -336,7 +342,7 @@ impl Sight<'_> {
         (size_px, mut marks): (IVec2, Vec<Mark>),
         raised: &[RaisedPoint],
     ) -> Vec<Mark> {
-        let per_px = level.intrinsics.fx_px / self.pyramid.level(0).intrinsics.fx_px;
+        let per_px = self.per_px(level);
         let thing_at = |at: IVec2| found.thing_at((at.as_dvec2() + 0.5) * per_px);
         let of_points = places(size_px)
             .zip(raised)
@@ -354,9 +360,7 @@ impl Sight<'_> {
     fn marks(&self, level: &Level, found: &Found<'_>) -> (IVec2, Vec<Mark>) {
         let largest = self.pyramid.level(0);
         let size_px = largest.frame.size_px;
-        // A level omits an odd last row and column: it is half as large as the one above, not
-        // stretched.
-        let per_px = level.intrinsics.fx_px / largest.intrinsics.fx_px;
+        let per_px = self.per_px(level);
         let toy = Toy::of(self, largest);
         let codes = largest
             .plate
@@ -405,7 +409,7 @@ impl Sight<'_> {
         let Some(plate) = largest.plate.as_ref().filter(|_| found.in_frame.is_some()) else {
             return;
         };
-        let per_px = level.intrinsics.fx_px / largest.intrinsics.fx_px;
+        let per_px = self.per_px(level);
         let mut things = Mask::new(largest.frame.size_px);
         for (at, mark) in places(largest.frame.size_px).zip(marks.iter()) {
             let is_thing = matches!(mark, Mark::Thing | Mark::BeforeToy);

@@ -60,7 +60,7 @@ impl Sight<'_> {
             return known.to_vec();
         }
         let largest = self.pyramid.level(0);
-        let per_px = level.intrinsics.fx_px / largest.intrinsics.fx_px;
+        let per_px = self.per_px(level);
         let body = |(at, mark): (IVec2, &Mark)| match mark {
             Mark::Thing | Mark::BeforeToy | Mark::HiddenThing { .. } => {
                 found.body_at((at.as_dvec2() + 0.5) * per_px)
