@@ -1,0 +1,47 @@
+//! CPU reference of `common/behind_outline.wgsl`: the background of the toy's outline in a blurred picture.
+
+use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
+
+use super::occlusion::spread_position;
+use super::raster::Raster;
+
+/// Number of positions of a pixel, and rows from one to the next.
+const N_PLACES: u32 = 32;
+const ROW_STEP: u32 = 9;
+/// Light below which a plate's colour is mostly rounding: that of code 10.
+const DARKEST: f64 = 0.003_035_27;
+
+/// Factor of the background's colour at a texel `in_region`, which is `in_box` in the toy's box: the
+/// plate where the toy leaves the background free, over the plate at the texel itself. `covered` is the
+/// toy's share of each texel of its box, and `root` that of the blur's covariance.
+#[must_use]
+pub fn behind_outline(
+    plate: &Raster<DVec4>,
+    covered: &Raster<f64>,
+    root: [f64; 3],
+    [in_region, in_box]: [UVec2; 2],
+) -> DVec3 {
+    let last = covered.size().as_ivec2() - 1;
+    let free = (0..N_PLACES).map(|k| {
+        let column = (f64::from(k) + 0.5) / f64::from(N_PLACES);
+        let row = (f64::from(k * ROW_STEP % N_PLACES) + 0.5) / f64::from(N_PLACES);
+        let from_px = spread_position(DVec2::new(column, row), root) - 0.5;
+        let place = (in_box.as_dvec2() + 0.5 + from_px).floor().as_ivec2();
+        let place = place.clamp(IVec2::ZERO, last).as_uvec2();
+        (from_px, 1.0 - covered.at(place))
+    });
+    let (sum_px, n_free) = free.fold((DVec2::ZERO, 0.0), |(sum_px, n), (from_px, part)| {
+        (sum_px + part * from_px, n + part)
+    });
+    let middle_px = if n_free > 0.0 {
+        sum_px / n_free
+    } else {
+        DVec2::ZERO
+    };
+    let own = plate.at(in_region);
+    let seen = plate.bilinear(in_region.as_dvec2() + 0.5 + middle_px);
+    if own.w < 1.0 || seen.w < 1.0 - 1e-9 || own.truncate().min_element() < DARKEST {
+        return DVec3::ONE;
+    }
+    seen.truncate() / own.truncate()
+}

@@ -1,0 +1,121 @@
+//! `common/behind_outline`: the background of the outline in a blurred picture.
+
+use app_core::sharpness::Spread;
+use app_pipeline::geometry::rect::PixelRect;
+use glam::{DVec3, DVec4, UVec2};
+use reference::behind_outline::behind_outline;
+use reference::raster::{Raster, texels_of};
+
+use crate::alone::{Draw, check_faults, source};
+use crate::device::Device;
+use crate::errors::{Errors, channels};
+use crate::numbers::number;
+use crate::scrambled::{buffers, views};
+use crate::setups::WALL;
+use crate::stand::Stand;
+
+/// The pass of the registry that contains it.
+const PASS: &str = "composite";
+/// The factor at each pixel of the toy's box.
+const PROBE: &str = "
+@fragment fn fs_probe(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  let texel = vec2i(position.xy) + vec2i(globals.toy_box_origin_px);
+  return vec4f(behind_outline(texel, 1u), 1.0);
+}";
+/// Reaches the region's left border, so that positions beyond it occur.
+const BOX: PixelRect = PixelRect {
+    origin_px: UVec2::new(0, 13),
+    size_px: UVec2::new(97, 71),
+};
+const SPREAD: Spread = Spread {
+    xx_px2: 2.5,
+    xy_px2: -0.8,
+    yy_px2: 1.1,
+};
+/// Relative to factors up to 20.
+const ALLOWED: f64 = 1e-3;
+
+/// Many colours, some as dark as unusable pixels, and some that no plate shows.
+fn plate(size: UVec2) -> Raster<DVec4> {
+    Raster::from_fn(size, |at| {
+        let color = DVec3::from([1, 2, 3].map(|seed| 0.04 + number(at, seed)));
+        let is_dark = number(at / 3, 4) < 0.1;
+        let color = if is_dark { 0.01 * color } else { color };
+        let alpha = if number(at / 9, 5) < 0.1 { 0.25 } else { 1.0 };
+        color.as_vec3().as_dvec3().extend(alpha)
+    })
+}
+
+/// The toy's share of a pixel: patches of all, of parts, and of nothing.
+fn covered(at: UVec2) -> f64 {
+    let patch = number(at / 11, 6);
+    let part = (4.0 * number(at, 7)).floor() / 4.0;
+    [0.0, part, 1.0][(3.0 * patch) as usize]
+}
+
+/// Errors of the factors that `source` computes.
+fn errors(source: &str) -> Errors {
+    let device = Device::shared();
+    let stand = Stand::new(WALL);
+    let rect = PixelRect {
+        origin_px: UVec2::ZERO,
+        size_px: WALL.image_px,
+    };
+    let globals = stand.globals(&rect).with_boxes(&BOX, &BOX).with_spread(SPREAD);
+    let plate = plate(rect.size_px);
+    let covered = Raster::from_fn(BOX.size_px, covered);
+    let maps = [device.map(&plate), device.map(&covered.map(DVec4::splat))];
+    let uniform = [device.uniform(&globals)];
+    // Only two groups are bound here.
+    let source = source
+        .replace("@group(2) @binding(0)", "@group(1) @binding(20)")
+        .replace("@group(3) @binding(1)", "@group(1) @binding(21)")
+        // One draw is read.
+        .replace("textureLoad(toy_1, texel, 0)", "first")
+        .replace("textureLoad(toy_2, texel, 0)", "first")
+        .replace("textureLoad(toy_3, texel, 0)", "first");
+    let source = format!("{source}{PROBE}");
+    let draw = Draw::of(&source, "fs_probe", BOX.size_px);
+    let actual = device.draw(draw, [&buffers(0, &uniform), &views(20, &maps)]);
+    let root = [0, 1, 2].map(|k| f64::from(globals.spread[k]));
+    let mut n_other = 0;
+    let pairs = texels_of(BOX.size_px).flat_map(|at| {
+        let expected = behind_outline(&plate, &covered, root, [BOX.origin_px + at, at]);
+        n_other += u32::from(expected != DVec3::ONE);
+        channels(actual.at(at).truncate(), expected)
+    });
+    let errors = Errors::between(pairs.collect::<Vec<_>>());
+    assert!(n_other > 3000, "{n_other} factors are not 1");
+    errors
+}
+
+#[test]
+fn the_background_of_an_outline_is_what_the_toy_leaves_free() {
+    errors(&source(PASS)).check_all("background of the outline", ALLOWED);
+}
+
+#[test]
+fn a_fault_in_the_background_of_an_outline_is_found() {
+    let faults = [
+        ("OUTLINE_ROW_STEP: u32 = 9u", "OUTLINE_ROW_STEP: u32 = 5u"),
+        ("(1.0 - drawn_toy(tap, n_draws).a)", "drawn_toy(tap, n_draws).a"),
+        ("floor(from_px + 0.5)", "floor(from_px)"),
+        ("sum.xy / sum.z, sum.z > 0.0", "sum.xy / 32.0, true"),
+        ("own.a == 1.0 && free.a", "free.a"),
+        ("&& free.a == 1.0", ""),
+        (
+            "all(own.rgb >= vec3f(DARKEST_USABLE))",
+            "any(own.rgb >= vec3f(DARKEST_USABLE))",
+        ),
+        (
+            "select(vec3f(1.0), free.rgb / own.rgb",
+            "select(vec3f(1.0), own.rgb / free.rgb",
+        ),
+        (
+            "vec2i(low + corner), vec2i(0), last)",
+            "vec2i(low + corner), vec2i(1), last)",
+        ),
+        ("least = min(least, one.a);", ""),
+    ];
+    check_faults(PASS, &faults, ALLOWED, errors);
+}
