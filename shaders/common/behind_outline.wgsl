@@ -6,8 +6,8 @@
 // The importing shader declares `plate`, and those of `drawn_toy`.
 
 //#import common/drawn_toy
+//#import common/fit
 //#import common/globals
-//#import common/pixel
 //#import common/spread
 
 // Rows of the lattice from one column's position to the next.
@@ -43,11 +43,14 @@ fn middle_of_free_px(in_box: vec2i, n_draws: u32) -> vec2f {
   return select(vec2f(0.0), sum.xy / sum.z, sum.z > 0.0);
 }
 
-// Factor of the background's colour at a texel of the region, at the toy's soft outline: 1 where plates
-// do not show it.
-fn behind_outline(texel: vec2i, n_draws: u32) -> vec3f {
+// The background at a texel of the region, at the toy's soft outline, if `color` is its colour by the plate
+// at the texel itself. It changes as the plate does, in as much light as falls there, at most all of it: a
+// factor would be without limit on a dark plate. It stays where plates do not show the place.
+fn behind_outline(texel: vec2i, color: vec3f, n_draws: u32) -> vec3f {
   let own = textureLoad(plate, texel, 0);
   let free = plate_between(vec2f(texel) + middle_of_free_px(box_texel(texel), n_draws));
-  let is_told = own.a == 1.0 && free.a == 1.0 && all(own.rgb >= vec3f(DARKEST_USABLE));
-  return select(vec3f(1.0), free.rgb / own.rgb, is_told);
+  let lit = dot(fit.gain.rgb, own.rgb);
+  if free.a < 1.0 || lit <= 0.0 { return color; }
+  let left = min(dot(color, vec3f(1.0)) / lit, 1.0);
+  return max(color + left * fit.gain.rgb * (free.rgb - own.rgb), vec3f(0.0));
 }

@@ -218,7 +218,7 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   var change = vec4f(0.0);
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
   var below = receiver(position, frame_color, evident, has_moved, drawing.strength, &change);
-  if toy.a > 0.0 && is_soft() && !is_thing(evident) { below *= behind_outline(vec2i(texel), n_draws); }
+  if toy.a > 0.0 && is_soft() && !is_thing(evident) { below = behind_outline(vec2i(texel), below, n_draws); }
   let laid = (1.0 - toy.a) * below + toy.rgb;
   // Most pixels show the receiver alone and need no test of the toy.
   if change.a == 0.0 { return vec4f(grained_toy(laid, vec2i(texel), toy.a), 1.0); }

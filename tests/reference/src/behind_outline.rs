@@ -8,17 +8,16 @@ use super::raster::Raster;
 /// Number of positions of a pixel, and rows from one to the next.
 const N_PLACES: u32 = 32;
 const ROW_STEP: u32 = 9;
-/// Light below which a plate's colour is mostly rounding: that of code 10.
-const DARKEST: f64 = 0.003_035_27;
 
-/// Factor of the background's colour at a texel `in_region`, which is `in_box` in the toy's box: the
-/// plate where the toy leaves the background free, over the plate at the texel itself. `covered` is the
-/// toy's share of each texel of its box, and `root` that of the blur's covariance.
+/// The background at a texel `in_region`, which is `in_box` in the toy's box, if `color` is its colour by
+/// the plate there: that of the plate where the toy leaves it free, in the same light, or in all light if
+/// there is more. `covered` is the toy's share of each texel of its box, and `root` that of the blur's
+/// covariance.
 #[must_use]
 pub fn behind_outline(
     plate: &Raster<DVec4>,
     covered: &Raster<f64>,
-    root: [f64; 3],
+    (root, gain, color): ([f64; 3], DVec3, DVec3),
     [in_region, in_box]: [UVec2; 2],
 ) -> DVec3 {
     let last = covered.size().as_ivec2() - 1;
@@ -40,8 +39,10 @@ pub fn behind_outline(
     };
     let own = plate.at(in_region);
     let seen = plate.bilinear(in_region.as_dvec2() + 0.5 + middle_px);
-    if own.w < 1.0 || seen.w < 1.0 - 1e-9 || own.truncate().min_element() < DARKEST {
-        return DVec3::ONE;
+    let lit = gain.dot(own.truncate());
+    if seen.w < 1.0 - 1e-9 || lit <= 0.0 {
+        return color;
     }
-    seen.truncate() / own.truncate()
+    let left = (color.element_sum() / lit).min(1.0);
+    (color + left * gain * (seen - own).truncate()).max(DVec3::ZERO)
 }

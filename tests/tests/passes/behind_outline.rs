@@ -14,20 +14,21 @@ use crate::alone::{Draw, check_faults, source};
 use crate::composite::shows_toy;
 use crate::device::Device;
 use crate::errors::{Errors, channels};
-use crate::numbers::number;
+use crate::numbers::{number, numbers};
 use crate::photo::photograph;
 use crate::run::Run;
-use crate::scrambled::{buffers, views};
-use crate::setups::{SETUPS, WALL};
+use crate::scrambled::{Scrambled, buffers, views};
+use crate::setups::SETUPS;
 use crate::stand::Stand;
 
 /// The pass of the registry that contains it.
 const PASS: &str = "composite";
-/// The factor at each pixel of the toy's box.
+/// The background at each pixel of the toy's box, from the colours of the toy's map.
 const PROBE: &str = "
 @fragment fn fs_probe(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let texel = vec2i(position.xy) + vec2i(globals.toy_box_origin_px);
-  return vec4f(behind_outline(texel, 1u), 1.0);
+  let color = textureLoad(toy_0, vec2i(position.xy), 0).rgb;
+  return vec4f(behind_outline(texel, color, 1u), 1.0);
 }";
 /// Reaches the region's left border, so that positions beyond it occur.
 const BOX: PixelRect = PixelRect {
@@ -39,8 +40,7 @@ const SPREAD: Spread = Spread {
     xy_px2: -0.8,
     yy_px2: 1.1,
 };
-/// Relative to factors up to 20.
-const ALLOWED: f64 = 1e-3;
+const ALLOWED: f64 = 1e-4;
 
 /// Many colours, some as dark as unusable pixels, and some that no plate shows.
 fn plate(size: UVec2) -> Raster<DVec4> {
@@ -64,17 +64,16 @@ fn covered(at: UVec2) -> f64 {
 
 /// Errors of the factors that `source` computes.
 fn errors(source: &str) -> Errors {
-    let device = Device::shared();
-    let stand = Stand::new(WALL);
-    let rect = PixelRect {
-        origin_px: UVec2::ZERO,
-        size_px: WALL.image_px,
-    };
-    let globals = stand.globals(&rect).with_boxes(&BOX, &BOX).with_spread(SPREAD);
-    let plate = plate(rect.size_px);
+    let (device, scene) = (Device::shared(), Scrambled::new());
+    let globals = scene.stand.globals(&scene.rect);
+    let globals = globals.with_boxes(&BOX, &BOX).with_spread(SPREAD);
+    let plate = plate(scene.rect.size_px);
     let covered = Raster::from_fn(BOX.size_px, covered);
-    let maps = [device.map(&plate), device.map(&covered.map(DVec4::splat))];
-    let uniform = [device.uniform(&globals)];
+    let colors = numbers(BOX.size_px, 8).map(|color| 0.5 * color);
+    let toy = Raster::from_fn(BOX.size_px, |at| colors.at(at).truncate().extend(covered.at(at)));
+    let maps = [device.map(&plate), device.map(&toy)];
+    let [_, fit] = scene.shared(device);
+    let shared = [device.uniform(&globals), fit];
     // Only two groups are bound here.
     let source = source
         .replace("@group(2) @binding(0)", "@group(1) @binding(20)")
@@ -85,16 +84,18 @@ fn errors(source: &str) -> Errors {
         .replace("textureLoad(toy_3, texel, 0)", "first");
     let source = format!("{source}{PROBE}");
     let draw = Draw::of(&source, "fs_probe", BOX.size_px);
-    let actual = device.draw(draw, [&buffers(0, &uniform), &views(20, &maps)]);
+    let actual = device.draw(draw, [&buffers(0, &shared), &views(20, &maps)]);
     let root = [0, 1, 2].map(|k| f64::from(globals.spread[k]));
     let mut n_other = 0;
     let pairs = texels_of(BOX.size_px).flat_map(|at| {
-        let expected = behind_outline(&plate, &covered, root, [BOX.origin_px + at, at]);
-        n_other += u32::from(expected != DVec3::ONE);
+        let color = colors.at(at).truncate();
+        let given = (root, scene.solution.gain, color);
+        let expected = behind_outline(&plate, &covered, given, [BOX.origin_px + at, at]);
+        n_other += u32::from(expected != color);
         channels(actual.at(at).truncate(), expected)
     });
     let errors = Errors::between(pairs.collect::<Vec<_>>());
-    assert!(n_other > 3000, "{n_other} factors are not 1");
+    assert!(n_other > 3000, "{n_other} colours change");
     errors
 }
 
@@ -110,14 +111,12 @@ fn a_fault_in_the_background_of_an_outline_is_found() {
         ("(1.0 - drawn_toy(tap, n_draws).a)", "drawn_toy(tap, n_draws).a"),
         ("floor(from_px + 0.5)", "floor(from_px)"),
         ("sum.xy / sum.z, sum.z > 0.0", "sum.xy / 32.0, true"),
-        ("&& free.a == 1.0", ""),
+        ("free.a < 1.0 || lit", "lit"),
+        ("vec3f(1.0)) / lit, 1.0)", "vec3f(1.0)) / lit, 2.0)"),
+        ("left * fit.gain.rgb * (free", "left * (free"),
         (
-            "all(own.rgb >= vec3f(DARKEST_USABLE))",
-            "any(own.rgb >= vec3f(DARKEST_USABLE))",
-        ),
-        (
-            "select(vec3f(1.0), free.rgb / own.rgb",
-            "select(vec3f(1.0), own.rgb / free.rgb",
+            "(free.rgb - own.rgb), vec3f(0.0)",
+            "(free.rgb - own.rgb), vec3f(-1.0)",
         ),
         (
             "vec2i(low + corner), vec2i(0), last)",
