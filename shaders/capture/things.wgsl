@@ -47,7 +47,7 @@ fn fs_mark(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let less = select(0.0, BEFORE_THING, is_second);
   if code == CODE_BEFORE_TOY { return vec4f(0.0, 0.0, clear, BEFORE_TOY - less); }
   var of_toy = marks.g;
-  if of_toy == 1.0 && is_beside_thing_before_toy(position.xy) { of_toy = 0.0; }
+  if of_toy > 0.0 && is_beside_thing_before_toy(position.xy) { of_toy = 0.0; }
   if code == CODE_THING || code == CODE_HIDDEN_THING || code == CODE_PAINTED_THING {
     return vec4f(0.0, of_toy, clear, THING - less);
   }

@@ -19,6 +19,7 @@
 //#import common/fullscreen
 //#import common/layers
 //#import common/borders
+//#import common/behind_outline
 //#import common/made_grain
 //#import common/marks
 //#import common/reflection
@@ -216,7 +217,9 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   }
   var change = vec4f(0.0);
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
-  let laid = (1.0 - toy.a) * receiver(position, frame_color, evident, has_moved, drawing.strength, &change) + toy.rgb;
+  var below = receiver(position, frame_color, evident, has_moved, drawing.strength, &change);
+  if toy.a > 0.0 && is_soft() && !is_thing(evident) { below = behind_outline(vec2i(texel), below, n_draws); }
+  let laid = (1.0 - toy.a) * below + toy.rgb;
   // Most pixels show the receiver alone and need no test of the toy.
   if change.a == 0.0 { return vec4f(grained_toy(laid, vec2i(texel), toy.a), 1.0); }
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
