@@ -174,7 +174,8 @@ fn receiver(
   let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
   let is_outlier = outlier(pooled);
   let is_object = is_outlier * (1.0 - shadow_likeness(pooled));
-  let deviation = largest(abs(own_color - lit * (before + pooled)) / max(lit, vec3f(DARKEST_USABLE)));
+  let off = abs(own_color - lit * (before + pooled));
+  let deviation = largest(off / max(lit, vec3f(DARKEST_USABLE)));
   let seen = own_share(evident, has_moved, deviation);
   let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
   let is_withheld = evident.a < 1.0 && !is_thing(evident);
@@ -188,7 +189,7 @@ fn receiver(
     let exact = fit.gain.rgb * unsmoothed * (after + textureLoad(detail, texel, 0).rgb);
     own = select(own, exact, unsmoothed >= vec3f(DARKEST_USABLE));
   }
-  let own_beyond = (1.0 - outlier(vec3f(deviation))) * light * beyond;
+  let own_beyond = (1.0 - outlier(off / max(lit + max(beyond, vec3f(0.0)), vec3f(DARKEST_USABLE)))) * light * beyond;
   let kept = mix(darkened(own_color, own, lit * after) + shown + own_beyond, f, is_object);
   let keep = seen * max(is_near, is_outlier);
   let inside = max(inside_border(at), 1.0 - seen);
