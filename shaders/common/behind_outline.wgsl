@@ -10,8 +10,10 @@
 //#import common/fit
 //#import common/globals
 //#import common/marks
+//#import common/pixel
 //#import common/spread
 //#import common/stillness
+//#import common/unknown
 
 // The change of the plate at a pixel of a soft outline, `plate_change`; 0 elsewhere.
 var<private> beyond: vec3f = vec3f(0.0);
@@ -66,4 +68,10 @@ fn find_beyond(texel: vec2i, part: f32, evident: vec4f, has_moved: bool, n_draws
   let is_kept = evident.r == 0.0 && evident.a == 1.0 && !has_moved;
   if is_kept && stillness(in_box, moved_part(in_box)) == 1.0 { return; }
   beyond = plate_change(texel, n_draws);
+}
+
+// Part of a camera pixel that changes along an outline as the plate does, if its light is `off` that of the
+// lit plate: an unmarked thing has none.
+fn explained(off: vec3f, lit: vec3f) -> f32 {
+  return 1.0 - outlier(off / max(lit + max(beyond, vec3f(0.0)), vec3f(DARKEST_USABLE)));
 }

@@ -147,10 +147,10 @@ fn receiver(
     if HAS_GRAIN { missing = missing_beside(color, evident.b, f, b, fit.gain.rgb); }
     return color;
   }
-  // Beyond the receivers only the real toy is removed.
+  // Beyond the receivers only the real toy is removed; no model tells whether the plate explains the frame.
   if !is_hit(point) {
     *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.r);
-    let color = mix(max(lit + beyond, vec3f(0.0)), f, evident.r);
+    let color = max(mix(lit + beyond, f + beyond, evident.r), vec3f(0.0));
     if HAS_GRAIN { missing = missing_beside(color, evident.r, f, b, fit.gain.rgb); }
     return color;
   }
@@ -189,7 +189,7 @@ fn receiver(
     let exact = fit.gain.rgb * unsmoothed * (after + textureLoad(detail, texel, 0).rgb);
     own = select(own, exact, unsmoothed >= vec3f(DARKEST_USABLE));
   }
-  let own_beyond = (1.0 - outlier(off / max(lit + max(beyond, vec3f(0.0)), vec3f(DARKEST_USABLE)))) * light * beyond;
+  let own_beyond = explained(off, lit) * light * beyond;
   let kept = mix(darkened(own_color, own, lit * after) + shown + own_beyond, f, is_object);
   let keep = seen * max(is_near, is_outlier);
   let inside = max(inside_border(at), 1.0 - seen);

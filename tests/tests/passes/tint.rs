@@ -172,7 +172,10 @@ fn mixed_pixels_do_not_replace_a_tint_that_is_known() {
         plate_spread: spread,
         outline_spread: spread,
     };
-    let ratios = ratios(&tints_of_two_frames([|_| DVec3::ONE, |_| DVec3::splat(0.5)], soft));
+    let ratios = ratios(&tints_of_two_frames(
+        [|_| DVec3::ONE, |_| DVec3::splat(0.5)],
+        soft,
+    ));
     let changed = ratios.iter().map(|ratio| (ratio - 1.0).abs());
     let mean = changed.sum::<f64>() / ratios.len() as f64;
     eprintln!("{mean:.3} of a tint");
@@ -182,7 +185,8 @@ fn mixed_pixels_do_not_replace_a_tint_that_is_known() {
 /// The light on the toy is fitted to the first picture alone, so a tint follows the paint.
 #[test]
 fn what_frames_before_have_shown_of_the_paint_counts() {
-    let [first, both] = tints_of_two_frames([|_| DVec3::ONE, |_| DVec3::new(0.5, 0.8, 0.9)], Sharpness::SHARP);
+    let [first, both] =
+        tints_of_two_frames([|_| DVec3::ONE, |_| DVec3::new(0.5, 0.8, 0.9)], Sharpness::SHARP);
     let expected = [0.75, 0.9, 0.95];
     let pairs = first.iter().zip(&both).flat_map(|(first, both)| {
         let cells = first.iter().zip(both);
