@@ -37,6 +37,47 @@ fn is_beside_thing_before_toy(region_px: vec2f) -> bool {
   return false;
 }
 
+// Whether the frame shows a thing at a pixel of this code.
+fn shows_thing(code: u32) -> bool {
+  return code == CODE_THING || code == CODE_BEFORE_TOY;
+}
+
+// Least part of the length of a direction along an axis: the sine of half of 45 degrees.
+const LEAST_PART: f32 = 0.3827;
+
+// Direction out of a thing, in steps to one of eight neighbours; 0 if it ends at no neighbour.
+fn outward(region_px: vec2f) -> vec2i {
+  let here = shows_thing(code_at(region_px));
+  var ends = false;
+  var sum = vec2f(0.0);
+  for (var y = -2; y <= 2; y++) {
+    for (var x = -2; x <= 2; x++) {
+      let step = vec2f(vec2i(x, y));
+      let code = code_at(region_px + step);
+      let shows = shows_thing(code);
+      ends = ends || (abs(x) + abs(y) == 1 && shows != here);
+      sum += select(step, -step, shows) / max(dot(step, step), 1.0);
+    }
+  }
+  let is_along = abs(sum) > vec2f(LEAST_PART * length(sum));
+  return select(vec2i(0), select(vec2i(sign(sum)), vec2i(0), !is_along), ends);
+}
+
+// Code of a pixel at the rim of a thing over that of the thing, and the code of its mark: 0 if it is
+// none.
+fn rim_code(region_px: vec2f) -> vec2u {
+  let out = outward(region_px);
+  if all(out == vec2i(0)) { return vec2u(0u); }
+  let is_inside = shows_thing(code_at(region_px));
+  let inner = code_at(region_px - select(2.0, 1.0, is_inside) * vec2f(out));
+  let beyond = region_px + select(1.0, 2.0, is_inside) * vec2f(out);
+  let is_beyond = all(beyond > vec2f(0.0)) && all(beyond < vec2f(textureDimensions(validity)));
+  if !is_beyond || !shows_thing(inner) || shows_thing(code_at(beyond)) { return vec2u(0u); }
+  let neighbor = u32(3 * (out.y + 1) + out.x + 1);
+  let number = neighbor - select(0u, 1u, neighbor > 4u);
+  return vec2u(1u + number + select(0u, N_DIRECTIONS, is_inside), inner);
+}
+
 @fragment
 fn fs_mark(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let marks = textureLoad(validity, vec2u(position.xy), 0);
@@ -45,12 +86,17 @@ fn fs_mark(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let is_second = is_thing(marks);
   let clear = select(marks.r, marks.b, is_second);
   let less = select(0.0, BEFORE_THING, is_second);
+  let rim = select(rim_code(position.xy), vec2u(0u), is_second);
+  let above = f32(rim.x) / 255.0;
+  if rim.y == CODE_BEFORE_TOY { return vec4f(0.0, 0.0, select(marks.b, clear, code == CODE_BEFORE_TOY), BEFORE_TOY + above); }
   if code == CODE_BEFORE_TOY { return vec4f(0.0, 0.0, clear, BEFORE_TOY - less); }
   var of_toy = marks.g;
   if of_toy == 1.0 && is_beside_thing_before_toy(position.xy) { of_toy = 0.0; }
   if code == CODE_THING || code == CODE_HIDDEN_THING || code == CODE_PAINTED_THING {
-    return vec4f(0.0, of_toy, clear, THING - less);
+    // Where it may mix with the real toy it is no rim.
+    return vec4f(0.0, of_toy, clear, THING - less + select(0.0, above, marks.r == 1.0));
   }
+  if rim.y == CODE_THING && marks.r == 1.0 { return vec4f(0.0, of_toy, marks.b, THING + above); }
   return vec4f(marks.r, of_toy, marks.ba);
 }
 

@@ -9,8 +9,13 @@ const THING: f32 = 0.8;
 const BEFORE_TOY: f32 = 0.6;
 // Taken off if it is before another thing, such as a person before a book: codes 102 and 51.
 const BEFORE_THING: f32 = 0.4;
-// A quarter of the difference of the former.
-const TELLS_THINGS: f32 = 0.05;
+// Half of a code, beyond which alphas differ.
+const TELLS_THINGS: f32 = 0.002;
+// Codes above these of a pixel at the rim of a thing, which may mix it with what is behind it: one
+// for each direction in which the thing ends, first for pixels outside its marks, then for those
+// inside them.
+const N_DIRECTIONS: u32 = 8u;
+const MOST_RIM: f32 = 16.0 / 255.0;
 
 fn marks_at(region_texel: vec2i) -> vec4f {
   let texel = physical_texel(region_texel);
@@ -18,9 +23,10 @@ fn marks_at(region_texel: vec2i) -> vec4f {
   return textureLoad(validity, texel, 0);
 }
 
-// Whether alpha is this one, or this one before another thing.
+// Whether alpha is this one or one of its rim, or this one before another thing.
 fn is_alpha(marks: vec4f, alpha: f32) -> bool {
-  return min(abs(marks.a - alpha), abs(marks.a + BEFORE_THING - alpha)) < TELLS_THINGS;
+  let above = select(marks.a, marks.a + BEFORE_THING, marks.a < alpha - TELLS_THINGS) - alpha;
+  return above > -TELLS_THINGS && above < MOST_RIM + TELLS_THINGS;
 }
 
 fn is_before_toy(marks: vec4f) -> bool {
@@ -34,4 +40,18 @@ fn is_thing(marks: vec4f) -> bool {
 // Whether a thing hides another one.
 fn is_before_thing(marks: vec4f) -> bool {
   return is_thing(marks) && marks.a < 0.5 * (THING - BEFORE_THING + BEFORE_TOY);
+}
+
+// At the rim of a thing the steps to a pixel that shows the thing alone, and to one beyond it; 0
+// elsewhere.
+fn rim_steps(marks: vec4f) -> vec4i {
+  if !is_thing(marks) || is_before_thing(marks) { return vec4i(0); }
+  let code = u32(round(255.0 * (marks.a - select(THING, BEFORE_TOY, is_before_toy(marks)))));
+  if code == 0u { return vec4i(0); }
+  let number = (code - 1u) % N_DIRECTIONS;
+  // The fifth of nine neighbours is the pixel itself.
+  let neighbor = i32(number + select(0u, 1u, number >= 4u));
+  let outward = vec2i(neighbor % 3, neighbor / 3) - 1;
+  let is_inside = code > N_DIRECTIONS;
+  return vec4i(-select(2, 1, is_inside) * outward, select(1, 2, is_inside) * outward);
 }

@@ -102,6 +102,11 @@ impl Found<'_> {
         self.grown.as_ref().is_some_and(|grown| grown.is_own_color(color))
     }
 
+    /// Log likelihood ratio of a colour in codes as one of things in the plate.
+    pub(super) fn likelier(&self, color: Color) -> Option<f32> {
+        self.grown.as_ref()?.likelier(color)
+    }
+
     /// The same for a part of a thing that the toy hides; `None` if it does not, or if the light
     /// there is unknown.
     fn behind_toy_at(&self, place: DVec2) -> Option<Mark> {

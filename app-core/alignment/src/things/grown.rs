@@ -145,6 +145,11 @@ impl Grown {
         self.colors.likelier(color).is_some_and(|likelier| likelier > OWN)
     }
 
+    /// Log likelihood ratio of a colour in codes as a thing's.
+    pub(super) fn likelier(&self, color: Color) -> Option<f32> {
+        self.colors.likelier(color)
+    }
+
     /// Whether a place in pixels is in a thing's shadow.
     pub(super) fn is_shadow(&self, place: DVec2) -> bool {
         self.index(place).is_some_and(|index| self.is_shadow[index])

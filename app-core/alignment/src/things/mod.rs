@@ -23,6 +23,7 @@ mod known;
 mod listed;
 mod measured;
 mod memory;
+mod outline;
 mod painted;
 pub(crate) mod planes;
 mod seeds;
@@ -399,6 +400,9 @@ impl Sight<'_> {
             }
         };
         let mut marks: Vec<Mark> = places(size_px).map(mark).collect();
+        if let Some([frame, plate]) = &codes {
+            marks = outline::sharpened(found, [frame, plate], &marks);
+        }
         self.paint_behind_toy(level, found, &toy, &mut marks);
         (size_px, marks)
     }
