@@ -42,16 +42,26 @@ fn is_before_thing(marks: vec4f) -> bool {
   return is_thing(marks) && marks.a < 0.5 * (THING - BEFORE_THING + BEFORE_TOY);
 }
 
-// At the rim of a thing the steps to a pixel that shows the thing alone, and to one beyond it; 0
-// elsewhere.
+// Steps from a pixel at the rim of a thing, on either side of the end of its marks, to one that shows
+// the thing alone, and to one beyond it.
+fn rim_steps_of(outward: vec2i, is_inside: bool) -> vec4i {
+  return vec4i(-select(2, 1, is_inside) * outward, select(1, 2, is_inside) * outward);
+}
+
+// The same for a pixel's marks; 0 if it is not at a rim.
 fn rim_steps(marks: vec4f) -> vec4i {
   if !is_thing(marks) || is_before_thing(marks) { return vec4i(0); }
   let code = u32(round(255.0 * (marks.a - select(THING, BEFORE_TOY, is_before_toy(marks)))));
   if code == 0u { return vec4i(0); }
   let number = (code - 1u) % N_DIRECTIONS;
   // The fifth of nine neighbours is the pixel itself.
-  let neighbor = i32(number + select(0u, 1u, number >= 4u));
-  let outward = vec2i(neighbor % 3, neighbor / 3) - 1;
-  let is_inside = code > N_DIRECTIONS;
-  return vec4i(-select(2, 1, is_inside) * outward, select(1, 2, is_inside) * outward);
+  let neighbor = i32(number + select(0u, 1u, number > 3u));
+  return rim_steps_of(vec2i(neighbor % 3, neighbor / 3) - 1, code > N_DIRECTIONS);
+}
+
+// The same for a pixel of the region; 0 if something else hides what is beyond.
+fn rim_steps_at(region_texel: vec2i) -> vec4i {
+  let steps = rim_steps(marks_at(region_texel));
+  if all(steps == vec4i(0)) { return steps; }
+  return select(steps, vec4i(0), is_before_toy(marks_at(region_texel + steps.zw)));
 }

@@ -3,6 +3,7 @@
 //   out = gain plate (M' + r)         in general, r the pooled residual, fading with large changes
 //   out = frame + gain plate (M' - M) if the receiver is visible and M' is near M: r is the pixel's
 //                                     own, so the frame passes; also for unexplained things
+//   the mixture of `thing_rim`        at the rim of a thing
 //   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r), not a plate
 // A glossy receiver's reflection is removed from the frame first, and the shown toy's is added last.
 //
@@ -24,6 +25,7 @@
 //#import common/reflection
 //#import common/relit
 //#import common/stillness
+//#import common/thing_rim
 //#import common/two_receivers
 //#import common/unknown
 
@@ -200,59 +202,41 @@ fn before_toy(texel: vec2i, f: vec3f) -> vec3f {
   return relit(b, f);
 }
 
-// A pixel that mixes a thing and what is beyond it, which was `f` and is `shown` now.
-const RIM_CONTRAST: f32 = 0.03;
-fn rim_mixed(texel: vec2i, steps: vec4i, f: vec3f, shown: vec3f) -> vec3f {
-  let mixed = frame_at(texel);
-  let inside = textureLoad(plate, texel + steps.xy, 0);
-  let apart = frame_at(texel + steps.xy) - f;
-  let usual = select(0.75, 0.25, abs(steps.x) + abs(steps.y) > abs(steps.z) + abs(steps.w));
-  let part = saturate((dot(mixed - f, apart) + RIM_CONTRAST * usual) / (dot(apart, apart) + RIM_CONTRAST));
-  let kept = mixed + (1.0 - part) * (shown - f);
-  if !is_relit(inside) { return max(kept, vec3f(0.0)); }
-  let made = part * fit.gain.rgb * inside.rgb + (1.0 - part) * shown;
-  return max(mix(made, kept, kept_part(inside)), vec3f(0.0));
+// The picture at a texel with the drawn toy over the receiver of a place: at a rim, a neighbour.
+fn over_receiver(texel: vec2i, place: vec2i, toy: vec4f) -> vec3f {
+  let frame_color = frame_at(place);
+  let evident = marks_at(place);
+  let in_box = box_texel(texel);
+  if toy.a == 1.0 {
+    let moved = moved_part(in_box);
+    return grained_toy(mix(toy.rgb, frame_color, stillness(in_box, moved)), texel, moved);
+  }
+  var change = vec4f(0.0);
+  let has_moved = evident.b == 0.0 && has_moved_beside(box_texel(place));
+  let at = vec4f(vec2f(place) + 0.5, 0.0, 1.0);
+  let laid = (1.0 - toy.a) * receiver(at, frame_color, evident, has_moved, drawing.strength, &change) + toy.rgb;
+  // Most pixels show the receiver alone and need no test of the toy.
+  if change.a == 0.0 { return grained_toy(laid, texel, toy.a); }
+  let kept = frame_color + (1.0 - toy.a) * change.rgb;
+  let moved = moved_part(in_box);
+  let still = stillness(in_box, moved) * change.a;
+  missing *= 1.0 - still;
+  return grained_toy(max(mix(laid, kept, still), vec3f(0.0)), texel, toy.a * moved);
 }
 
 fn composed(position: vec4f, n_draws: u32) -> vec4f {
-  let pixel = vec2i(position.xy);
-  let steps = rim_steps(marks_at(pixel));
-  if all(steps == vec4i(0)) { return grained_picture(pixel, pixel, n_draws, false); }
-  let beyond = pixel + steps.zw;
-  let is_before = is_before_toy(marks_at(pixel));
-  let shown = grained_picture(pixel, beyond, n_draws, !is_before);
-  let mixed = rim_mixed(pixel, steps, frame_at(beyond), shown.rgb);
-  if is_before { return vec4f(mixed, 1.0); }
-  let toy = toy_layer(box_texel(pixel), n_draws);
-  return vec4f((1.0 - toy.a) * mixed + toy.rgb, 1.0);
-}
-
-// The picture at a pixel of which the receiver is that of another one.
-fn grained_picture(pixel: vec2i, texel: vec2i, n_draws: u32, is_bare: bool) -> vec4f {
-  let position = vec4f(vec2f(texel) + 0.5, 0.0, 1.0);
-  let frame_color = frame_at(vec2i(texel));
-  let evident = marks_at(vec2i(texel));
-  if is_before_toy(evident) {
-    return vec4f(grained_toy(before_toy(vec2i(texel), frame_color), vec2i(texel), 0.0), 1.0);
-  }
-  let in_box = box_texel(pixel);
-  let toy = select(toy_layer(in_box, n_draws), vec4f(0.0), is_bare);
-  if toy.a == 1.0 {
-    let moved = moved_part(in_box);
-    let color = mix(toy.rgb, frame_color, stillness(in_box, moved));
-    return vec4f(grained_toy(color, vec2i(texel), moved), 1.0);
-  }
-  var change = vec4f(0.0);
-  let has_moved = evident.b == 0.0 && has_moved_beside(box_texel(texel));
-  let laid = (1.0 - toy.a) * receiver(position, frame_color, evident, has_moved, drawing.strength, &change) + toy.rgb;
-  // Most pixels show the receiver alone and need no test of the toy.
-  if change.a == 0.0 { return vec4f(grained_toy(laid, vec2i(texel), toy.a), 1.0); }
-  let kept = frame_color + (1.0 - toy.a) * change.rgb;
-  let moved = moved_part(in_box);
-  let still = stillness(in_box, moved);
-  missing *= 1.0 - still * change.a;
-  let color = max(mix(laid, kept, still * change.a), vec3f(0.0));
-  return vec4f(grained_toy(color, vec2i(texel), toy.a * moved), 1.0);
+  let texel = vec2i(position.xy);
+  let steps = rim_steps_at(texel);
+  let is_rim = any(steps != vec4i(0));
+  let is_before = is_before_toy(marks_at(texel));
+  if is_before && !is_rim { return vec4f(grained_toy(before_toy(texel, frame_at(texel)), texel, 0.0), 1.0); }
+  let toy = toy_layer(box_texel(texel), n_draws);
+  // The toy is over the rim of a thing that is not before it.
+  let is_over = is_rim && !is_before;
+  let shown = over_receiver(texel, texel + steps.zw, select(toy, vec4f(0.0), is_over));
+  if !is_rim { return vec4f(shown, 1.0); }
+  let mixed = rim_mixed(texel, steps, shown);
+  return vec4f(select(mixed, (1.0 - toy.a) * mixed + toy.rgb, is_over), 1.0);
 }
 
 // The plate of a pixel under a model and the pooled residual, no brighter than white.

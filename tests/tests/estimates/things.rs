@@ -135,6 +135,18 @@ fn a_thing_before_the_toy_is_found() {
     found.assert_whole(Mark::BeforeToy);
 }
 
+#[test]
+fn a_thing_before_the_toy_ends_where_its_colour_does() {
+    // The search's level has half as many pixels along each side.
+    let rect = [OVER_LEGS[0] + 1, OVER_LEGS[1] - 1];
+    let found = Found::of([true, true], rect);
+    let [missed, beyond] = [1.0 - found.part(Mark::BeforeToy), found.beyond(Mark::BeforeToy)];
+    assert!(
+        missed < 0.01 && beyond < 0.01,
+        "{missed:.3} of it is missed, {beyond:.3} is beyond it"
+    );
+}
+
 /// What is found where the frame alone shows a rectangle.
 fn in_frame_alone((color, rect): ([u8; 3], Rect), is_painted: impl Fn(usize) -> bool) -> Found {
     let (scene, input) = &*SESSION;

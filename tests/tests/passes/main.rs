@@ -54,6 +54,7 @@ mod setups;
 mod soften;
 mod stand;
 mod still;
+mod thing_rim;
 mod things;
 mod tint;
 mod toy;
