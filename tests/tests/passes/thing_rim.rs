@@ -89,7 +89,10 @@ fn a_fault_at_the_rim_of_a_thing_is_found() {
         ("largest(max(shown, beyond))", "1.0"),
         ("mix(shown, within, part) + left", "mix(shown, within, part)"),
         ("if !is_relit(relit_within) { return kept; }", ""),
-        ("fit.gain.rgb * relit_within.rgb", "relit_within.rgb"),
+        (
+            "fit.gain.rgb * relit_within.rgb",
+            "fit.gain.rrr * relit_within.rgb",
+        ),
         ("kept_part(relit_within)", "0.0"),
     ];
     check_faults("composite", &faults, ALLOWED, errors);

@@ -26,7 +26,13 @@ fn things() -> Things {
     Things {
         codes: Raster::from_fn(UVec2::new(97, 83), |at| {
             let light = u8::try_from(at.element_sum() % 251 + 2).unwrap();
-            let code = codes[at.element_sum() as usize / 6 * 11 % 7];
+            // Things have narrow gaps.
+            let is_gap = at.x % 23 == 7;
+            let code = if is_gap {
+                0
+            } else {
+                codes[at.element_sum() as usize / 6 * 11 % 7]
+            };
             [code, light, light / 2, 255 - light]
         }),
         // Not exact in binary, so that no position lies on the border of two pixels; behind its

@@ -102,9 +102,11 @@ impl Found<'_> {
         self.grown.as_ref().is_some_and(|grown| grown.is_own_color(color))
     }
 
-    /// Log likelihood ratio of a colour in codes as one of things in the plate.
-    pub(super) fn likelier(&self, color: Color) -> Option<f32> {
-        self.grown.as_ref()?.likelier(color)
+    /// Whether a colour in codes is that of the place, not of things in the plate.
+    pub(super) fn is_place_color(&self, color: Color) -> bool {
+        self.grown
+            .as_ref()
+            .is_some_and(|grown| grown.is_place_color(color))
     }
 
     /// The same for a part of a thing that the toy hides; `None` if it does not, or if the light

@@ -145,9 +145,11 @@ impl Grown {
         self.colors.likelier(color).is_some_and(|likelier| likelier > OWN)
     }
 
-    /// Log likelihood ratio of a colour in codes as a thing's.
-    pub(super) fn likelier(&self, color: Color) -> Option<f32> {
-        self.colors.likelier(color)
+    /// Whether a colour in codes is the place's.
+    pub(super) fn is_place_color(&self, color: Color) -> bool {
+        self.colors
+            .likelier(color)
+            .is_some_and(|likelier| likelier < -LIKE_PLACE)
     }
 
     /// Whether a place in pixels is in a thing's shadow.

@@ -401,7 +401,7 @@ impl Sight<'_> {
         };
         let mut marks: Vec<Mark> = places(size_px).map(mark).collect();
         if let Some([frame, plate]) = &codes {
-            marks = outline::sharpened(found, [frame, plate], per_px, &marks);
+            marks = outline::sharpened((found, &toy), [frame, plate], per_px, &marks);
         }
         self.paint_behind_toy(level, found, &toy, &mut marks);
         (size_px, marks)

@@ -1,8 +1,11 @@
 //! Outlines of things before the toy, in pixels of the largest level: things are found in one of fewer
 //! pixels, where they end a pixel too early or too late.
 
-use super::codes::{Codes, UNLIKE_CODES, from_shaded};
+use glam::IVec2;
+
+use super::codes::Codes;
 use super::found::Found;
+use super::toy::Toy;
 use crate::picture::{index_in, places, square};
 use app_scene::things::Mark;
 
@@ -13,7 +16,7 @@ const WITHIN_PX: f64 = 1.5;
 /// The marks with the outlines of things before the toy where the plate's colours change. Frame and
 /// plate are in codes; `per_px` are pixels of the level with things for one of theirs.
 pub(super) fn sharpened(
-    found: &Found<'_>,
+    (found, toy): (&Found<'_>, &Toy),
     [frame, plate]: [&Codes; 2],
     per_px: f64,
     marks: &[Mark],
@@ -30,14 +33,20 @@ pub(super) fn sharpened(
             }
         }
     }
-    let mark = |(index, mark): (usize, &Mark)| {
-        let [shown, color] = [frame, plate].map(|picture| picture.pixels[index]);
-        match found.likelier(color).filter(|_| is_near[index]) {
-            Some(likelier) if likelier < 0.0 && *mark == Mark::BeforeToy => Mark::None,
-            // The toy may be before a part of the thing.
-            Some(likelier) if likelier > 0.0 && from_shaded(shown, color) < UNLIKE_CODES => Mark::BeforeToy,
-            _ => *mark,
+    let mark = |((index, mark), at): ((usize, &Mark), IVec2)| {
+        let color = plate.pixels[index];
+        if !is_near[index] {
+            return *mark;
         }
+        if found.is_place_color(color) && *mark == Mark::BeforeToy {
+            return Mark::None;
+        }
+        // The toy may be before a part of the thing.
+        if found.is_own_color(color) && !toy.is_seen(at, [frame, plate]) {
+            return Mark::BeforeToy;
+        }
+        *mark
     };
-    marks.iter().enumerate().map(mark).collect()
+    let marks = marks.iter().enumerate().zip(places(size_px));
+    marks.map(mark).collect()
 }
