@@ -92,9 +92,7 @@ impl Found<'_> {
 
     /// The same without its shadow.
     pub(super) fn body_at(&self, place: DVec2) -> Option<usize> {
-        let grown = self.grown.as_ref()?;
-        let is_place = self.colored == Colored::Otherwise && grown.is_like_place(place);
-        grown.at(place).filter(|_| !is_place && !grown.is_shadow(place))
+        self.grown.as_ref()?.body_at(place, self.colored)
     }
 
     /// Whether a colour in codes is that of things in the plate.

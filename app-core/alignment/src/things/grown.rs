@@ -12,7 +12,7 @@ use super::codes::{Codes, apart};
 use super::colors::Colors;
 use super::groups::{STEPS, groups, place_of};
 use super::known::Known;
-use super::seeds::{Seed, Seeds};
+use super::seeds::{Colored, Seed, Seeds};
 use crate::picture::{Color, bilinear, index_in, places, square};
 
 /// Cost of a step: a constant, a factor for each code of change in the plate, and one for the log
@@ -199,6 +199,12 @@ impl Grown {
             thing = thing.or(self.thing[index]);
         }
         thing.filter(|_| sum > 0.0).map(|thing| thing as usize)
+    }
+
+    /// The same without its shadow, and without pixels in the place's colours unless it may have these.
+    pub(super) fn body_at(&self, place: DVec2, colored: Colored) -> Option<usize> {
+        let is_place = colored == Colored::Otherwise && self.is_like_place(place);
+        self.at(place).filter(|_| !is_place && !self.is_shadow(place))
     }
 }
 
