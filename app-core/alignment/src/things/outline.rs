@@ -5,6 +5,7 @@ use glam::IVec2;
 
 use super::codes::Codes;
 use super::found::Found;
+use super::groups::most_around;
 use super::toy::Toy;
 use crate::picture::{index_in, places, square};
 use app_scene::things::Mark;
@@ -24,7 +25,7 @@ pub(super) fn sharpened(
     let size_px = plate.size_px;
     #[allow(clippy::cast_possible_truncation, reason = "a few pixels")]
     let within_px = (WITHIN_PX / per_px).round() as i32;
-    let is_before = |at| index_in(size_px, at).map(|index| marks[index] == Mark::BeforeToy);
+    let is_before = |at| is_marked(marks, size_px, at);
     let mut is_near = vec![false; marks.len()];
     for at in places(size_px).filter(|at| is_before(*at) == Some(true)) {
         if square(at, 1).any(|at| is_before(at) == Some(false)) {
@@ -47,6 +48,19 @@ pub(super) fn sharpened(
         }
         *mark
     };
-    let marks = marks.iter().enumerate().zip(places(size_px));
-    marks.map(mark).collect()
+    let pixels = marks.iter().enumerate().zip(places(size_px));
+    let sharp: Vec<Mark> = pixels.map(mark).collect();
+    // A few pixels of the place have a thing's colours.
+    let is_lone = |at: IVec2| !most_around(at, |at| is_marked(&sharp, size_px, at) == Some(true));
+    let pixels = marks.iter().zip(&sharp).zip(places(size_px));
+    let kept = pixels.map(|((before, now), at)| match now {
+        Mark::BeforeToy if is_lone(at) => *before,
+        _ => *now,
+    });
+    kept.collect()
+}
+
+/// Whether a pixel has the mark of a thing before the toy; `None` outside the picture.
+fn is_marked(marks: &[Mark], size_px: IVec2, at: IVec2) -> Option<bool> {
+    index_in(size_px, at).map(|index| marks[index] == Mark::BeforeToy)
 }
