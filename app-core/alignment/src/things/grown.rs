@@ -280,13 +280,12 @@ fn cost((plate, colors): (&Codes, &Colors), [from, to]: [usize; 2], of: Seed) ->
         Seed::Receiver => colors.unusual(b),
         _ => -colors.likelier(b).unwrap_or(0.0),
     };
-    // A thing may have a pattern, or a face as uniform as it is large: neither edges between its own
-    // colours nor the way along them lead out of it.
-    let within = match (of, colors.likelier(a), colors.likelier(b)) {
-        (Seed::Thing, Some(from), Some(to)) if from.min(to) > OWN => WITHIN,
-        _ => 1.0,
+    // A thing may have a pattern: edges between its own colours are not part of its outline.
+    let of_code = match (of, colors.likelier(a), colors.likelier(b)) {
+        (Seed::Thing, Some(from), Some(to)) if from.min(to) > OWN => WITHIN * OF_CODE,
+        _ => OF_CODE,
     };
-    within * (OF_STEP + OF_CODE * apart(a, b)) + OF_COLOR * against.max(0.0)
+    OF_STEP + of_code * apart(a, b) + OF_COLOR * against.max(0.0)
 }
 
 /// Distances as whole numbers, which can be ordered.

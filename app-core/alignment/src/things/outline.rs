@@ -36,7 +36,9 @@ pub(super) fn sharpened(
     }
     let mark = |((index, mark), at): ((usize, &Mark), IVec2)| {
         let color = plate.pixels[index];
-        if !is_near[index] {
+        // What the frame alone shows ends elsewhere.
+        let is_in_frame = || found.in_frame_at((at.as_dvec2() + 0.5) * per_px) != Mark::None;
+        if !is_near[index] || is_in_frame() {
             return *mark;
         }
         if found.is_place_color(color) && *mark == Mark::BeforeToy {
