@@ -71,6 +71,11 @@ impl Toolchain {
         command::run(Command::new("rustup").args(["target", "add", "--toolchain", version, target]))
     }
 
+    /// The folder that cargo builds into.
+    pub(crate) fn build_folder(&self) -> PathBuf {
+        env::var_os("CARGO_TARGET_DIR").map_or_else(|| self.root.join("target"), PathBuf::from)
+    }
+
     /// A program of the toolchain.
     pub(crate) fn command(&self, program: &str) -> Command {
         let mut command = Command::new(program);

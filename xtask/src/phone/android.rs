@@ -82,8 +82,7 @@ fn is_linked(library: &str) -> bool {
 
 fn built(toolchain: &Toolchain, profile: Profile) -> PathBuf {
     toolchain
-        .root
-        .join("target")
+        .build_folder()
         .join(ANDROID.target)
         .join(profile.name())
         .join("libapp_android.so")

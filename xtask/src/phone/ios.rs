@@ -130,8 +130,7 @@ fn link(
     link.arg("-o").arg(&program).arg(&object);
     link.arg(
         toolchain
-            .root
-            .join("target")
+            .build_folder()
             .join(IOS.target)
             .join(profile.name())
             .join("libapp_ios.a"),
