@@ -27,21 +27,22 @@ const PROBE: &str = "
 fn plate(size: UVec2) -> Raster<DVec4> {
     Raster::from_fn(size, |at| {
         let alpha = [1.0, 1.0, 0.25, 0.5625, 0.75][(at.x / 11 + at.y / 6) as usize % 5];
-        DVec3::from(color(at, 11).map(|light| 0.8 * light)).extend(alpha)
+        color(at, 11).extend(alpha)
     })
 }
 
-/// Colours with little and with much contrast.
-fn color(at: UVec2, seed: u32) -> [f64; 3] {
+/// Colours with little and with much contrast, exact in 32 bits.
+fn color(at: UVec2, seed: u32) -> DVec3 {
     let contrast = [0.03, 0.2, 0.9][(at.x / 13 + at.y / 17) as usize % 3];
-    [0, 1, 2].map(|channel| f64::from((0.05 + contrast * number(at, seed + channel)) as f32))
+    let light = |channel: u32| 0.05 + contrast * number(at, seed + channel);
+    DVec3::from([0, 1, 2].map(light)).as_vec3().as_dvec3()
 }
 
 /// Errors of the mixed pixels that `source` makes.
 fn errors(source: &str) -> Errors {
     let (device, mut scene) = (Device::shared(), Scrambled::new());
     let size = scene.rect.size_px;
-    scene.image = Raster::from_fn(size, |at| DVec3::from(color(at, 5)).extend(1.0));
+    scene.image = Raster::from_fn(size, |at| color(at, 5).extend(1.0));
     let plate = plate(size);
     let maps = [device.map(&plate)];
     let own = views(20, &maps);
