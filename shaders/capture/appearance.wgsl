@@ -34,13 +34,13 @@ fn base_at(texel: vec2i) -> vec4f {
 }
 
 fn is_one_surface(texel: vec2i) -> bool {
-  return textureLoad(validity, texel, 0).g == 1.0;
+  return textureLoad(validity, texel, 0).g > 0.0;
 }
 
 // Number of the pixel from which a pixel's colour comes.
 fn nearest_source(texel: vec2i) -> u32 {
   let marks = textureLoad(validity, texel, 0);
-  if marks.g == 1.0 { return number_of(vec2i(0)); }
+  if marks.g > 0.0 { return number_of(vec2i(0)); }
   // The pixel is well clear of the toy.
   if marks.b == 1.0 { return NO_SOURCE; }
   let here = textureLoad(gbuffer_depth, texel, 0);

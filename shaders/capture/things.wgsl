@@ -93,7 +93,7 @@ fn fs_mark(@builtin(position) position: vec4f) -> @location(0) vec4f {
   if code == CODE_BEFORE_TOY { return vec4f(0.0, 0.0, clear, BEFORE_TOY - less + above); }
   if rim.y == CODE_BEFORE_TOY { return vec4f(0.0, 0.0, marks.b, BEFORE_TOY + above); }
   var of_toy = marks.g;
-  if of_toy == 1.0 && is_beside_thing_before_toy(position.xy) { of_toy = 0.0; }
+  if of_toy > 0.0 && is_beside_thing_before_toy(position.xy) { of_toy = 0.0; }
   // A pixel that may mix with the toy over the thing is no rim.
   let of_rim = select(0.0, above, marks.r == 1.0);
   if code == CODE_THING || code == CODE_HIDDEN_THING || code == CODE_PAINTED_THING {

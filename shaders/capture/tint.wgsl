@@ -1,8 +1,9 @@
 // Shown and expected colours of the toy's visible paint, summed in cells.
 //
 // Each pixel that shows one surface of the toy, and is not clipped, adds its colour, and the one
-// expected from base colour, gain and fitted light, to the cell that contains its point. Sums are
-// of integers: their order does not matter.
+// expected from base colour, gain and fitted light, to the cell that contains its point. In a soft
+// picture a pixel that another surface is mixed into counts less. Sums are of integers: their order
+// does not matter.
 //
 // Reads: frame, validity, gbuffer, fit, reflection of a glossy toy. Writes: sums of the finest
 // cells. CPU reference: tests/reference/src/tint.rs.
@@ -48,7 +49,8 @@ fn cs_add(@builtin(global_invocation_id) id: vec3u) {
   let start = (vec2u(globals.physical_box_origin_px) + stride_px - 1u) / stride_px;
   let texel = (start + id.xy) * stride_px;
   let in_box = physical_texel(vec2i(texel));
-  if !is_in_physical_box(in_box) || marks_at(vec2i(texel)).g < 1.0 { return; }
+  let one_surface = marks_at(vec2i(texel)).g;
+  if !is_in_physical_box(in_box) || one_surface == 0.0 { return; }
   let surface = textureLoad(gbuffer_normal, in_box, 0);
   let lit = toy_radiance_over_base(surface.xyz, textureLoad(gbuffer_received, in_box, 0));
   let expected = fit.gain.rgb * textureLoad(gbuffer_base, in_box, 0).rgb * lit;
@@ -60,8 +62,8 @@ fn cs_add(@builtin(global_invocation_id) id: vec3u) {
   let cell = vec3u(clamp(place, vec3f(0.0), vec3f(f32(TINT_SIDE - 1u))));
   let first = N_TINT_SUMS * (TINT_CELLS * tint_grid_of(u32(surface.w)) + tint_index(cell, TINT_SIDE));
   for (var channel = 0u; channel < 3u; channel++) {
-    atomicAdd(&sums[first + channel], u32(shown[channel] * TINT_UNIT));
-    atomicAdd(&sums[first + 3u + channel], u32(min(expected[channel], MOST_EXPECTED) * TINT_UNIT));
+    atomicAdd(&sums[first + channel], u32(one_surface * shown[channel] * TINT_UNIT));
+    atomicAdd(&sums[first + 3u + channel], u32(one_surface * min(expected[channel], MOST_EXPECTED) * TINT_UNIT));
   }
   atomicAdd(&sums[first + 6u], 1u);
 }

@@ -1,14 +1,15 @@
 // Validity mask of the frame: r is 1 if the pixel is clear of the toy, g if it shows one surface of
-// the toy, b if it is well clear of the toy: colours bleed in a compressed picture, and no pose is
+// the toy, but MIXED if the picture's spread mixes another one into it, b if it is well clear of the toy: colours bleed in a compressed picture, and no pose is
 // exact; a is 1.
 //
 // Pixels that mix two surfaces (an outline, camera blur, a pose half a pixel off) are valid as
 // neither.
-// Reads: depth of the physical toy. Writes: 0 or 1 each.
+// Reads: depth of the physical toy. Writes: 0 or 1 each, but g.
 // CPU reference: tests/reference/src/validity.rs.
 
 //#import common/depth
 //#import common/fullscreen
+//#import common/mixed
 
 @group(1) @binding(0) var gbuffer_depth: texture_depth_2d;
 // Added to the distance from the toy's outline: the distance over which a soft picture spreads the
@@ -55,16 +56,25 @@ fn is_straight(texel: vec2i, side: vec2i, here: f32) -> bool {
   return min(before, after) > 0.0 && abs(before + after - 2.0 * here) <= DEPTH_BEND * here;
 }
 
-fn is_one_surface(texel: vec2i) -> bool {
+// Whether the surface goes on for a distance on all sides.
+fn goes_on(texel: vec2i, far_px: i32, here: f32) -> bool {
+  return is_straight(texel, vec2i(far_px, 0), here) && is_straight(texel, vec2i(0, far_px), here)
+    && is_straight(texel, vec2i(far_px, far_px), here) && is_straight(texel, vec2i(far_px, -far_px), here);
+}
+
+// Part of a single surface of the toy in a pixel: 0, MIXED, or 1.
+fn one_surface(texel: vec2i) -> f32 {
   let here = depth_at(texel);
-  return here > 0.0 && is_straight(texel, vec2i(1, 0), here) && is_straight(texel, vec2i(0, 1), here)
-    && is_straight(texel, vec2i(1, 1), here) && is_straight(texel, vec2i(1, -1), here);
+  if here == 0.0 || !goes_on(texel, 1, here) { return 0.0; }
+  if soft_px == 0 { return 1.0; }
+  let is_unmixed = goes_on(texel, soft_px, here) && goes_on(texel, max(soft_px / 2, 1), here);
+  return select(MIXED, 1.0, is_unmixed);
 }
 
 @fragment
 fn fs_mark(@builtin(position) at: vec4f) -> @location(0) vec4f {
   let texel = vec2i(at.xy);
   let is_clear = is_clear_of_toy(texel);
-  let marks = vec3<bool>(is_clear, is_one_surface(texel), is_clear && is_well_clear_of_toy(texel));
-  return vec4f(select(vec3f(0.0), vec3f(1.0), marks), 1.0);
+  let clear = select(vec2f(0.0), vec2f(1.0), vec2<bool>(is_clear, is_clear && is_well_clear_of_toy(texel)));
+  return vec4f(clear.x, one_surface(texel), clear.y, 1.0);
 }

@@ -1,12 +1,10 @@
 // The picture: plate times new shadow, without real toy and real shadow, under the animated toy.
-//
 //   out = gain plate (M' + r)         in general, r the pooled residual, fading with large changes
 //   out = frame + gain plate (M' - M) if the receiver is visible and M' is near M: r is the pixel's
 //                                     own, so the frame passes; also for unexplained things
 //   the mixture of `thing_rim`        at the rim of a thing
 //   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r), not a plate
 // A glossy receiver's reflection is removed from the frame first, and the shown toy's is added last.
-//
 // Reads: all state of the receiver, visibility and ambient of the animated pose, the drawn toy.
 // Writes: linear colour, opaque. CPU reference: tests/reference/src/composite.rs.
 
@@ -20,6 +18,7 @@
 //#import common/fullscreen
 //#import common/layers
 //#import common/borders
+//#import common/behind_outline
 //#import common/made_grain
 //#import common/marks
 //#import common/reflection
@@ -203,7 +202,7 @@ fn before_toy(texel: vec2i, f: vec3f) -> vec3f {
 }
 
 // The picture at a texel with the drawn toy over the receiver of a place: at a rim, a neighbour.
-fn over_receiver(texel: vec2i, place: vec2i, toy: vec4f) -> vec3f {
+fn over_receiver(texel: vec2i, place: vec2i, toy: vec4f, n_draws: u32) -> vec3f {
   let frame_color = frame_at(place);
   let evident = marks_at(place);
   let in_box = box_texel(texel);
@@ -214,7 +213,9 @@ fn over_receiver(texel: vec2i, place: vec2i, toy: vec4f) -> vec3f {
   var change = vec4f(0.0);
   let has_moved = evident.b == 0.0 && has_moved_beside(box_texel(place));
   let at = vec4f(vec2f(place) + 0.5, 0.0, 1.0);
-  let laid = (1.0 - toy.a) * receiver(at, frame_color, evident, has_moved, drawing.strength, &change) + toy.rgb;
+  var below = receiver(at, frame_color, evident, has_moved, drawing.strength, &change);
+  if toy.a > 0.0 && is_soft() && !is_thing(evident) && all(place == texel) { below = behind_outline(texel, below, n_draws); }
+  let laid = (1.0 - toy.a) * below + toy.rgb;
   // Most pixels show the receiver alone and need no test of the toy.
   if change.a == 0.0 { return grained_toy(laid, texel, toy.a); }
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
@@ -231,9 +232,8 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let is_before = is_before_toy(marks_at(texel));
   if is_before && !is_rim { return vec4f(grained_toy(before_toy(texel, frame_at(texel)), texel, 0.0), 1.0); }
   let toy = toy_layer(box_texel(texel), n_draws);
-  // The toy is over the rim of a thing that is not before it.
-  let is_over = is_rim && !is_before;
-  let shown = over_receiver(texel, texel + steps.zw, select(toy, vec4f(0.0), is_over));
+  let is_over = is_rim && !is_before; // The toy is over the rim of a thing that is not before it.
+  let shown = over_receiver(texel, texel + steps.zw, select(toy, vec4f(0.0), is_over), n_draws);
   if !is_rim { return vec4f(shown, 1.0); }
   let mixed = rim_mixed(texel, steps, shown);
   return vec4f(select(mixed, (1.0 - toy.a) * mixed + toy.rgb, is_over), 1.0);

@@ -192,19 +192,26 @@ fn facing(in_anchor: vec3f, normal: vec3f) -> f32 {
   return dot(outward, normalize(globals.camera_in_anchor - in_anchor));
 }
 
+// Each light's cosine times its visibility at a still place of a glossy toy before: its paint and its
+// reflection both depend on it.
+fn received_before(place: vec3f, normal: vec3f) -> vec4f {
+  if !IS_GLOSSY || IS_COARSE { return vec4f(0.0); }
+  return light_received(true, normal, place);
+}
+
 // The reflection of a still place before, over the gain.
-fn reflected_before(in_region: vec2i, material: u32, place: vec3f, normal: vec3f) -> vec3f {
+fn reflected_before(in_region: vec2i, material: u32, place: vec3f, normal: vec3f, received: vec4f) -> vec3f {
   if !IS_GLOSSY { return vec3f(0.0); }
   if IS_COARSE { return seen_reflected(clamped_to_physical_box(physical_texel(in_region))); }
-  return reflected_at(material, normal, place, light_received(true, normal, place));
+  return reflected_at(material, normal, place, received);
 }
 
 // The light on a still place before, as radiance over base colour, if the light after is `lit` at
 // its centre; that becomes the mean over a soft picture's spread.
 //
 // It is that of the same point, since the centre of a pixel may not represent a fold or a shadow's
-// edge in it. Most still pixels are unchanged in both.
-fn light_before(in_region: vec2i, shown: mat3x3f, normal: vec3f, before: mat3x3f, normal_before: vec3f, lit: ptr<function, vec3f>) -> vec3f {
+// edge in it; `received` is that light on a glossy toy. Most still pixels are unchanged in both.
+fn light_before(in_region: vec2i, shown: mat3x3f, normal: vec3f, before: mat3x3f, normal_before: vec3f, received: vec4f, lit: ptr<function, vec3f>) -> vec3f {
   let seen = seen_under(clamped_to_physical_box(physical_texel(in_region)));
   if IS_COARSE { return seen; }
   let is_same = light_change(*lit, seen) == 0.0;
@@ -214,6 +221,7 @@ fn light_before(in_region: vec2i, shown: mat3x3f, normal: vec3f, before: mat3x3f
     return light_on(true, before, normal_before);
   }
   if is_same { return *lit; }
+  if IS_GLOSSY { return toy_radiance_over_base(normal_before, received); }
   return toy_radiance_over_base(normal_before, light_received(true, normal_before, before[0]));
 }
 
@@ -270,8 +278,9 @@ fn fs_toy(
   if is_moved < 1.0 {
     let in_region = vec2i(at.xy + globals.toy_box_origin_px);
     var after = lit;
-    let reflects_before = reflected_before(in_region, material, physical_in_anchor, physical_normal);
-    let before = light_before(in_region, place, normal, physical_place, physical_normal, &after);
+    let was_received = received_before(physical_in_anchor, physical_normal);
+    let reflects_before = reflected_before(in_region, material, physical_in_anchor, physical_normal, was_received);
+    let before = light_before(in_region, place, normal, physical_place, physical_normal, was_received, &after);
     relit_part = light_change(looks(base, after, reflects), looks(base, before, reflects_before));
     if is_seen_still(in_region, physical_px, clip.z / clip.w, base) {
       let own = paint_color(physical_texel(in_region));

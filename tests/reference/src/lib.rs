@@ -9,7 +9,9 @@
 //! could not find a wrong one.
 
 pub mod appearance;
+pub mod behind_outline;
 pub mod box_filter;
+pub mod camera_paint;
 pub mod camera_planes;
 pub mod census;
 pub mod composite;

@@ -60,18 +60,30 @@ pub struct ReceiverPoint {
     pub in_plane: DVec2,
 }
 
-/// Part of the sky that the faces below a rectangle's edges hide from a point.
-fn hidden_sky(at: DVec2, own_from_rect: &DMat4, rect: &PlaneRect) -> f64 {
+/// The corners of a rectangle, around it.
+fn corners_of(PlaneRect { min, max }: &PlaneRect) -> [DVec2; 4] {
+    [*min, DVec2::new(max.x, min.y), *max, DVec2::new(min.x, max.y)]
+}
+
+/// How dark the faces below the edges of a top are, from each corner to the next: 1 if a light meets
+/// one.
+fn darkness_of_faces(top: &ReceiverPlane) -> [f64; 4] {
+    let corners = corners_of(&top.rect);
+    [0, 1, 2, 3].map(|index| {
+        let (a, b) = (corners[index], corners[(index + 1) % 4]);
+        let outwards = DVec2::new(b.y - a.y, a.x - b.x);
+        let meets =
+            |light: &DVec4| outwards.dot(DVec2::new(light.x, light.z) - light.w * 0.5 * (a + b)) > 0.0;
+        if top.lights.iter().any(meets) { 1.0 } else { 0.75 }
+    })
+}
+
+/// Part of the sky that the faces below a rectangle's edges, so dark, hide from a point.
+fn hidden_sky(at: DVec2, own_from_rect: &DMat4, rect: &PlaneRect, darkness: [f64; 4]) -> f64 {
     const N_AZIMUTHS: u32 = 200;
     let seen =
         |x: f64, z: f64| own_from_rect.transform_point3(DVec3::new(x, 0.0, z)) - DVec3::new(at.x, 0.0, at.y);
-    let PlaneRect { min, max } = *rect;
-    let corners = [
-        seen(min.x, min.y),
-        seen(max.x, min.y),
-        seen(max.x, max.y),
-        seen(min.x, max.y),
-    ];
+    let corners = corners_of(rect).map(|corner| seen(corner.x, corner.y));
     let middle = corners.into_iter().sum::<DVec3>() / 4.0;
     let turn = |a: DVec3, b: DVec3| a.x * b.z - a.z * b.x;
     let mut hidden = 0.0;
@@ -89,7 +101,8 @@ fn hidden_sky(at: DVec2, own_from_rect: &DMat4, rect: &PlaneRect) -> f64 {
             let part = turn(a, along) / (turn(a, along) - turn(b, along));
             let edge = a.lerp(b, part);
             let sine = edge.normalize().y;
-            hidden += sine * sine * over.abs() / f64::from(N_AZIMUTHS) / std::f64::consts::TAU;
+            hidden +=
+                darkness[index] * sine * sine * over.abs() / f64::from(N_AZIMUTHS) / std::f64::consts::TAU;
         }
     }
     hidden
@@ -237,17 +250,17 @@ impl Region {
     #[must_use]
     pub fn open_sky(&self, point: ReceiverPoint) -> f64 {
         let hidden = self.hidden_by_all(point.receiver, |own_from_top, top| {
-            hidden_sky(point.in_plane, own_from_top, &top.rect)
+            hidden_sky(point.in_plane, own_from_top, &top.rect, darkness_of_faces(top))
         });
         (1.0 - hidden).max(LEAST_SKY)
     }
 
-    /// The part of a point's sky that one top hides by itself.
+    /// The part of a point's sky that the faces below one top hide by themselves, as black ones.
     #[must_use]
     pub fn sky_hidden_by(&self, top: &ReceiverPlane, point: ReceiverPoint) -> f64 {
         let own_from_anchor = self.plane_of(point).plane_from_anchor;
         let own_from_top = own_from_anchor * top.plane_from_anchor.inverse();
-        hidden_sky(point.in_plane, &own_from_top, &top.rect)
+        hidden_sky(point.in_plane, &own_from_top, &top.rect, [1.0; 4])
     }
 
     /// What the tops of things on a receiver hide together: of what lies on another thing counts

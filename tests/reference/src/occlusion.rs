@@ -5,7 +5,7 @@
 
 use glam::{DVec2, DVec3, DVec4, UVec2};
 
-use super::model::Region;
+use super::model::{ReceiverPoint, Region};
 use super::real::{Real, Vector};
 
 /// Sample position of light point `i` of `n_points` within a pixel, from its top left corner, in
@@ -161,6 +161,69 @@ pub fn hidden_share_from<R: Real>(
     }
     let n_points = caster.light_points.len() as f64;
     Some(n_hidden / n_points)
+}
+
+/// Part of the light from a place of a receiver that all lights together give it.
+const LIT_PART: f64 = 0.8;
+/// Cosine between a receiver and the first one below which it is upright.
+const UPRIGHT: f64 = 0.5;
+
+/// The part of a direction's light that the toy's shadows take from an upright receiver's point,
+/// which sees a place of another receiver there; 0 if it sees none, or one that is hidden from the
+/// camera. `direction` is in the receiver's space. `hidden` is the part of a light that the toy
+/// hides from that place, whose position in the region is given, too.
+#[must_use]
+pub fn taken_from(
+    region: &Region,
+    from: ReceiverPoint,
+    direction: DVec3,
+    hidden: impl Fn(usize, ReceiverPoint, DVec2) -> f64,
+) -> f64 {
+    let Some(place) = seen_place(region, from, direction) else {
+        return 0.0;
+    };
+    let plane = region.plane_of(place);
+    let at_px = plane.region_px(place.in_plane);
+    let Some(at_px) = at_px.filter(|at| at.min_element() >= 0.0 && at.cmplt(region.size_px.as_dvec2()).all())
+    else {
+        return 0.0;
+    };
+    let seen = region.receiver_point(at_px.floor() + 0.5);
+    if seen.is_none_or(|seen| seen.receiver != place.receiver) {
+        return 0.0;
+    }
+    let above: Vec<usize> = (0..plane.lights.len())
+        .filter(|i| plane.lights[*i].y > 0.0)
+        .collect();
+    let taken = above
+        .iter()
+        .map(|i| hidden(*i, place, at_px) * region.falloff(*i, place));
+    LIT_PART * taken.sum::<f64>() / above.len().max(1) as f64
+}
+
+/// The nearest place of a receiver that an upright one sees in a direction of its space.
+fn seen_place(region: &Region, from: ReceiverPoint, direction: DVec3) -> Option<ReceiverPoint> {
+    let own = &region.receivers[from.receiver];
+    if own.plane_from_anchor.y_axis.y >= UPRIGHT {
+        return None;
+    }
+    let places = region
+        .receivers
+        .iter()
+        .enumerate()
+        .filter_map(|(receiver, plane)| {
+            let plane_from_own = plane.plane_from_anchor * own.plane_from_anchor.inverse();
+            let at = plane_from_own.transform_point3(DVec3::new(from.in_plane.x, 0.0, from.in_plane.y));
+            let along = plane_from_own.transform_vector3(direction);
+            let distance = at.y / -along.y;
+            let met = at + distance * along;
+            let in_plane = DVec2::new(met.x, met.z);
+            let is_met =
+                receiver != from.receiver && at.y > 0.0 && along.y < 0.0 && plane.rect.holds(in_plane);
+            is_met.then_some((distance, ReceiverPoint { receiver, in_plane }))
+        });
+    let nearest = places.min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.map(|(_, place)| place)
 }
 
 /// A bounding volume hierarchy of triangles.

@@ -24,6 +24,8 @@ pub struct SeenPaint {
     pub shown: DVec3,
     /// Its expected colour, from base colour, gain and fitted light.
     pub expected: DVec3,
+    /// Its weight, from 0 to 1: less if a blurred picture mixes another surface into it.
+    pub weight: f64,
 }
 
 /// Cells of a cube, x fastest, then y.
@@ -105,8 +107,9 @@ fn pooled<'a>(seen: impl Iterator<Item = &'a SeenPaint>) -> DVec4 {
     for paint in seen {
         // The sums include a constant, as if each pixel also had an amount too dark to measure,
         // exactly as expected.
-        shown += paint.shown + DARKEST_USABLE;
-        expected += paint.expected.min(DVec3::splat(MOST_EXPECTED)) + DARKEST_USABLE;
+        shown += paint.weight * paint.shown + DARKEST_USABLE;
+        let limited = paint.expected.min(DVec3::splat(MOST_EXPECTED));
+        expected += paint.weight * limited + DARKEST_USABLE;
         n_pixels += 1.0;
     }
     if n_pixels == 0.0 {

@@ -21,6 +21,8 @@ pub struct Marks {
     pub is_clear: bool,
     /// It shows one surface of the toy.
     pub is_one_surface: bool,
+    /// The picture's blur mixes another surface into it.
+    pub is_mixed: bool,
     /// It is well clear of the toy.
     pub is_well_clear: bool,
 }
@@ -42,14 +44,18 @@ pub fn mark(depth: &Raster<f64>, soft_px: i32, texel: UVec2) -> Marks {
         let (before, after) = (at(-side), at(side));
         before > 0.0 && after > 0.0 && (before + after - 2.0 * here).abs() <= DEPTH_BEND * here
     };
-    let sides = [IVec2::X, IVec2::Y, IVec2::ONE, IVec2::new(1, -1)];
+    let goes_on = |far_px: i32| {
+        let sides = [IVec2::X, IVec2::Y, IVec2::ONE, IVec2::new(1, -1)];
+        sides.into_iter().all(|side| is_straight(far_px * side))
+    };
     let is_clear = around(EDGE_PX + soft_px, 1).all(|((_, x), (_, y))| is_free(x, y));
     // Like the dark squares of a chessboard.
     let mut bleeding =
         around(BLEED_PX, BLEED_STEP_PX).filter(|((column, _), (row, _))| (column + row) % 2 == 0);
     Marks {
         is_clear,
-        is_one_surface: here > 0.0 && sides.into_iter().all(is_straight),
+        is_one_surface: here > 0.0 && goes_on(1),
+        is_mixed: soft_px > 0 && !(goes_on(soft_px) && goes_on((soft_px / 2).max(1))),
         is_well_clear: is_clear && bleeding.all(|((_, x), (_, y))| is_free(x, y)),
     }
 }

@@ -6,7 +6,9 @@ use app_scene::geometry::disc::vogel_disc;
 use glam::{DVec2, DVec3, UVec2};
 
 use super::model::Region;
-use super::occlusion::{Caster, Occluder, hidden_share, hidden_share_from, sample_position, spread_position};
+use super::occlusion::{
+    Caster, Occluder, hidden_share, hidden_share_from, sample_position, spread_position, taken_from,
+};
 use super::raster::Raster;
 use super::real::{Real, Vector};
 
@@ -19,7 +21,32 @@ pub fn visibility_map<R: Real>(casters: &[Caster<R>], region: &Region, map_px: U
     Raster::from_fn(map_px, |texel| 1.0 - hidden(texel).unwrap_or(0.0))
 }
 
-/// The same for a blurred picture, given a root of the blur's covariance.
+/// Visibility of the ambient light over a map: what the mesh leaves, less on upright receivers what
+/// its shadows on others take. `shadows` has the visibilities of the lights over the region.
+#[must_use]
+pub fn ambient_map<R: Real>(
+    casters: &[Caster<R>],
+    region: &Region,
+    map_px: UVec2,
+    shadows: &[Raster<f64>],
+) -> Raster<f64> {
+    let open = visibility_map(casters, region, map_px);
+    let region_px_per_texel = region.size_px.as_dvec2() / map_px.as_dvec2();
+    Raster::from_fn(map_px, |texel| {
+        let centre = (texel.as_dvec2() + 0.5) * region_px_per_texel;
+        let Some(from) = region.receiver_point(centre).filter(|_| casters.len() > 1) else {
+            return open.at(texel);
+        };
+        let directions = &casters[from.receiver].light_points;
+        let hidden = |i: usize, _, at_px: DVec2| 1.0 - shadows[i].at(at_px.as_uvec2());
+        let taken = directions
+            .iter()
+            .map(|direction| taken_from(region, from, direction.truncate(), hidden));
+        open.at(texel) * (1.0 - taken.sum::<f64>() / directions.len() as f64).max(0.0)
+    })
+}
+
+/// Visibility as by [`visibility_map`] for a blurred picture, given a root of the blur's covariance.
 #[must_use]
 pub fn soft_visibility_map<R: Real>(
     casters: &[Caster<R>],

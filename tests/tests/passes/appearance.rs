@@ -38,7 +38,9 @@ fn toy(size: UVec2) -> Toy {
             let is_sparse = number(at / 16, 92) < 0.5;
             let share = if is_sparse { 0.02 } else { 0.3 };
             let is_seen = depth.at(at) > 0.0 && number(at, 91) < share;
-            DVec4::new(0.0, f64::from(u8::from(is_seen)), 0.0, 1.0)
+            // Another surface may be mixed into it.
+            let of_surface = if number(at, 93) < 0.4 { 0.0625 } else { 1.0 };
+            DVec4::new(0.0, if is_seen { of_surface } else { 0.0 }, 0.0, 1.0)
         }),
         depth,
         normal: numbers(size, 23).map(|n| (2.0 * n - 1.0).as_vec4().as_dvec4()),
@@ -62,7 +64,7 @@ fn errors(source: &str) -> Errors {
             base: toy.base.at(at).truncate().extend(0.5 + 0.5 * toy.normal.at(at).y),
         },
         depth: toy.depth.at(at),
-        is_one_surface: toy.validity.at(at).y == 1.0,
+        is_one_surface: toy.validity.at(at).y > 0.0,
     });
     let found = Raster::from_fn(size, |texel| clean(&seen, texel));
     let n_none = found.texels().iter().filter(|pixel| pixel.is_none()).count();
@@ -136,7 +138,7 @@ fn a_fault_in_the_appearance_is_found() {
         ("REACH_PX: i32 = 3", "REACH_PX: i32 = 2"),
         ("OTHER_SURFACE: i32 = 64", "OTHER_SURFACE: i32 = 4"),
         ("DEPTH_STEP: f32 = 0.005", "DEPTH_STEP: f32 = 0.001"),
-        ("0).g == 1.0", "0).a == 1.0"),
+        ("0).g > 0.0", "0).g == 1.0"),
         ("marks.b == 1.0", "marks.a == 1.0"),
         ("|| is_same_surface(", "|| is_same_surface(2.0 * "),
         ("far < least", "far <= least"),

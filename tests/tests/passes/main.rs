@@ -7,6 +7,8 @@ mod alone;
 mod appearance;
 mod baseline;
 mod behind;
+mod behind_outline;
+mod camera_paint;
 mod casters;
 mod compare_selftest;
 mod composite;

@@ -9,7 +9,7 @@ use crate::alone::{Draw, check_faults, source};
 use crate::device::Device;
 use crate::errors::{Errors, pairs_of};
 use crate::scrambled::buffers;
-use crate::setups::{BOOK, PILE, RAMP, Setup, WALL};
+use crate::setups::{BOOK, PILE, RAMP, Setup, UNLIT_FACES, WALL};
 use crate::stand::Stand;
 
 /// A pass of the registry that contains it, and vertices for a whole target.
@@ -26,7 +26,7 @@ const PROBE: &str = "
 /// pixels that do not lie at the border of a receiver.
 fn errors(source: &str) -> Errors {
     let source = format!("{source}{PROBE}");
-    let pairs = [BOOK, PILE, RAMP, WALL].map(|setup| pairs(&source, setup));
+    let pairs = [BOOK, UNLIT_FACES, PILE, RAMP, WALL].map(|setup| pairs(&source, setup));
     Errors::between(pairs.concat())
 }
 
@@ -122,6 +122,9 @@ fn a_fault_in_the_light_beside_things_is_found() {
             "* turn_of(a - middle, b - middle) > 0.0",
         ),
         ("0.5 * INVERSE_PI * max(ground", "INVERSE_PI * max(ground"),
+        ("UNLIT_FACE: f32 = 0.75", "UNLIT_FACE: f32 = 0.8"),
+        ("light.xz - light.w * start", "light.xz"),
+        ("vec2f(along.y, -along.x)", "vec2f(-along.y, along.x)"),
         ("left * ratio * ratio * ratio", "left * ratio * ratio"),
     ];
     check_faults(PASS, &faults, ALLOWED, errors);

@@ -27,6 +27,8 @@ pub(crate) enum Beside {
     Book,
     /// Three equal books, each lying on another.
     Pile,
+    /// A book, of which the top and the side before the camera are receivers.
+    Side,
     /// A ramp with its high edge to the left: its top is tilted.
     Ramp,
 }
@@ -82,6 +84,27 @@ const RAMP_BULB: Light = Light::Sphere {
     radius_m: 0.03,
 };
 
+/// Over the left half of the book, so that it meets none of its faces.
+const BULB_OVER_BOOK: Light = Light::Sphere {
+    position_in_world: DVec3::new(-0.13, 0.5, 0.03),
+    radius_m: 0.03,
+};
+
+/// Behind the toy and the book.
+const FAR_BULB: Light = Light::Sphere {
+    position_in_world: DVec3::new(0.35, 0.45, -0.5),
+    radius_m: 0.03,
+};
+const LEFT_BULB: Light = Light::Sphere {
+    position_in_world: DVec3::new(0.1, 0.5, -0.3),
+    radius_m: 0.02,
+};
+/// Below the table, before the side of the book.
+const BULB_BELOW: Light = Light::Sphere {
+    position_in_world: DVec3::new(0.1, -0.4, 0.6),
+    radius_m: 0.02,
+};
+
 const NEAR: Setup = Setup {
     name: "bulb",
     image_px: UVec2::new(97, 61),
@@ -108,6 +131,12 @@ pub(crate) const BOOK: Setup = Setup {
     beside: Beside::Book,
     ..NEAR
 };
+/// Two faces of the book see no light, although one lamp is on their side of its middle.
+pub(crate) const UNLIT_FACES: Setup = Setup {
+    name: "unlit faces",
+    lights: &[BULB, BULB_OVER_BOOK],
+    ..BOOK
+};
 /// The table beside the pile sees none of the light, and little of the sky.
 pub(crate) const PILE: Setup = Setup {
     name: "pile",
@@ -120,6 +149,14 @@ pub(crate) const RAMP: Setup = Setup {
     name: "ramp",
     lights: &[RAMP_BULB, BULB],
     beside: Beside::Ramp,
+    ..BOOK
+};
+/// The side of the book is lit by the table, on which the toy's shadows fall before it, partly
+/// within the book's own; a light below the table casts none there.
+pub(crate) const SIDE: Setup = Setup {
+    name: "side",
+    lights: &[FAR_BULB, LEFT_BULB, BULB_BELOW],
+    beside: Beside::Side,
     ..BOOK
 };
 /// Ambient light alone.

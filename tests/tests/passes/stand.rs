@@ -239,8 +239,27 @@ fn receivers(world_from_table: &DMat4, beside: Beside) -> Vec<Receiver> {
         Beside::Nothing => vec![table],
         Beside::Wall => vec![table, wall],
         Beside::Book => vec![table, book(0.025)],
+        Beside::Side => {
+            let side = side(&book(0.05));
+            vec![table, book(0.05), side]
+        }
         Beside::Pile => vec![table, book(0.03), book(0.06), book(0.09)],
         Beside::Ramp => vec![table, ramp],
+    }
+}
+
+/// The side of a book below the edge of its top with the largest z.
+fn side(top: &Receiver) -> Receiver {
+    let half_extent_m = DVec2::new(top.half_extent_m.x, 0.025);
+    let top_from_side = DMat4::from_rotation_translation(
+        DQuat::from_rotation_x(FRAC_PI_2),
+        DVec3::new(0.0, -half_extent_m.y, top.half_extent_m.y),
+    );
+    Receiver {
+        name: "side".to_owned(),
+        world_from_plane: top.world_from_plane * top_from_side,
+        half_extent_m,
+        surface: Surface::Textured,
     }
 }
 

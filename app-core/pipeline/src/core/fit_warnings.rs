@@ -5,7 +5,7 @@ use super::{Core, CoreError};
 use crate::frame::warning::{Mismatch, Outlier, Warning};
 use crate::model::diagnostics::conditioning::light_conditioning;
 use crate::model::diagnostics::evidence::{Evidence, PixelEvidence, linear_colors};
-use crate::model::diagnostics::outliers::outliers;
+use crate::model::diagnostics::outliers::{ReceiverCells, outliers};
 use crate::model::state::grids::MAX_CELLS;
 use crate::model::state::solution::Fit;
 use crate::readback::Map;
@@ -168,7 +168,18 @@ impl Core {
         };
         let accumulated = self.gpu.read_buffer(&model.state.residual.accumulated)?;
         let accumulated: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&accumulated);
-        let receivers = accumulated.chunks(MAX_CELLS).map(outliers);
+        let grids = model.state.layout.grids;
+        let receivers = accumulated
+            .chunks(MAX_CELLS)
+            .zip(&grids)
+            .map(|(accumulated, grid)| {
+                let [width, height] = grid.size.map(|n_cells| n_cells as usize);
+                outliers(&ReceiverCells {
+                    accumulated: &accumulated[..width * height],
+                    width,
+                    relative_side: grid.cell_m / grids[0].cell_m,
+                })
+            });
         let mut found: Vec<Outlier> = receivers.flatten().collect();
         found.sort_unstable_by_key(|outlier| *outlier as u8);
         found.dedup();

@@ -1,12 +1,11 @@
 //! The parts of WGSL that shaders import: every file of `shaders/common`.
 
+use super::wgsl::wgsl;
+
 /// Names each part's path below `shaders`, without its ending, and includes its text.
 macro_rules! texts {
     ($($name:literal),* $(,)?) => {
-        &[$((
-            concat!("common/", $name),
-            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders/common/", $name, ".wgsl")),
-        )),*]
+        &[$((concat!("common/", $name), wgsl!(concat!("common/", $name)))),*]
     };
 }
 
@@ -14,6 +13,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "accumulated",
     "baseline",
     "behind",
+    "behind_outline",
     "between_cells",
     "between_tints",
     "borders",
@@ -39,6 +39,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "made_grain",
     "marks",
     "material",
+    "mixed",
     "model",
     "moved",
     "no_light",

@@ -25,6 +25,7 @@ pub(crate) mod stages;
 pub(crate) mod texture;
 pub(crate) mod timer;
 pub(crate) mod uniforms;
+pub(crate) mod wgsl;
 pub(crate) mod work;
 
 pub use context::{AdapterChoice, GpuError, phone_limits};

@@ -8,9 +8,7 @@ use std::hash::{Hash, Hasher};
 
 use super::common;
 use super::shared::Mirror;
-
-/// Prefix of a line that imports a part.
-const IMPORT: &str = "//#import ";
+use super::wgsl::IMPORT;
 
 /// Declarations of a WGSL file that the host shares.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +53,7 @@ impl ShaderTexts {
 pub struct Shader {
     /// The pass's only name, that of its file.
     pub name: &'static str,
-    /// The file's own WGSL.
+    /// The file's own WGSL, without comments.
     pub text: &'static str,
     /// Declarations that the host shares with it.
     pub mirrors: Mirrors,
@@ -158,7 +156,7 @@ macro_rules! mirrors {
 macro_rules! shader {
     ($path:literal $($mirrors:tt)*) => {
         $crate::gpu::shader::Shader::new(
-            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders/", $path, ".wgsl")),
+            $crate::gpu::wgsl::wgsl!($path),
             $crate::gpu::shader::mirrors!($path $($mirrors)*),
         )
     };

@@ -13,13 +13,15 @@ use crate::model::frame::coverage::{COVERED_CODES, N_POSITIONS};
 use crate::model::state::solution::Fit;
 use crate::passes::globals::{Globals, ReceiverPlane};
 use crate::readback::{FloatMap, Map, read_texture};
-use app_scene::geometry::opaque::{LEAST_SKY, SHARPEST_M, STANDS, hidden_light, hidden_sky, is_top};
+use app_scene::geometry::opaque::{
+    LEAST_SKY, SHARPEST_M, STANDS, UNLIT_FACE, darkness_of_faces, hidden_light, hidden_sky, is_top,
+};
 use app_scene::scene::{Image, MAX_RECEIVERS};
 
 /// What the tops of things hide, as shaders have it.
 pub(crate) const PLATE_LIGHT: Mirrors = mirrors!(
     "common/plate_light",
-    constants: [LEAST_SKY, SHARPEST_M, STANDS]
+    constants: [LEAST_SKY, SHARPEST_M, STANDS, UNLIT_FACE]
 );
 
 impl Model {
@@ -199,7 +201,9 @@ fn unhidden(globals: &Globals, light: usize, (own, in_plane): (usize, Vec2)) -> 
 /// Part of the sky that the other receivers leave at a point of one.
 fn open_sky(globals: &Globals, (own, in_plane): (usize, Vec2)) -> f32 {
     let hidden = hidden_by_all(globals, own, |own_from_top, top| {
-        hidden_sky(in_plane.as_dvec2(), own_from_top, ends(top))
+        let lights = top.lights.map(|light| Vec4::from_array(light).as_dvec4());
+        let darkness = darkness_of_faces(ends(top), &lights[..globals.n_lights as usize]);
+        hidden_sky(in_plane.as_dvec2(), own_from_top, ends(top), darkness)
     });
     (1.0 - hidden).max(LEAST_SKY)
 }

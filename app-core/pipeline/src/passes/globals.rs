@@ -10,6 +10,7 @@ use crate::geometry::silhouette::{AROUND_PX, ByCamera, OntoReceiver, Viewers};
 use crate::geometry::view::View;
 use crate::gpu::{Buffer, Mat3Columns, Mirrors, Slot, mirrors, shared_struct};
 use app_scene::geometry::bounds::Sphere;
+use app_scene::geometry::opaque::STANDS;
 use app_scene::reflection::Reflection;
 use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS};
 use app_scene::sharpness::Spread;
@@ -84,6 +85,12 @@ impl Globals {
                 .map(|receiver| Vec3::from(receiver.plane_from_region_px.map(|[_, _, w, _]| w)))
                 .collect(),
         }
+    }
+
+    /// Whether a receiver is steeper than the top of a thing may be, such as a wall or a side.
+    pub(crate) fn is_upright(&self, receiver: usize) -> bool {
+        let receiver = self.receivers.get(receiver);
+        receiver.is_some_and(|receiver| receiver.plane_from_anchor[1][1] < STANDS)
     }
 
     /// Maximum distance of a pixel's sample positions from its centre.

@@ -13,6 +13,8 @@ pub const STANDS: f32 = 0.5;
 /// Least part of the sky that a point sees: in the narrowest gap some of its light arrives by
 /// reflection, and a plate without any light has no shares of it.
 pub const LEAST_SKY: f32 = 0.02;
+/// How dark a face is that no light meets, beside the sky that it hides: it reflects sky and table.
+pub const UNLIT_FACE: f32 = 0.75;
 
 /// Whether a rectangle may be the top of what stands on a plane y = 0; the matrix leads from its
 /// space to the plane's. An upright one is a wall, which may have a window, or a side.
@@ -103,13 +105,32 @@ fn disc_part(t: f64) -> f64 {
     0.5 + (c.asin() + c * (1.0 - c * c).sqrt()) / PI
 }
 
+/// How dark the faces below the edges of a rectangle are, beside the sky that they hide: those with
+/// the smallest z, the largest x, the largest z and the smallest x. One that a light meets counts as
+/// dark, 1: the toy's shadow beside it is on the face, too. `lights` are in the rectangle's space,
+/// homogeneous.
+#[must_use]
+pub fn darkness_of_faces([min, max]: [DVec2; 2], lights: &[DVec4]) -> [f64; 4] {
+    let meets: [&dyn Fn(&DVec4) -> bool; 4] = [
+        &|light| light.z < light.w * min.y,
+        &|light| light.x > light.w * max.x,
+        &|light| light.z > light.w * max.y,
+        &|light| light.x < light.w * min.x,
+    ];
+    meets.map(|meets| match lights.iter().any(meets) {
+        true => 1.0,
+        false => f64::from(UNLIT_FACE),
+    })
+}
+
 /// The part of the sky, cosine-weighted, that is hidden from a point of the plane y = 0 by the
 /// upright faces below the edges of a rectangle, 0 to 1; 0 if that is no top.
 ///
 /// The matrix leads from the rectangle's space, where it is on y = 0 with a smallest and a largest
-/// (x, z), to the plane's. Source: Nishita and Nakamae 1985 (Lambert's formula).
+/// (x, z), to the plane's; `darkness` is that of the faces, 1 for black ones. Source: Nishita and
+/// Nakamae 1985 (Lambert's formula).
 #[must_use]
-pub fn hidden_sky(at: DVec2, plane_from_rect: &DMat4, [min, max]: [DVec2; 2]) -> f64 {
+pub fn hidden_sky(at: DVec2, plane_from_rect: &DMat4, [min, max]: [DVec2; 2], darkness: [f64; 4]) -> f64 {
     if !is_top(plane_from_rect) {
         return 0.0;
     }
@@ -120,10 +141,13 @@ pub fn hidden_sky(at: DVec2, plane_from_rect: &DMat4, [min, max]: [DVec2; 2]) ->
     let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)].map(seen);
     let middle = seen(0.5 * (min + max));
     let edges = (0..4).map(|index| (corners[index], corners[(index + 1) % 4]));
-    let turned_here = edges
-        .filter(|(a, b)| a.xz().perp_dot(b.xz()) * (*a - middle).xz().perp_dot((*b - middle).xz()) < 0.0);
+    let is_turned_here =
+        |a: DVec3, b: DVec3| a.xz().perp_dot(b.xz()) * (a - middle).xz().perp_dot((b - middle).xz()) < 0.0;
     let above = |end: DVec3| DVec3::new(end.x, end.y.max(0.0), end.z);
-    turned_here.map(|(a, b)| hidden_below(above(a), above(b))).sum()
+    let turned_here = edges.zip(darkness).filter(|((a, b), _)| is_turned_here(*a, *b));
+    turned_here
+        .map(|((a, b), darkness)| darkness * hidden_below(above(a), above(b)))
+        .sum()
 }
 
 /// The same by the upright face below one edge, from its ends relative to the point.

@@ -10,7 +10,7 @@ mod upright;
 
 use std::path::{Path, PathBuf};
 
-use app_core::alignment::{Alignment, Outlines, PoseAlignment};
+use app_core::alignment::{Alignment, LightAlignment, Outlines, PoseAlignment};
 use app_core::frame::FrameInput;
 use app_core::lens::Distortion;
 use app_core::probe::ProbeReport;
@@ -123,6 +123,20 @@ fn against_listed(error: &LightError) -> String {
     )
 }
 
+/// Angle within which a direction is listed as well as it can be measured, in radians: half a
+/// degree, which is 4 mm of the middle of a lamp at half a metre.
+const LISTED_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
+/// The same for a lamp's distance and size, as a logarithm: a tenth.
+const LISTED_RATIO: f64 = 0.1;
+
+/// Whether an estimate agrees with the list as well as a list can be measured. It may move the
+/// shadow visibly all the same, so that the estimate is used.
+fn is_as_listed(light: &LightAlignment) -> bool {
+    let ratios = [Some(light.distance_ratio), light.size_ratio];
+    let mut ratios = ratios.into_iter().flatten();
+    light.turned_rad <= LISTED_RAD && ratios.all(|ratio| ratio.ln().abs() <= LISTED_RATIO)
+}
+
 /// Ratios of sizes that differ from 1 by rounding.
 const SAME_SIZE: f64 = 1e-6;
 
@@ -226,7 +240,10 @@ impl Findings {
                 light.turned_rad.to_degrees(),
                 light.distance_ratio
             );
-            self.tell(message, light.is_applied && light.is_moved);
+            self.tell(
+                message,
+                light.is_applied && light.is_moved && !is_as_listed(light),
+            );
         }
         if let Some(probe) = &report.probe {
             self.probe(probe, report.no_light.is_some());

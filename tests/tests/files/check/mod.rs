@@ -300,6 +300,25 @@ fn an_aligned_session_has_the_lights_that_were_found() {
     assert!(index["lights"][0].get("direction_to_light").is_none());
 }
 
+/// A lamp that is listed some millimetres off is found elsewhere, which is no mistake of the list.
+#[test]
+fn a_lamp_listed_as_well_as_it_can_be_measured_is_not_wrong() {
+    let told = |off_m: f64| {
+        let session = changed("lamp", |index| {
+            let x = index["lights"][0]["position"][0].as_f64().unwrap();
+            index["lights"][0]["position"][0] = json!(x + off_m);
+        });
+        let out = Temporary::new("drawing");
+        check(&session.0, &out.0, (Asked::default(), Source::Given)).unwrap()
+    };
+    let is_light = |line: &&String| line.starts_with("lights[0]: the estimate from its shadow");
+    let slightly = told(0.005);
+    assert_eq!(slightly.wrong, Vec::<String>::new());
+    assert_eq!(slightly.facts.iter().filter(is_light).count(), 1, "{slightly:?}");
+    let clearly = told(0.03);
+    assert_eq!(clearly.wrong.iter().filter(is_light).count(), 1, "{clearly:?}");
+}
+
 #[test]
 fn an_aligned_session_is_right() {
     let session = changed("align", |index| {

@@ -1,13 +1,15 @@
 //! The parts of a light and of the sky that a rectangle hides, against rays.
 
 use app_scene::geometry::disc::{ambient_directions, vogel_disc};
-use app_scene::geometry::opaque::{hidden_light, hidden_sky};
+use app_scene::geometry::opaque::{UNLIT_FACE, darkness_of_faces, hidden_light, hidden_sky};
 use app_scene::scene::Light;
 use glam::{DMat4, DQuat, DVec2, DVec3};
 
 /// A book's top in its own space: its smallest and largest (x, z).
 const TOP: [DVec2; 2] = [DVec2::new(-0.06, -0.04), DVec2::new(0.06, 0.04)];
 const HEIGHT_M: f64 = 0.03;
+/// Faces without any light of their own.
+const BLACK: [f64; 4] = [1.0; 4];
 
 /// Whether a ray that rises from a point beside the book meets it.
 fn meets_book(from: DVec3, along: DVec3) -> bool {
@@ -157,7 +159,7 @@ fn sky_behind_a_book() {
             .filter(|along| meets_book(from, along.truncate().as_dvec3()));
         let part = met.count() as f64 / directions.len() as f64;
         let at = table_from_top.transform_point3(from);
-        let hidden = hidden_sky(DVec2::new(at.x, at.z), &table_from_top, TOP);
+        let hidden = hidden_sky(DVec2::new(at.x, at.z), &table_from_top, TOP, BLACK);
         assert!((hidden - part).abs() < 2e-3, "{from}: {hidden} for {part}");
     }
     let at = |x: f64| {
@@ -165,12 +167,29 @@ fn sky_behind_a_book() {
             DVec2::new(x, 0.0),
             &DMat4::from_translation(HEIGHT_M * DVec3::Y),
             TOP,
+            BLACK,
         )
     };
     assert!(at(0.061) > 0.4, "beside the book: {}", at(0.061));
     // Neither a wall nor what is below hides any.
     let wall = DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2);
-    assert_eq!(hidden_sky(DVec2::new(0.1, 0.0), &wall, TOP), 0.0);
+    assert_eq!(hidden_sky(DVec2::new(0.1, 0.0), &wall, TOP, BLACK), 0.0);
     let below = DMat4::from_translation(-HEIGHT_M * DVec3::Y);
-    assert_eq!(hidden_sky(DVec2::new(0.1, 0.0), &below, TOP), 0.0);
+    assert_eq!(hidden_sky(DVec2::new(0.1, 0.0), &below, TOP, BLACK), 0.0);
+}
+
+/// A light is before the face with the largest x, and behind the others.
+#[test]
+fn a_face_that_a_light_meets_is_dark() {
+    let unlit = f64::from(UNLIT_FACE);
+    let beside = DVec3::new(1.0, 0.4, 0.0);
+    for light in [beside.extend(1.0), beside.normalize().extend(0.0)] {
+        assert_eq!(darkness_of_faces(TOP, &[light]), [unlit, 1.0, unlit, unlit]);
+    }
+    let above = DVec3::new(0.0, 0.4, 0.0).extend(1.0);
+    assert_eq!(darkness_of_faces(TOP, &[above]), [unlit; 4]);
+    assert_eq!(
+        darkness_of_faces(TOP, &[above, DVec3::new(-1.0, 0.1, -1.0).extend(1.0)]),
+        [1.0, unlit, unlit, 1.0]
+    );
 }

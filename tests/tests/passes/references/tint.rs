@@ -23,6 +23,7 @@ fn seen(cell: UVec3, material: usize, paint: DVec3) -> Vec<SeenPaint> {
         material,
         shown: paint * EXPECTED,
         expected: EXPECTED,
+        weight: 1.0,
     };
     vec![pixel; 100]
 }

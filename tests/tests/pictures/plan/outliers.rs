@@ -1,7 +1,23 @@
 //! Classification of residuals.
 
 use app_core::frame::Outlier;
-use app_pipeline::model::diagnostics::outliers::outliers;
+use app_pipeline::model::diagnostics::outliers::{ReceiverCells, outliers};
+
+/// Number of cells in a row.
+const WIDTH: usize = 4;
+
+/// Outliers among cells of the first receiver.
+fn of_first(accumulated: &[[f32; 4]]) -> Vec<Outlier> {
+    of_cells((accumulated, WIDTH), 1.0)
+}
+
+fn of_cells((accumulated, width): (&[[f32; 4]], usize), relative_side: f32) -> Vec<Outlier> {
+    outliers(&ReceiverCells {
+        accumulated,
+        width,
+        relative_side,
+    })
+}
 
 /// Some cells with the same residual from a few frames, among many without any.
 fn cells(residual: [f32; 3], n_cells: usize) -> Vec<[f32; 4]> {
@@ -23,14 +39,33 @@ fn a_shadow_is_darker_in_all_channels_alike() {
         ([-0.1, -0.1, -0.1], vec![]),
         ([0.2, 0.2, 0.2], vec![]),
     ] {
-        assert_eq!(outliers(&cells(residual, 12)), expected, "{residual:?}");
+        assert_eq!(of_first(&cells(residual, 12)), expected, "{residual:?}");
     }
 }
 
 #[test]
 fn a_cell_or_two_are_no_thing() {
-    assert_eq!(outliers(&cells([0.6, 0.6, 0.6], 2)), []);
-    assert_eq!(outliers(&[]), []);
+    assert_eq!(of_first(&cells([0.6, 0.6, 0.6], 2)), []);
+    assert_eq!(of_first(&[]), []);
     let uncertain = vec![[0.1, 0.1, 0.1, 0.2]; 50];
-    assert_eq!(outliers(&uncertain), []);
+    assert_eq!(of_first(&uncertain), []);
+}
+
+/// On the side of a book the toy's shadow ends some millimetres beside its place: a band of two or
+/// three cells, of which five make two of the table's.
+#[test]
+fn a_narrow_band_is_a_misplaced_edge() {
+    let dark = [-0.9, -0.9, -0.8, 2.0];
+    let band = |width: usize| {
+        let row = |y: usize| (0..20).map(move |x| (y / 3..y / 3 + width).contains(&x));
+        let cells: Vec<_> = (0..20)
+            .flat_map(row)
+            .map(|is_dark| if is_dark { dark } else { [0.0, 0.0, 0.0, 2.0] })
+            .collect();
+        cells
+    };
+    assert_eq!(of_cells((&band(3), 20), 0.43), []);
+    assert_eq!(of_cells((&band(7), 20), 0.43), [Outlier::Shadow]);
+    assert_eq!(of_cells((&band(1), 20), 1.0), []);
+    assert_eq!(of_cells((&band(3), 20), 1.0), [Outlier::Shadow]);
 }

@@ -13,7 +13,7 @@ use crate::model::plan::Plan;
 
 pub(crate) const SHADER: Shader = shader!("capture/validity", constants: [EDGE_PX, BLEED_PX]);
 const SLOTS: &[Slot] = &[Slot::Depth, Slot::per_use::<i32>()];
-/// Format of the mask: r for the receiver, g for the toy, b for the receiver well clear of the toy.
+/// Format of the mask: r for the receiver, g for the toy (`common/mixed`), b for the receiver well clear of the toy.
 pub(crate) const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
 /// Distance from the toy's outline in a sharp picture.

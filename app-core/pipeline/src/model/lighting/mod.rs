@@ -7,7 +7,7 @@ use crate::geometry::shadow_atlas::ShadowAtlas;
 use crate::geometry::tiles::Tiles;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::lighting::occlusion::{Light, LightPointsBuffer, PartOfMap};
 use crate::model::plan::{Casters, Plan};
 use crate::passes::globals::GlobalsOnDevice;
@@ -172,7 +172,10 @@ impl Lighting {
             points: &self.ambient,
             side: None,
         }];
-        let inputs = self.occlusion_inputs(posed, self.casters.ambient);
+        let inputs = occlusion::Inputs {
+            shadows: self.seen_from_upright(posed, maps),
+            ..self.occlusion_inputs(posed, self.casters.ambient)
+        };
         let (map, order) = (&maps.visibility.ambient, &self.orders.ambient);
         passes.occlusion.encode(recorder, &inputs, &ambient, map, order);
     }
@@ -208,6 +211,13 @@ impl Lighting {
         }
     }
 
+    /// Visibilities of the lights, if an upright receiver sees the shadows on others.
+    fn seen_from_upright<'a>(&self, posed: Posed<'_>, maps: &'a LightMaps) -> Option<&'a TextureView> {
+        let mut receivers = 0..self.n_receivers as usize;
+        let is_any = self.n_lights > 0 && receivers.any(|k| posed.globals.uniform.is_upright(k));
+        is_any.then_some(&maps.visibility.lights.view)
+    }
+
     fn occlusion_inputs<'a>(&self, posed: Posed<'a>, caster: CasterLod) -> occlusion::Inputs<'a> {
         occlusion::Inputs {
             globals: posed.globals,
@@ -215,6 +225,7 @@ impl Lighting {
             toy: posed.toy,
             pose: posed.pose,
             caster,
+            shadows: None,
         }
     }
 

@@ -2,7 +2,10 @@
 //! for many points of each light, in one pass.
 
 use glam::{UVec2, Vec4};
-use wgpu::{BlendOperation, Color, CompareFunction, TextureFormat, VertexFormat};
+use wgpu::{
+    BlendComponent, BlendFactor, BlendOperation, BlendState, Color, ColorTargetState, ColorWrites,
+    CompareFunction, TextureFormat, VertexFormat,
+};
 
 use crate::geometry::rect::PixelRect;
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
@@ -12,7 +15,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
 use crate::gpu::recorder::{Recorder, cleared_to};
 use crate::gpu::shader::{Shader, shader};
 use crate::gpu::shared::shared_struct;
-use crate::gpu::texture::{Texture, fractions, half_float};
+use crate::gpu::texture::{Texture, TextureView, fractions, half_float};
 use crate::model::plan::Plan;
 use crate::passes::counting::{CountingDraws, InstanceOrder, counting, not_counting, ordered};
 use crate::passes::globals::{GLOBALS_GROUP, GlobalsOnDevice};
@@ -24,6 +27,7 @@ use app_scene::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 pub(crate) const SHADER: Shader =
     shader!("lighting/occlusion", structs: [LightPoints], constants: [MOST_POINTS]);
 const SLOTS: &[Slot] = &[Slot::uniform::<LightPoints>()];
+const UPRIGHT_SLOTS: &[Slot] = &[Slot::uniform::<LightPoints>(), Slot::Texture];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Maximum number of points of one light.
 pub(crate) const MAX_LIGHT_POINTS: usize = 64;
@@ -211,6 +215,9 @@ struct Draws {
     cover: CountingDraws,
     /// Masks pixels that show another receiver, if there are several.
     route: Draw,
+    /// Takes from upright receivers the light of the level ones that the toy's shadows take; for
+    /// the ambient light alone.
+    upright: Option<Draw>,
 }
 
 impl Draws {
@@ -230,12 +237,41 @@ impl Draws {
             depth: Some(ordered(CompareFunction::Greater)),
             ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
         };
+        let upright = DrawSpec {
+            vertex: "vs_whole",
+            targets: vec![multiplying(format)],
+            depth: Some(ordered(CompareFunction::Always)),
+            ..DrawSpec::fullscreen(
+                &SHADER,
+                "fs_upright",
+                [GLOBALS_GROUP, UPRIGHT_SLOTS, &[], &[]],
+                &[],
+            )
+        };
         Self {
+            upright: (format == AMBIENT_FORMAT).then(|| gpu.draw(&upright)),
             // A face that is counter-clockwise from outside is counter-clockwise in the shadow,
             // too: light and camera are above the receiver.
             cover: CountingDraws::new(gpu, &cover),
             route: gpu.draw(&route),
         }
+    }
+}
+
+/// A target that is multiplied by the drawn values.
+fn multiplying(format: TextureFormat) -> ColorTargetState {
+    let product = BlendComponent {
+        src_factor: BlendFactor::Dst,
+        dst_factor: BlendFactor::Zero,
+        operation: BlendOperation::Add,
+    };
+    ColorTargetState {
+        format,
+        blend: Some(BlendState {
+            color: product,
+            alpha: product,
+        }),
+        write_mask: ColorWrites::ALL,
     }
 }
 
@@ -247,6 +283,8 @@ pub(crate) struct Inputs<'a> {
     pub(crate) pose: &'a PoseBuffers,
     /// The mesh that casts the shadow.
     pub(crate) caster: CasterLod,
+    /// Visibilities of the lights in this pose, for the ambient light of upright receivers.
+    pub(crate) shadows: Option<&'a TextureView>,
 }
 
 /// A light from which shadows are drawn.
@@ -289,6 +327,15 @@ impl Pass {
             .iter()
             .map(|light| (light.points, bound(light.points), corners(*light)))
             .collect();
+        let upright = draws.upright.as_ref().zip(inputs.shadows).map(|(draw, shadows)| {
+            let points = lights.first().map(|light| (&light.points.uniform).into());
+            let resources: Vec<_> = points.into_iter().chain([shadows.into()]).collect();
+            let groups = [
+                recorder.bind(draw, GROUP_SCENE, &[inputs.globals.buffer.into()]),
+                recorder.bind(draw, GROUP_PASS, &resources),
+            ];
+            (draw, groups)
+        });
         let mut render = order.render(recorder, SHADER.name, cleared_to(&map.view, Color::WHITE));
         for (points, groups, corners) in drawn {
             for receiver in 0..inputs.n_receivers {
@@ -301,6 +348,10 @@ impl Pass {
                 let drawn = (&corners, inputs.pose);
                 draws.cover.count(&mut render, &groups, drawn, instances, n_plain);
             }
+        }
+        if let Some((draw, groups)) = &upright {
+            render.begin(draw, groups);
+            render.draw(0..3, 0..1);
         }
     }
 }
