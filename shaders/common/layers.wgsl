@@ -3,6 +3,7 @@
 // The importing shader declares `receiver`, `composed`, `drawing`, `visibility`,
 // `ambient` and `linear_sampler`.
 
+//#import common/behind_outline
 //#import common/drawn_toy
 //#import common/frame
 //#import common/marks
@@ -48,11 +49,12 @@ fn layered(position: vec4f, n_draws: u32) -> mat4x4f {
     return mat4x4f(composed(position, n_draws), vec4f(1.0), vec4f(0.0), masks);
   }
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
+  let part = toy_layer(in_box, n_draws).a;
+  find_beyond(texel, part, evident, has_moved, n_draws);
   var change = vec4f(0.0);
   let clean = receiver(position, f, evident, has_moved, 0.0, &change);
   let shaded = receiver(position, f, evident, has_moved, drawing.strength, &change);
   let ratio = select(vec3f(1.0), shaded / max(clean, vec3f(DARKEST_RATIO)), clean >= vec3f(DARKEST_RATIO));
-  let part = toy_layer(in_box, n_draws).a;
   let over = composed(position, n_draws).rgb - (1.0 - part) * clean * ratio;
   let toy = select(vec4f(0.0), vec4f(max(over, vec3f(0.0)), part), part > 0.0);
   let shadow = select(0.0, most_hidden(position.xy), is_receiver);

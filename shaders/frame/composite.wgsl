@@ -128,7 +128,8 @@ fn receiver(
   let is_same = !HAS_STRENGTH && all(v_before == v_after) && a_before == a_after;
   var toward = vec2f(0.0);
   if HAS_EDGES { toward = toward_other(at); }
-  if is_same && all(toward == vec2f(0.0)) && evident.r == 1.0 && evident.b > 0.0 && drawing.has_detail == 0u {
+  if is_same && all(toward == vec2f(0.0)) && evident.r == 1.0 && evident.b > 0.0 && drawing.has_detail == 0u
+    && all(beyond == vec3f(0.0)) {
     *change = vec4f(0.0);
     return f;
   }
@@ -149,7 +150,7 @@ fn receiver(
   // Beyond the receivers only the real toy is removed.
   if !is_hit(point) {
     *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.r);
-    let color = mix(lit, f, evident.r);
+    let color = mix(max(lit + beyond, vec3f(0.0)), f, evident.r);
     if HAS_GRAIN { missing = missing_beside(color, evident.r, f, b, fit.gain.rgb); }
     return color;
   }
@@ -173,21 +174,25 @@ fn receiver(
   let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
   let is_outlier = outlier(pooled);
   let is_object = is_outlier * (1.0 - shadow_likeness(pooled));
-  let deviation = largest(abs(own_color - lit * (before + pooled)) / max(lit, vec3f(DARKEST_USABLE)));
+  let off = abs(own_color - lit * (before + pooled));
+  let deviation = largest(off / max(lit, vec3f(DARKEST_USABLE)));
   let seen = own_share(evident, has_moved, deviation);
   let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
-  let made = lit * max(after + residual, vec3f(0.0)) + shown;
+  let is_withheld = evident.a < 1.0 && !is_thing(evident);
+  let keep_mixed = select(1.0 - evident.r, 0.0, has_moved || is_withheld) * is_near;
+  // Only the plate's light changes along an outline, not what the model does not explain.
+  let light = max(after + residual, vec3f(0.0));
+  let made = max(lit + beyond, vec3f(0.0)) * light + shown;
   var own = own_color + lit * (after - before);
   if drawing.has_detail == 1u && b.a == 1.0 {
     // Ratios to a nearly black plate are noise.
     let exact = fit.gain.rgb * unsmoothed * (after + textureLoad(detail, texel, 0).rgb);
     own = select(own, exact, unsmoothed >= vec3f(DARKEST_USABLE));
   }
-  let kept = mix(darkened(own_color, own, lit * after) + shown, f, is_object);
+  let own_beyond = (1.0 - outlier(off / max(lit + max(beyond, vec3f(0.0)), vec3f(DARKEST_USABLE)))) * light * beyond;
+  let kept = mix(darkened(own_color, own, lit * after) + shown + own_beyond, f, is_object);
   let keep = seen * max(is_near, is_outlier);
   let inside = max(inside_border(at), 1.0 - seen);
-  let is_withheld = evident.a < 1.0 && !is_thing(evident);
-  let keep_mixed = select(1.0 - evident.r, 0.0, has_moved || is_withheld) * is_near;
   *change = vec4f(lit * (after - before) + (shown - reflection), keep_mixed);
   let color = max(mix(f, mix(made, kept, keep), inside), vec3f(0.0));
   if HAS_GRAIN { missing = missing_beside(color, 1.0 - inside * (1.0 - keep), f, b, fit.gain.rgb * (after + residual)); }
@@ -213,8 +218,8 @@ fn over_receiver(texel: vec2i, place: vec2i, toy: vec4f, n_draws: u32) -> vec3f 
   var change = vec4f(0.0);
   let has_moved = evident.b == 0.0 && has_moved_beside(box_texel(place));
   let at = vec4f(vec2f(place) + 0.5, 0.0, 1.0);
-  var below = receiver(at, frame_color, evident, has_moved, drawing.strength, &change);
-  if toy.a > 0.0 && is_soft() && !is_thing(evident) && all(place == texel) { below = behind_outline(texel, below, n_draws); }
+  if all(place == texel) { find_beyond(texel, toy.a, evident, has_moved, n_draws); }
+  let below = receiver(at, frame_color, evident, has_moved, drawing.strength, &change);
   let laid = (1.0 - toy.a) * below + toy.rgb;
   // Most pixels show the receiver alone and need no test of the toy.
   if change.a == 0.0 { return grained_toy(laid, texel, toy.a); }
