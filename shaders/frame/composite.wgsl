@@ -1,11 +1,10 @@
 // The picture: plate times new shadow, without real toy and real shadow, under the animated toy.
-//
 //   out = gain plate (M' + r)         in general, r the pooled residual, fading with large changes
 //   out = frame + gain plate (M' - M) if the receiver is visible and M' is near M: r is the pixel's
 //                                     own, so the frame passes; also for unexplained things
+//   the mixture of `thing_rim`        at the rim of a thing
 //   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r), not a plate
 // A glossy receiver's reflection is removed from the frame first, and the shown toy's is added last.
-//
 // Reads: all state of the receiver, visibility and ambient of the animated pose, the drawn toy.
 // Writes: linear colour, opaque. CPU reference: tests/reference/src/composite.rs.
 
@@ -25,6 +24,7 @@
 //#import common/reflection
 //#import common/relit
 //#import common/stillness
+//#import common/thing_rim
 //#import common/two_receivers
 //#import common/unknown
 
@@ -206,33 +206,42 @@ fn before_toy(texel: vec2i, f: vec3f) -> vec3f {
   return relit(b, f);
 }
 
-fn composed(position: vec4f, n_draws: u32) -> vec4f {
-  let texel = vec2u(position.xy);
-  let frame_color = frame_at(vec2i(texel));
-  let evident = marks_at(vec2i(texel));
-  if is_before_toy(evident) {
-    return vec4f(grained_toy(before_toy(vec2i(texel), frame_color), vec2i(texel), 0.0), 1.0);
-  }
-  let in_box = box_texel(vec2i(texel));
-  let toy = toy_layer(in_box, n_draws);
+// The picture at a texel with the drawn toy over the receiver of a place: at a rim, a neighbour.
+fn over_receiver(texel: vec2i, place: vec2i, toy: vec4f, n_draws: u32) -> vec3f {
+  let frame_color = frame_at(place);
+  let evident = marks_at(place);
+  let in_box = box_texel(texel);
   if toy.a == 1.0 {
     let moved = moved_part(in_box);
-    let color = mix(toy.rgb, frame_color, stillness(in_box, moved));
-    return vec4f(grained_toy(color, vec2i(texel), moved), 1.0);
+    return grained_toy(mix(toy.rgb, frame_color, stillness(in_box, moved)), texel, moved);
   }
   var change = vec4f(0.0);
-  let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
-  find_beyond(vec2i(texel), toy.a, evident, has_moved, n_draws);
-  let below = receiver(position, frame_color, evident, has_moved, drawing.strength, &change);
+  let has_moved = evident.b == 0.0 && has_moved_beside(box_texel(place));
+  let at = vec4f(vec2f(place) + 0.5, 0.0, 1.0);
+  if all(place == texel) { find_beyond(texel, toy.a, evident, has_moved, n_draws); }
+  let below = receiver(at, frame_color, evident, has_moved, drawing.strength, &change);
   let laid = (1.0 - toy.a) * below + toy.rgb;
   // Most pixels show the receiver alone and need no test of the toy.
-  if change.a == 0.0 { return vec4f(grained_toy(laid, vec2i(texel), toy.a), 1.0); }
+  if change.a == 0.0 { return grained_toy(laid, texel, toy.a); }
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
   let moved = moved_part(in_box);
-  let still = stillness(in_box, moved);
-  missing *= 1.0 - still * change.a;
-  let color = max(mix(laid, kept, still * change.a), vec3f(0.0));
-  return vec4f(grained_toy(color, vec2i(texel), toy.a * moved), 1.0);
+  let still = stillness(in_box, moved) * change.a;
+  missing *= 1.0 - still;
+  return grained_toy(max(mix(laid, kept, still), vec3f(0.0)), texel, toy.a * moved);
+}
+
+fn composed(position: vec4f, n_draws: u32) -> vec4f {
+  let texel = vec2i(position.xy);
+  let steps = rim_steps_at(texel);
+  let is_rim = any(steps != vec4i(0));
+  let is_before = is_before_toy(marks_at(texel));
+  if is_before && !is_rim { return vec4f(grained_toy(before_toy(texel, frame_at(texel)), texel, 0.0), 1.0); }
+  let toy = toy_layer(box_texel(texel), n_draws);
+  let is_over = is_rim && !is_before; // The toy is over the rim of a thing that is not before it.
+  let shown = over_receiver(texel, texel + steps.zw, select(toy, vec4f(0.0), is_over), n_draws);
+  if !is_rim { return vec4f(shown, 1.0); }
+  let mixed = rim_mixed(texel, steps, shown);
+  return vec4f(select(mixed, (1.0 - toy.a) * mixed + toy.rgb, is_over), 1.0);
 }
 
 // The plate of a pixel under a model and the pooled residual, no brighter than white.
