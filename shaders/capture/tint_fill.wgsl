@@ -2,7 +2,8 @@
 // pull-push in a volume.
 //
 // tint = (sum shown + n d) / (sum expected + n d) of n pixels, d the darkest usable value: paint
-// that is nearly black, both shown and expected, has tint 1. Sums of earlier views count, too.
+// that is nearly black, both shown and expected, has tint 1. Sums of earlier views count, too. A cell
+// that a soft picture shows in mixed pixels alone has their tint, but as a MIXED part of a view.
 // A material that was never seen keeps its model's colour. One workgroup processes a material's
 // grid.
 //
@@ -13,6 +14,7 @@
 //#import common/pixel
 //#import common/accumulated
 //#import common/between_tints
+//#import common/mixed
 
 @group(1) @binding(0) var<storage, read> sums: array<u32>;
 // Sums of tints times certainty, and of certainties.
@@ -28,17 +30,21 @@ fn summed(first: u32) -> vec3f {
   return vec3f(f32(sums[first]), f32(sums[first + 1u]), f32(sums[first + 2u]));
 }
 
-// Adds a cell's tint in this frame to its accumulated sum. Returns the mean.
+// Adds a cell's tint in this frame to its accumulated sum. Returns the mean, as certain as the frame or the
+// sum.
 fn accumulate(slot: u32) -> vec4f {
   let first = N_TINT_SUMS * slot;
   let n_pixels = f32(sums[first + 6u]);
   if n_pixels == 0.0 { return mean_of(accumulated[slot]); }
-  let dark = TINT_UNIT * DARKEST_USABLE * n_pixels;
+  // All sums of a cell without an unmixed pixel have the same weight.
+  let weight = select(1.0, MIXED, sums[first + 7u] == 0u);
+  let dark = weight * TINT_UNIT * DARKEST_USABLE * n_pixels;
   let tint = (summed(first) + dark) / (summed(first + 3u) + dark);
   let certainty = min(1.0, n_pixels / FULL_PIXELS);
-  let sum = accumulated[slot] + vec4f(tint, 1.0) * certainty;
+  let sum = accumulated[slot] + vec4f(tint, 1.0) * (weight * certainty);
   accumulated[slot] = capped(sum);
-  return mean_of(sum);
+  let mean = mean_of(sum);
+  return mean * max(1.0, certainty / mean.a);
 }
 
 fn level_first(grid: u32, level: u32) -> u32 {

@@ -1,10 +1,10 @@
-// Validity mask of the frame: r is 1 if the pixel is clear of the toy, g if it shows one surface of
-// the toy, but MIXED if the picture's spread mixes another one into it, b if it is well clear of the toy: colours bleed in a compressed picture, and no pose is
-// exact; a is 1.
+// Validity mask of the frame: r is 1 if the pixel is clear of the toy; g is 1 if it shows one surface of the
+// toy, MIXED if another one is within the picture's spread; b is 1 if it is well clear of the toy: colours
+// bleed in a compressed picture, and no pose is exact; a is 1. All others are 0.
 //
 // Pixels that mix two surfaces (an outline, camera blur, a pose half a pixel off) are valid as
 // neither.
-// Reads: depth of the physical toy. Writes: 0 or 1 each, but g.
+// Reads: depth of the physical toy. Writes: 0 or 1 in r and b; 0, MIXED or 1 in g.
 // CPU reference: tests/reference/src/validity.rs.
 
 //#import common/depth
@@ -56,13 +56,14 @@ fn is_straight(texel: vec2i, side: vec2i, here: f32) -> bool {
   return min(before, after) > 0.0 && abs(before + after - 2.0 * here) <= DEPTH_BEND * here;
 }
 
-// Whether the surface goes on for a distance on all sides.
+// Whether the surface goes on at a distance on all sides; what is between is not tested.
 fn goes_on(texel: vec2i, far_px: i32, here: f32) -> bool {
   return is_straight(texel, vec2i(far_px, 0), here) && is_straight(texel, vec2i(0, far_px), here)
     && is_straight(texel, vec2i(far_px, far_px), here) && is_straight(texel, vec2i(far_px, -far_px), here);
 }
 
-// Part of a single surface of the toy in a pixel: 0, MIXED, or 1.
+// Weight of a single surface of the toy in a pixel: 0, MIXED, or 1. The distance is the spread's largest, also
+// across a motion.
 fn one_surface(texel: vec2i) -> f32 {
   let here = depth_at(texel);
   if here == 0.0 || !goes_on(texel, 1, here) { return 0.0; }

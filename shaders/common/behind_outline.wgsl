@@ -2,15 +2,21 @@
 //
 // A blurred picture mixes the toy with the background that it leaves free. The mean of the softened
 // plate is over all positions of the spread, so that it also has what the toy hides. Therefore the plate
-// is taken at the middle of the free positions.
-// The importing shader declares `plate`, and those of `drawn_toy`.
+// is taken at the middle of the free positions. These lack the spread of `soft_texel`'s means, so that the
+// middle is up to a quarter too near where the spread is only one pixel.
+// The importing shader declares `plate`, and those of `drawn_toy` and `stillness`.
 
 //#import common/drawn_toy
 //#import common/fit
 //#import common/globals
+//#import common/marks
 //#import common/spread
+//#import common/stillness
 
-// Rows of the lattice from one column's position to the next.
+// The change of the plate at a pixel of a soft outline, `plate_change`; 0 elsewhere.
+var<private> beyond: vec3f = vec3f(0.0);
+
+// Rows from one column's position to the next in the lattice of `coverage`.
 const OUTLINE_ROW_STEP: u32 = 9u;
 
 // The plate's colour between four texels, `at` texels from the middle of the region's first, and their
@@ -43,14 +49,21 @@ fn middle_of_free_px(in_box: vec2i, n_draws: u32) -> vec2f {
   return select(vec2f(0.0), sum.xy / sum.z, sum.z > 0.0);
 }
 
-// The background at a texel of the region, at the toy's soft outline, if `color` is its colour by the plate
-// at the texel itself. It changes as the plate does, in as much light as falls there, at most all of it: a
-// factor would be without limit on a dark plate. It stays where plates do not show the place.
-fn behind_outline(texel: vec2i, color: vec3f, n_draws: u32) -> vec3f {
+// Change of the photograph's plate from a texel of the region to the part that the toy leaves free. 0 where
+// plates do not show both.
+fn plate_change(texel: vec2i, n_draws: u32) -> vec3f {
   let own = textureLoad(plate, texel, 0);
+  if own.a < 1.0 { return vec3f(0.0); }
   let free = plate_between(vec2f(texel) + middle_of_free_px(box_texel(texel), n_draws));
-  let lit = dot(fit.gain.rgb, own.rgb);
-  if free.a < 1.0 || lit <= 0.0 { return color; }
-  let left = min(dot(color, vec3f(1.0)) / lit, 1.0);
-  return max(color + left * fit.gain.rgb * (free.rgb - own.rgb), vec3f(0.0));
+  return select(vec3f(0.0), fit.gain.rgb * (free.rgb - own.rgb), free.a == 1.0);
+}
+
+// Sets the change of the plate at a texel of the toy box, of which the toy covers `part`. It stays 0 at an
+// outline that stands still, where the camera's pixels are shown unless the shadow there changes.
+fn find_beyond(texel: vec2i, part: f32, evident: vec4f, has_moved: bool, n_draws: u32) {
+  if part == 0.0 || !is_soft() || is_thing(evident) { return; }
+  let in_box = box_texel(texel);
+  let is_kept = evident.r == 0.0 && evident.a == 1.0 && !has_moved;
+  if is_kept && stillness(in_box, moved_part(in_box)) == 1.0 { return; }
+  beyond = plate_change(texel, n_draws);
 }

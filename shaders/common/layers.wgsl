@@ -1,8 +1,9 @@
 // The picture in layers: clean plate, shadow ratio, toy and masks.
 //
-// The importing shader declares `receiver`, `before_toy`, `composed`, `drawing`, `visibility`,
+// The importing shader declares `receiver`, `composed`, `drawing`, `visibility`,
 // `ambient` and `linear_sampler`.
 
+//#import common/behind_outline
 //#import common/drawn_toy
 //#import common/frame
 //#import common/marks
@@ -41,15 +42,19 @@ fn layered(position: vec4f, n_draws: u32) -> mat4x4f {
   let evident = marks_at(texel);
   let is_receiver = is_hit(receiver_point(position.xy));
   let masks = vec4f(0.0, 0.0, select(0.0, 1.0, is_receiver), 1.0);
-  // A thing before the toy is a part of the clean plate.
-  if is_before_toy(evident) { return mat4x4f(vec4f(before_toy(texel, f), 1.0), vec4f(1.0), vec4f(0.0), masks); }
   let in_box = box_texel(texel);
+  // A thing before the toy is a part of the clean plate, and so is the rim of a thing beside it.
+  let is_rim = any(rim_steps_at(texel) != vec4i(0)) && toy_layer(in_box, n_draws).a == 0.0;
+  if is_rim || is_before_toy(evident) {
+    return mat4x4f(composed(position, n_draws), vec4f(1.0), vec4f(0.0), masks);
+  }
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
+  let part = toy_layer(in_box, n_draws).a;
+  find_beyond(texel, part, evident, has_moved, n_draws);
   var change = vec4f(0.0);
   let clean = receiver(position, f, evident, has_moved, 0.0, &change);
   let shaded = receiver(position, f, evident, has_moved, drawing.strength, &change);
   let ratio = select(vec3f(1.0), shaded / max(clean, vec3f(DARKEST_RATIO)), clean >= vec3f(DARKEST_RATIO));
-  let part = toy_layer(in_box, n_draws).a;
   let over = composed(position, n_draws).rgb - (1.0 - part) * clean * ratio;
   let toy = select(vec4f(0.0), vec4f(max(over, vec3f(0.0)), part), part > 0.0);
   let shadow = select(0.0, most_hidden(position.xy), is_receiver);

@@ -10,7 +10,7 @@ const N_RINGS: u32 = 4u;
 // Rings for the colours of moved surfaces, nearest first: their radii in standard deviations of the
 // picture's spread, and the weights of their positions relative to the centre. With (0.6, 0.25) the toy's
 // error is 4.33, 6.69 and 5.39 codes for a llama, a heron and a figure in motion, with these 4.26, 6.60 and
-// 5.34, and the llama's fine detail is nearer to the true one; with (1, 1) the figure has too little.
+// 5.34, and the llama's fine detail is nearer to the true one; with (1, 1) the figure has too little detail.
 const NEAR_RINGS = vec2f(0.6, 1.2);
 const NEAR_WEIGHTS = vec2f(1.0, 0.7);
 

@@ -3,8 +3,9 @@
 // Cells along each side of a grid, and in total.
 const TINT_SIDE: u32 = 16u;
 const TINT_CELLS: u32 = 4096u; // TINT_SIDE^3
-// Sums of a cell: shown and expected colour, three channels each, and the number of pixels.
-const N_TINT_SUMS: u32 = 7u;
+// Sums of a cell: shown and expected colour, three channels each, the number of pixels, and that
+// of unmixed ones.
+const N_TINT_SUMS: u32 = 8u;
 // Fixed-point value of linear 1 in the sums.
 const TINT_UNIT: f32 = 16384.0;
 

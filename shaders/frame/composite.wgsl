@@ -1,11 +1,10 @@
 // The picture: plate times new shadow, without real toy and real shadow, under the animated toy.
-//
 //   out = gain plate (M' + r)         in general, r the pooled residual, fading with large changes
 //   out = frame + gain plate (M' - M) if the receiver is visible and M' is near M: r is the pixel's
 //                                     own, so the frame passes; also for unexplained things
+//   the mixture of `thing_rim`        at the rim of a thing
 //   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r), not a plate
 // A glossy receiver's reflection is removed from the frame first, and the shown toy's is added last.
-//
 // Reads: all state of the receiver, visibility and ambient of the animated pose, the drawn toy.
 // Writes: linear colour, opaque. CPU reference: tests/reference/src/composite.rs.
 
@@ -25,6 +24,7 @@
 //#import common/reflection
 //#import common/relit
 //#import common/stillness
+//#import common/thing_rim
 //#import common/two_receivers
 //#import common/unknown
 
@@ -128,7 +128,8 @@ fn receiver(
   let is_same = !HAS_STRENGTH && all(v_before == v_after) && a_before == a_after;
   var toward = vec2f(0.0);
   if HAS_EDGES { toward = toward_other(at); }
-  if is_same && all(toward == vec2f(0.0)) && evident.r == 1.0 && evident.b > 0.0 && drawing.has_detail == 0u {
+  if is_same && all(toward == vec2f(0.0)) && evident.r == 1.0 && evident.b > 0.0 && drawing.has_detail == 0u
+    && all(beyond == vec3f(0.0)) {
     *change = vec4f(0.0);
     return f;
   }
@@ -149,7 +150,7 @@ fn receiver(
   // Beyond the receivers only the real toy is removed.
   if !is_hit(point) {
     *change = vec4f(0.0, 0.0, 0.0, 1.0 - evident.r);
-    let color = mix(lit, f, evident.r);
+    let color = mix(max(lit + beyond, vec3f(0.0)), f, evident.r);
     if HAS_GRAIN { missing = missing_beside(color, evident.r, f, b, fit.gain.rgb); }
     return color;
   }
@@ -173,21 +174,25 @@ fn receiver(
   let residual = pooled * (1.0 - smoothstep(0.0, 2.0 * RESIDUAL_HALF, most));
   let is_outlier = outlier(pooled);
   let is_object = is_outlier * (1.0 - shadow_likeness(pooled));
-  let deviation = largest(abs(own_color - lit * (before + pooled)) / max(lit, vec3f(DARKEST_USABLE)));
+  let off = abs(own_color - lit * (before + pooled));
+  let deviation = largest(off / max(lit, vec3f(DARKEST_USABLE)));
   let seen = own_share(evident, has_moved, deviation);
   let is_near = 1.0 - smoothstep(KEEP_ALL, KEEP_NONE, most);
-  let made = lit * max(after + residual, vec3f(0.0)) + shown;
+  let is_withheld = evident.a < 1.0 && !is_thing(evident);
+  let keep_mixed = select(1.0 - evident.r, 0.0, has_moved || is_withheld) * is_near;
+  // Only the plate's light changes along an outline, not what the model does not explain.
+  let light = max(after + residual, vec3f(0.0));
+  let made = max(lit + beyond, vec3f(0.0)) * light + shown;
   var own = own_color + lit * (after - before);
   if drawing.has_detail == 1u && b.a == 1.0 {
     // Ratios to a nearly black plate are noise.
     let exact = fit.gain.rgb * unsmoothed * (after + textureLoad(detail, texel, 0).rgb);
     own = select(own, exact, unsmoothed >= vec3f(DARKEST_USABLE));
   }
-  let kept = mix(darkened(own_color, own, lit * after) + shown, f, is_object);
+  let own_beyond = (1.0 - outlier(off / max(lit + max(beyond, vec3f(0.0)), vec3f(DARKEST_USABLE)))) * light * beyond;
+  let kept = mix(darkened(own_color, own, lit * after) + shown + own_beyond, f, is_object);
   let keep = seen * max(is_near, is_outlier);
   let inside = max(inside_border(at), 1.0 - seen);
-  let is_withheld = evident.a < 1.0 && !is_thing(evident);
-  let keep_mixed = select(1.0 - evident.r, 0.0, has_moved || is_withheld) * is_near;
   *change = vec4f(lit * (after - before) + (shown - reflection), keep_mixed);
   let color = max(mix(f, mix(made, kept, keep), inside), vec3f(0.0));
   if HAS_GRAIN { missing = missing_beside(color, 1.0 - inside * (1.0 - keep), f, b, fit.gain.rgb * (after + residual)); }
@@ -201,33 +206,42 @@ fn before_toy(texel: vec2i, f: vec3f) -> vec3f {
   return relit(b, f);
 }
 
-fn composed(position: vec4f, n_draws: u32) -> vec4f {
-  let texel = vec2u(position.xy);
-  let frame_color = frame_at(vec2i(texel));
-  let evident = marks_at(vec2i(texel));
-  if is_before_toy(evident) {
-    return vec4f(grained_toy(before_toy(vec2i(texel), frame_color), vec2i(texel), 0.0), 1.0);
-  }
-  let in_box = box_texel(vec2i(texel));
-  let toy = toy_layer(in_box, n_draws);
+// The picture at a texel with the drawn toy over the receiver of a place: at a rim, a neighbour.
+fn over_receiver(texel: vec2i, place: vec2i, toy: vec4f, n_draws: u32) -> vec3f {
+  let frame_color = frame_at(place);
+  let evident = marks_at(place);
+  let in_box = box_texel(texel);
   if toy.a == 1.0 {
     let moved = moved_part(in_box);
-    let color = mix(toy.rgb, frame_color, stillness(in_box, moved));
-    return vec4f(grained_toy(color, vec2i(texel), moved), 1.0);
+    return grained_toy(mix(toy.rgb, frame_color, stillness(in_box, moved)), texel, moved);
   }
   var change = vec4f(0.0);
-  let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
-  var below = receiver(position, frame_color, evident, has_moved, drawing.strength, &change);
-  if toy.a > 0.0 && is_soft() && !is_thing(evident) { below = behind_outline(vec2i(texel), below, n_draws); }
+  let has_moved = evident.b == 0.0 && has_moved_beside(box_texel(place));
+  let at = vec4f(vec2f(place) + 0.5, 0.0, 1.0);
+  if all(place == texel) { find_beyond(texel, toy.a, evident, has_moved, n_draws); }
+  let below = receiver(at, frame_color, evident, has_moved, drawing.strength, &change);
   let laid = (1.0 - toy.a) * below + toy.rgb;
   // Most pixels show the receiver alone and need no test of the toy.
-  if change.a == 0.0 { return vec4f(grained_toy(laid, vec2i(texel), toy.a), 1.0); }
+  if change.a == 0.0 { return grained_toy(laid, texel, toy.a); }
   let kept = frame_color + (1.0 - toy.a) * change.rgb;
   let moved = moved_part(in_box);
-  let still = stillness(in_box, moved);
-  missing *= 1.0 - still * change.a;
-  let color = max(mix(laid, kept, still * change.a), vec3f(0.0));
-  return vec4f(grained_toy(color, vec2i(texel), toy.a * moved), 1.0);
+  let still = stillness(in_box, moved) * change.a;
+  missing *= 1.0 - still;
+  return grained_toy(max(mix(laid, kept, still), vec3f(0.0)), texel, toy.a * moved);
+}
+
+fn composed(position: vec4f, n_draws: u32) -> vec4f {
+  let texel = vec2i(position.xy);
+  let steps = rim_steps_at(texel);
+  let is_rim = any(steps != vec4i(0));
+  let is_before = is_before_toy(marks_at(texel));
+  if is_before && !is_rim { return vec4f(grained_toy(before_toy(texel, frame_at(texel)), texel, 0.0), 1.0); }
+  let toy = toy_layer(box_texel(texel), n_draws);
+  let is_over = is_rim && !is_before; // The toy is over the rim of a thing that is not before it.
+  let shown = over_receiver(texel, texel + steps.zw, select(toy, vec4f(0.0), is_over), n_draws);
+  if !is_rim { return vec4f(shown, 1.0); }
+  let mixed = rim_mixed(texel, steps, shown);
+  return vec4f(select(mixed, (1.0 - toy.a) * mixed + toy.rgb, is_over), 1.0);
 }
 
 // The plate of a pixel under a model and the pooled residual, no brighter than white.

@@ -310,9 +310,10 @@ fn color_of(map: Map, [r, g, b, a]: [f32; 4], is_colored: bool) -> [u8; 4] {
     }
 }
 
-/// Overlays the second set on the first.
+/// Overlays the second set on the first. A part of the second, as of a surface that a soft picture mixes with
+/// another one, is in it.
 fn two_sets(first: f32, second: f32, first_color: [u8; 3], second_color: [u8; 3]) -> [u8; 4] {
-    if second > 0.5 {
+    if second > 0.0 {
         opaque(second_color)
     } else if first > 0.5 {
         opaque(first_color)

@@ -9,15 +9,14 @@ use super::raster::Raster;
 const N_PLACES: u32 = 32;
 const ROW_STEP: u32 = 9;
 
-/// The background at a texel `in_region`, which is `in_box` in the toy's box, if `color` is its colour by
-/// the plate there: that of the plate where the toy leaves it free, in the same light, or in all light if
-/// there is more. `covered` is the toy's share of each texel of its box, and `root` that of the blur's
-/// covariance.
+/// The change of the plate in a photograph's light, by `gain`, from a texel `in_region`, which is `in_box` in
+/// the toy's box, to the part that the toy leaves free; 0 if no plate shows one of them. `covered` is the
+/// toy's share of each texel of its box, and `root` that of the blur's covariance.
 #[must_use]
-pub fn behind_outline(
+pub fn plate_change(
     plate: &Raster<DVec4>,
     covered: &Raster<f64>,
-    (root, gain, color): ([f64; 3], DVec3, DVec3),
+    (root, gain): ([f64; 3], DVec3),
     [in_region, in_box]: [UVec2; 2],
 ) -> DVec3 {
     let last = covered.size().as_ivec2() - 1;
@@ -39,10 +38,8 @@ pub fn behind_outline(
     };
     let own = plate.at(in_region);
     let seen = plate.bilinear(in_region.as_dvec2() + 0.5 + middle_px);
-    let lit = gain.dot(own.truncate());
-    if seen.w < 1.0 - 1e-9 || lit <= 0.0 {
-        return color;
+    if own.w.min(seen.w) < 1.0 - 1e-9 {
+        return DVec3::ZERO;
     }
-    let left = (color.element_sum() / lit).min(1.0);
-    (color + left * gain * (seen - own).truncate()).max(DVec3::ZERO)
+    gain * (seen - own).truncate()
 }

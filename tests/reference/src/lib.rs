@@ -40,6 +40,7 @@ pub mod search;
 pub mod self_shadow;
 pub mod sets;
 pub mod soften;
+pub mod thing_rim;
 pub mod things;
 pub mod tint;
 pub mod validity;

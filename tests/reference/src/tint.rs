@@ -101,15 +101,17 @@ pub fn tints(grid: &TintGrid, seen: &[SeenPaint]) -> Vec<Volume> {
         .collect()
 }
 
-/// A cell's tint times its certainty, and that.
-fn pooled<'a>(seen: impl Iterator<Item = &'a SeenPaint>) -> DVec4 {
+/// A cell's tint times its certainty, and that. If all pixels of a cell are mixed, they count as others do.
+fn pooled<'a>(seen: impl Iterator<Item = &'a SeenPaint> + Clone) -> DVec4 {
+    let most = seen.clone().map(|paint| paint.weight).fold(0.0, f64::max);
     let (mut shown, mut expected, mut n_pixels) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for paint in seen {
         // The sums include a constant, as if each pixel also had an amount too dark to measure,
         // exactly as expected.
-        shown += paint.weight * paint.shown + DARKEST_USABLE;
+        let weight = paint.weight / most;
+        shown += weight * paint.shown + DARKEST_USABLE;
         let limited = paint.expected.min(DVec3::splat(MOST_EXPECTED));
-        expected += paint.weight * limited + DARKEST_USABLE;
+        expected += weight * limited + DARKEST_USABLE;
         n_pixels += 1.0;
     }
     if n_pixels == 0.0 {

@@ -27,6 +27,10 @@ const OVER_LEGS: Rect = [UVec2::new(222, 222), UVec2::new(292, 254)];
 const AROUND_LEGS: Rect = [UVec2::new(150, 222), UVec2::new(350, 290)];
 /// Over the hind legs and a part of the back, so that no pose fits the visible outline.
 const OVER_BACK: Rect = [UVec2::new(312, 100), UVec2::new(356, 290)];
+/// From the toy's legs down to the picture's lower end.
+const LONG: Rect = [UVec2::new(240, 200), UVec2::new(276, 355)];
+/// A colour of a dozen codes beside the table's.
+const FACE: [u8; 3] = [150, 134, 122];
 const TEAL: [u8; 3] = [20, 120, 130];
 /// In less light it is like the toy's hair.
 const SKIN: [u8; 3] = [140, 104, 72];
@@ -133,6 +137,30 @@ fn a_thing_in_the_shadow_is_found() {
 fn a_thing_before_the_toy_is_found() {
     let found = Found::of([true, true], OVER_LEGS);
     found.assert_whole(Mark::BeforeToy);
+}
+
+#[test]
+fn a_thing_before_the_toy_ends_where_its_colour_does() {
+    // The search's level has half as many pixels along each side.
+    let rect = [OVER_LEGS[0] + 1, OVER_LEGS[1] - 1];
+    let found = Found::of([true, true], rect);
+    let [missed, beyond] = [1.0 - found.part(Mark::BeforeToy), found.beyond(Mark::BeforeToy)];
+    assert!(
+        missed < 0.01 && beyond < 0.01,
+        "{missed:.3} of it is missed, {beyond:.3} is beyond it"
+    );
+}
+
+#[test]
+fn a_long_face_is_part_of_the_thing_before_the_toy() {
+    // Little unlike the table, and most of it is where nothing tells a thing from the table.
+    let (scene, input) = &*SESSION;
+    let (mut scene, input) = (Scene::clone(scene), FrameInput::clone(input));
+    let paint = |image: &Image| Arc::new(painted_where(image, (FACE, LONG), |_| true));
+    scene.plates[0].image = paint(&scene.plates[0].image);
+    let input = input.clone().with_image(paint(input.image.rgba()));
+    let things = Observer::default().observed(&scene, &input).unwrap().things;
+    Found { things, rect: LONG }.assert_whole(Mark::BeforeToy);
 }
 
 /// What is found where the frame alone shows a rectangle.

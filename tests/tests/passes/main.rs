@@ -56,6 +56,7 @@ mod setups;
 mod soften;
 mod stand;
 mod still;
+mod thing_rim;
 mod things;
 mod tint;
 mod toy;

@@ -139,26 +139,50 @@ fn error_of_what_was_hidden(paint: fn(usize) -> DVec3) -> f64 {
     Errors::between(pairs).mean()
 }
 
-/// The tints from a frame with one paint, and from a second one with another.
-fn tints_of_two_frames(paints: [fn(usize) -> DVec3; 2]) -> [Vec<Vec<[f32; 4]>>; 2] {
+/// The tints from a frame with one paint, and from a second one with another, which may be soft.
+fn tints_of_two_frames(paints: [fn(usize) -> DVec3; 2], soft: Sharpness) -> [Vec<Vec<[f32; 4]>>; 2] {
     let stand = Stand::new(SETUPS[0]);
     let plain = Photo::plain(stand.setup.lights.len());
     let mut core = core_on(scene(&stand, &plain.plate(&stand)), Preset::Balanced).unwrap();
-    paints.map(|paint| {
+    [0, 1].map(|index| {
         let photo = Photo {
-            paint,
+            paint: paints[index],
             ..plain.clone()
         };
-        core.frame(&input(&stand, &photo.frame(&stand, &stand.physical)))
-            .unwrap();
+        let sharpness = [Sharpness::SHARP, soft][index];
+        let frame = input(&stand, &photo.frame(&stand, &stand.physical)).with_sharpness(sharpness);
+        core.frame(&frame).unwrap();
         core.read_tints().unwrap().unwrap().materials
     })
+}
+
+/// Ratios of the second tints to the first ones.
+fn ratios([first, second]: &[Vec<Vec<[f32; 4]>>; 2]) -> Vec<f64> {
+    let pairs = first.iter().flatten().zip(second.iter().flatten());
+    pairs
+        .flat_map(|(first, second)| [0, 1, 2].map(|k| f64::from(second[k] / first[k])))
+        .collect()
+}
+
+/// A soft picture, in which all of the toy's pixels are mixed, hardly changes what a sharp one has shown.
+#[test]
+fn mixed_pixels_do_not_replace_a_tint_that_is_known() {
+    let spread = Spread::round(8.0);
+    let soft = Sharpness {
+        plate_spread: spread,
+        outline_spread: spread,
+    };
+    let ratios = ratios(&tints_of_two_frames([|_| DVec3::ONE, |_| DVec3::splat(0.5)], soft));
+    let changed = ratios.iter().map(|ratio| (ratio - 1.0).abs());
+    let mean = changed.sum::<f64>() / ratios.len() as f64;
+    eprintln!("{mean:.3} of a tint");
+    assert!((0.001..0.06).contains(&mean), "{mean:.3}");
 }
 
 /// The light on the toy is fitted to the first picture alone, so a tint follows the paint.
 #[test]
 fn what_frames_before_have_shown_of_the_paint_counts() {
-    let [first, both] = tints_of_two_frames([|_| DVec3::ONE, |_| DVec3::new(0.5, 0.8, 0.9)]);
+    let [first, both] = tints_of_two_frames([|_| DVec3::ONE, |_| DVec3::new(0.5, 0.8, 0.9)], Sharpness::SHARP);
     let expected = [0.75, 0.9, 0.95];
     let pairs = first.iter().zip(&both).flat_map(|(first, both)| {
         let cells = first.iter().zip(both);

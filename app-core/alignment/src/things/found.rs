@@ -92,14 +92,19 @@ impl Found<'_> {
 
     /// The same without its shadow.
     pub(super) fn body_at(&self, place: DVec2) -> Option<usize> {
-        let grown = self.grown.as_ref()?;
-        let is_place = self.colored == Colored::Otherwise && grown.is_like_place(place);
-        grown.at(place).filter(|_| !is_place && !grown.is_shadow(place))
+        self.grown.as_ref()?.body_at(place, self.colored)
     }
 
     /// Whether a colour in codes is that of things in the plate.
     pub(super) fn is_own_color(&self, color: Color) -> bool {
         self.grown.as_ref().is_some_and(|grown| grown.is_own_color(color))
+    }
+
+    /// Whether a colour in codes is that of the place, not of things in the plate.
+    pub(super) fn is_place_color(&self, color: Color) -> bool {
+        self.grown
+            .as_ref()
+            .is_some_and(|grown| grown.is_place_color(color))
     }
 
     /// The same for a part of a thing that the toy hides; `None` if it does not, or if the light

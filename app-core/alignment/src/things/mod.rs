@@ -23,6 +23,7 @@ mod known;
 mod listed;
 mod measured;
 mod memory;
+mod outline;
 mod painted;
 pub(crate) mod planes;
 mod seeds;
@@ -191,11 +192,6 @@ impl Sight<'_> {
         let wrong = Grown::from(&seeds, Seed::WrongPlate, plate);
         let needed = |grown: &Grown| self.needed(grown, level);
         let in_frame = toy.in_frame(&seeds, frame, needed);
-        let evidence = grown.as_ref().map(|grown| (grown, self.needed(grown, level)));
-        let before = evidence.as_ref().map_or(Vec::new(), |(grown, needed)| {
-            toy.before(grown, (frame, plate), needed)
-        });
-        let alone = evidence.map_or(Vec::new(), |(grown, needed)| grown.alone(&needed));
         // The search in doubtful colours is for things without planes.
         let planes_of = self.planes_of.filter(|_| things == Colored::Otherwise);
         let planes = planes_of.map_or(Vec::new(), |colored| {
@@ -208,6 +204,16 @@ impl Sight<'_> {
             };
             self.planes(things, grown.as_ref(), (level, toy), compared)
         });
+        let grown = if planes.is_empty() {
+            Grown::whole_from(&seeds, Seed::Thing, plate)
+        } else {
+            grown
+        };
+        let evidence = grown.as_ref().map(|grown| (grown, self.needed(grown, level)));
+        let before = evidence.as_ref().map_or(Vec::new(), |(grown, needed)| {
+            toy.before(grown, (frame, plate), needed)
+        });
+        let alone = evidence.map_or(Vec::new(), |(grown, needed)| grown.alone(&needed));
         let grown = grown.map(|mut grown| {
             let expected = || self.upright_shadows(&grown, level);
             let shadows = cast::shadows_of(&grown, &seeds, (&compared.pixels, plate), expected);
@@ -399,6 +405,9 @@ impl Sight<'_> {
             }
         };
         let mut marks: Vec<Mark> = places(size_px).map(mark).collect();
+        if let Some([frame, plate]) = &codes {
+            marks = outline::sharpened((found, &toy), [frame, plate], per_px, &marks);
+        }
         self.paint_behind_toy(level, found, &toy, &mut marks);
         (size_px, marks)
     }

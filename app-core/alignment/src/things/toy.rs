@@ -30,6 +30,9 @@ const LEAST_IN_FRAME: usize = 12;
 /// Minimum number of seeds of a thing in the frame alone that is not before the toy: shadows and
 /// highlights that the model does not have look like small things.
 const LEAST_IN_FRAME_ALONE: usize = 400;
+/// Part of the plate's codes below which a pixel is darker than a shadow leaves it: linear light of .1
+/// to .2.
+const LEAST_LIT: f32 = 0.4;
 /// Share of its possible pixels before the toy that must show it.
 const PART_BEFORE: f32 = 0.04;
 
@@ -177,6 +180,19 @@ impl Toy {
         };
         self.coverage.at(at) > 0.0 && most_around(at, is_toy)
     }
+
+    /// Whether a pixel in the toy's place is not the plate's in some light of which a shadow leaves
+    /// enough.
+    pub(super) fn is_seen(&self, at: IVec2, [frame, plate]: [&Codes; 2]) -> bool {
+        let is_plate = frame.get(at).zip(plate.get(at)).is_some_and(|(frame, plate)| {
+            from_shaded(frame, plate) < UNLIKE_CODES && brightest(frame) > LEAST_LIT * brightest(plate)
+        });
+        self.coverage.at(at) > 0.0 && !is_plate
+    }
+}
+
+fn brightest(color: Color) -> f32 {
+    color.into_iter().fold(0.0, f32::max)
 }
 
 /// Whether a number of pixels is a part of the least one, or more.

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3, IVec2};
 
 use super::feet::{Bodies, Feet, pixel_of, shadow_of};
 use super::grown::Grown;
+use super::seeds::Colored;
 use super::sight::Sight;
 use crate::picture::{Level, Mask, places};
 
@@ -18,10 +19,7 @@ impl Sight<'_> {
             return Vec::new();
         };
         let size_px = level.frame.size_px;
-        let body = |at: IVec2| {
-            let is_body = !things.is_like_place(at.as_dvec2());
-            things.of_pixel(at).filter(|_| is_body)
-        };
+        let body = |at: IVec2| things.body_at(at.as_dvec2() + 0.5, Colored::Otherwise);
         let bodies = Bodies {
             size_px,
             thing: places(size_px).map(body).collect(),

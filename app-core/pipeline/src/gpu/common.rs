@@ -58,6 +58,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "still_toy",
     "stillness",
     "thing_marks",
+    "thing_rim",
     "tiles",
     "tint_cells",
     "tint_grid",
