@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::lights::Watched;
+use super::lights::{Watched, is_resized};
 use super::photograph::{EstimatedLights, FoundLights};
 use super::report::{AssumedLight, LightAlignment};
 use crate::probe::TrackedLight;
@@ -258,6 +258,7 @@ impl LightAlignment {
         }
         if let [Some(given), Some(light)] = both.map(|light| light.slope_from(place_in_world)) {
             self.size_ratio = (given > 0.0).then_some(light / given);
+            self.is_resized = is_resized([given, light]);
         }
     }
 }

@@ -240,6 +240,8 @@ pub struct LightAlignment {
     /// Tangent of the estimated angular radius over that of the given one; `None` for a point
     /// light.
     pub size_ratio: Option<f64>,
+    /// Whether the two sizes differ visibly.
+    pub is_resized: bool,
     /// Standard deviation of the direction, in radians, by noise alone.
     pub deviation_rad: f64,
 }

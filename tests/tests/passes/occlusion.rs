@@ -3,6 +3,7 @@
 use std::fs;
 use std::sync::Arc;
 
+use app_core::frame::FrameInput;
 use app_core::gpu::ShaderTexts;
 use app_core::preset::Preset;
 use app_core::scene::Image;
@@ -291,9 +292,14 @@ fn a_fault_in_the_light_of_a_side_is_found() {
     let faults = [
         ("LIT_PART: f32 = 0.8", "LIT_PART: f32 = 0.0"),
         ("LIT_PART: f32 = 0.8", "LIT_PART: f32 = 0.5"),
-        ("hidden[i] * falloff(i, place)", "hidden[i]"),
+        ("* hidden[i] * falloff(i, place)", "* hidden[i]"),
         ("here.y <= 0.0 ||", ""),
-        ("max(n_above, 1.0)", "f32(globals.n_lights)"),
+        ("irradiance(receiver_of(place), i);", "1.0;"),
+        // Equal weights of all lights above.
+        (
+            "irradiance(receiver_of(place), i);",
+            "sign(irradiance(receiver_of(place), i));",
+        ),
         (
             "receiver_of(receiver_point(texel + 0.5)) != receiver_of(place)",
             "false",
@@ -317,6 +323,37 @@ fn a_fault_in_the_light_of_a_side_is_found() {
         });
         assert!(is_found, "\"{to}\" for \"{from}\" is not found");
     }
+}
+
+/// The ambient light of a side depends on how sharp the lights' shadows are: a softer picture of a
+/// known view changes it as a first picture does.
+#[test]
+fn the_captured_light_of_a_side_is_as_soft_as_the_picture() {
+    let stand = Stand::new(SIDE);
+    let of = |outline_spread| {
+        input(&stand, &blank(&stand)).with_sharpness(Sharpness {
+            plate_spread: Spread::NONE,
+            outline_spread,
+        })
+    };
+    let softer = Spread {
+        xx_px2: 9.0,
+        xy_px2: 0.0,
+        yy_px2: 9.0,
+    };
+    let [soft, softer] = [SOFT, softer].map(of);
+    let captured = |inputs: &[&FrameInput]| {
+        let mut core = any_core();
+        core.set_scene(scene(&stand, &blank(&stand)), Preset::Balanced)
+            .unwrap();
+        for input in inputs {
+            core.frame(input).unwrap();
+        }
+        core.read_map(Map::PhysicalAmbient).unwrap().unwrap()
+    };
+    let at_once = captured(&[&softer]);
+    assert_ne!(captured(&[&soft]), at_once);
+    assert_eq!(captured(&[&soft, &softer]), at_once);
 }
 
 /// A blur that is wider along one axis, and the root of its covariance, with that of a pixel and

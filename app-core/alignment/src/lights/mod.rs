@@ -108,9 +108,8 @@ impl FoundLight {
         let least_rad = (LEAST_TURN * self.given_spread)
             .max(LEAST_TURN_RAD)
             .max(SIGNIFICANT * self.deviation_rad);
-        let growth = (self.spread - self.given_spread).abs();
         self.turned_rad > least_rad
-            || growth > (LEAST_GROWTH * self.given_spread).max(LEAST_TURN_RAD)
+            || is_resized([self.given_spread, self.spread])
             || self.distance_ratio.ln().abs() > LEAST_DISTANCE
     }
 
@@ -121,9 +120,16 @@ impl FoundLight {
             turned_rad: self.turned_rad,
             distance_ratio: self.distance_ratio,
             size_ratio: (self.given_spread > 0.0).then(|| self.spread / self.given_spread),
+            is_resized: is_resized([self.given_spread, self.spread]),
             deviation_rad: self.deviation_rad,
         }
     }
+}
+
+/// Whether two sizes of a light, as tangents of the angular radius, differ visibly: `[given,
+/// estimate]`.
+pub(super) fn is_resized([given, estimate]: [f64; 2]) -> bool {
+    (estimate - given).abs() > (LEAST_GROWTH * given).max(LEAST_TURN_RAD)
 }
 
 /// Estimates the lights around the given ones, within their uncertainty; `None` if too little of a

@@ -177,7 +177,7 @@ impl Core {
                 outliers(&ReceiverCells {
                     accumulated: &accumulated[..width * height],
                     width,
-                    relative_side: grid.cell_m / grids[0].cell_m,
+                    cell_m: grid.cell_m,
                 })
             });
         let mut found: Vec<Outlier> = receivers.flatten().collect();

@@ -126,15 +126,15 @@ fn against_listed(error: &LightError) -> String {
 /// Angle within which a direction is listed as well as it can be measured, in radians: half a
 /// degree, which is 4 mm of the middle of a lamp at half a metre.
 const LISTED_RAD: f64 = 0.5 * std::f64::consts::PI / 180.0;
-/// The same for a lamp's distance and size, as a logarithm: a tenth.
+/// The same for a lamp's distance, as a logarithm: a tenth.
 const LISTED_RATIO: f64 = 0.1;
 
 /// Whether an estimate agrees with the list as well as a list can be measured. It may move the
-/// shadow visibly all the same, so that the estimate is used.
-fn is_as_listed(light: &LightAlignment) -> bool {
-    let ratios = [Some(light.distance_ratio), light.size_ratio];
-    let mut ratios = ratios.into_iter().flatten();
-    light.turned_rad <= LISTED_RAD && ratios.all(|ratio| ratio.ln().abs() <= LISTED_RATIO)
+/// shadow visibly all the same, so that the estimate is used. A size is listed well if it does
+/// not differ visibly.
+#[must_use]
+pub fn is_as_listed(light: &LightAlignment) -> bool {
+    light.turned_rad <= LISTED_RAD && light.distance_ratio.ln().abs() <= LISTED_RATIO && !light.is_resized
 }
 
 /// Ratios of sizes that differ from 1 by rounding.

@@ -6,11 +6,12 @@ mod pictures;
 use std::fs;
 use std::path::Path;
 
+use app_core::alignment::LightAlignment;
 use app_core::scene::{Camera, Light};
 use app_core::session::{Capture, Session};
 use desk::alignment::{Alignments, Asked, Lights, Ratio, Source};
 use desk::check::aligned_session::{self, Assumed};
-use desk::check::check;
+use desk::check::{check, is_as_listed};
 use desk::files::{BUNDLED_SESSION, Folder, SESSION_FILE};
 use desk::stored::Stored;
 use glam::{DMat4, DVec3};
@@ -317,6 +318,37 @@ fn a_lamp_listed_as_well_as_it_can_be_measured_is_not_wrong() {
     assert_eq!(slightly.facts.iter().filter(is_light).count(), 1, "{slightly:?}");
     let clearly = told(0.03);
     assert_eq!(clearly.wrong.iter().filter(is_light).count(), 1, "{clearly:?}");
+}
+
+/// A turn that is visible makes no mistake of a small lamp's size, which is not.
+#[test]
+fn a_size_that_does_not_differ_visibly_is_as_listed() {
+    let light = LightAlignment {
+        is_applied: true,
+        is_moved: true,
+        turned_rad: 0.1_f64.to_radians(),
+        distance_ratio: 1.0,
+        size_ratio: Some(1.2),
+        is_resized: false,
+        deviation_rad: 1e-4,
+    };
+    assert!(is_as_listed(&light));
+    for wrong in [
+        LightAlignment {
+            is_resized: true,
+            ..light
+        },
+        LightAlignment {
+            turned_rad: 0.6_f64.to_radians(),
+            ..light
+        },
+        LightAlignment {
+            distance_ratio: 1.2,
+            ..light
+        },
+    ] {
+        assert!(!is_as_listed(&wrong), "{wrong:?}");
+    }
 }
 
 #[test]

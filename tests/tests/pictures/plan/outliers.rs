@@ -6,16 +6,16 @@ use app_pipeline::model::diagnostics::outliers::{ReceiverCells, outliers};
 /// Number of cells in a row.
 const WIDTH: usize = 4;
 
-/// Outliers among cells of the first receiver.
+/// Outliers among cells of the first receiver, which are a centimetre wide.
 fn of_first(accumulated: &[[f32; 4]]) -> Vec<Outlier> {
-    of_cells((accumulated, WIDTH), 1.0)
+    of_cells((accumulated, WIDTH), 0.01)
 }
 
-fn of_cells((accumulated, width): (&[[f32; 4]], usize), relative_side: f32) -> Vec<Outlier> {
+fn of_cells((accumulated, width): (&[[f32; 4]], usize), cell_m: f32) -> Vec<Outlier> {
     outliers(&ReceiverCells {
         accumulated,
         width,
-        relative_side,
+        cell_m,
     })
 }
 
@@ -52,7 +52,7 @@ fn a_cell_or_two_are_no_thing() {
 }
 
 /// On the side of a book the toy's shadow ends some millimetres beside its place: a band of two or
-/// three cells, of which five make two of the table's.
+/// three cells, however wide the table's are.
 #[test]
 fn a_narrow_band_is_a_misplaced_edge() {
     let dark = [-0.9, -0.9, -0.8, 2.0];
@@ -64,8 +64,8 @@ fn a_narrow_band_is_a_misplaced_edge() {
             .collect();
         cells
     };
-    assert_eq!(of_cells((&band(3), 20), 0.43), []);
-    assert_eq!(of_cells((&band(7), 20), 0.43), [Outlier::Shadow]);
-    assert_eq!(of_cells((&band(1), 20), 1.0), []);
-    assert_eq!(of_cells((&band(3), 20), 1.0), [Outlier::Shadow]);
+    assert_eq!(of_cells((&band(3), 20), 0.0025), []);
+    assert_eq!(of_cells((&band(7), 20), 0.0025), [Outlier::Shadow]);
+    assert_eq!(of_cells((&band(1), 20), 0.01), []);
+    assert_eq!(of_cells((&band(3), 20), 0.01), [Outlier::Shadow]);
 }

@@ -134,7 +134,7 @@ impl CapturePath<'_> {
         self.mark_things(recorder);
         let maps = &self.captured.light;
         self.lighting
-            .encode_light_visibility(recorder, self.light, self.physical(), maps);
+            .encode_sharp_visibility(recorder, self.light, self.physical(), maps);
         self.soften(recorder);
         self.withhold(recorder);
         self.estimate(recorder);

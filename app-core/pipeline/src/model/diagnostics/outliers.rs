@@ -13,12 +13,12 @@ pub const OUTLIER_ALL: f32 = 0.3;
 pub const SHADOW_EVENNESS: f32 = 0.4;
 /// Minimum certainty of a cell, of 1 per frame.
 const LEAST_CERTAINTY: f32 = 0.5;
-/// Minimum number of cells of an object; fewer are a slightly misplaced edge.
+/// Minimum number of cells of an object; fewer are a place that is not well explained.
 const FEWEST_CELLS: usize = 4;
-/// Width from which a shadow is no misplaced edge, in cells of the first receiver, which are a few
-/// millimetres wide, and in the receiver's own. On the small side of a book, which has finer cells,
-/// an edge that was 5 mm off made 40 of them.
+/// Width from which a shadow is no misplaced edge, in cells and in metres: twice as wide as the band
+/// that an edge 5 mm off left on the small side of a book, in 40 cells of 1 to 2 mm.
 const NARROWEST_CELLS: usize = 2;
+const NARROWEST_M: f32 = 0.010;
 
 /// The cells of a receiver.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +27,8 @@ pub struct ReceiverCells<'a> {
     pub accumulated: &'a [[f32; 4]],
     /// Number of cells in a row.
     pub width: usize,
-    /// Side of a cell over that of the first receiver's.
-    pub relative_side: f32,
+    /// Side of a cell in metres; 0 on a receiver that is not reached.
+    pub cell_m: f32,
 }
 
 /// Outliers on a receiver.
@@ -39,8 +39,7 @@ pub fn outliers(cells: &ReceiverCells<'_>) -> Vec<Outlier> {
     let has_object = n_objects.count() >= FEWEST_CELLS;
     let is_shadow = |index: usize| kinds[index] == Some(Outlier::Shadow);
     let widest = widest_square((kinds.len(), cells.width), is_shadow);
-    let has_shadow =
-        widest >= NARROWEST_CELLS && widest as f32 * cells.relative_side >= NARROWEST_CELLS as f32;
+    let has_shadow = widest >= NARROWEST_CELLS && widest as f32 * cells.cell_m >= NARROWEST_M;
     let found = [(has_object, Outlier::Object), (has_shadow, Outlier::Shadow)];
     let found = found.into_iter().filter(|(is_found, _)| *is_found);
     found.map(|(_, unknown)| unknown).collect()

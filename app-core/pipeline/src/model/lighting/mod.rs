@@ -180,9 +180,24 @@ impl Lighting {
         passes.occlusion.encode(recorder, &inputs, &ambient, map, order);
     }
 
-    /// Draws the part of the lights' visibility that is as sharp as the picture, if there are any
-    /// lights.
-    pub(crate) fn encode_light_visibility(
+    /// Draws the visibilities that are as sharp as the picture: those of the lights, and the ambient
+    /// light's if an upright receiver sees the lights' shadows.
+    pub(crate) fn encode_sharp_visibility(
+        &self,
+        recorder: &mut Recorder<'_>,
+        passes: &Passes,
+        posed: Posed<'_>,
+        maps: &LightMaps,
+    ) {
+        if self.seen_from_upright(posed, maps).is_some() {
+            self.encode_visibility(recorder, passes, posed, maps);
+        } else {
+            self.encode_light_visibility(recorder, passes, posed, maps);
+        }
+    }
+
+    /// Draws the visibility of the lights, if there are any.
+    fn encode_light_visibility(
         &self,
         recorder: &mut Recorder<'_>,
         passes: &Passes,
