@@ -50,3 +50,10 @@ fn rim_mixed(texel: vec2i, steps: vec4i, shown: vec3f) -> vec3f {
   if !is_relit(relit_within) { return kept; }
   return mix(mix(shown, fit.gain.rgb * relit_within.rgb, part), kept, kept_part(relit_within));
 }
+
+// A thing before the toy, in the toy's shadow or not.
+fn before_toy(texel: vec2i, f: vec3f) -> vec3f {
+  let b = textureLoad(plate, texel, 0);
+  if !is_relit(b) { return f; }
+  return relit(b, f);
+}

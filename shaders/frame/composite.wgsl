@@ -199,13 +199,6 @@ fn receiver(
   return color;
 }
 
-// A thing before the toy, in the toy's shadow or not.
-fn before_toy(texel: vec2i, f: vec3f) -> vec3f {
-  let b = textureLoad(plate, texel, 0);
-  if !is_relit(b) { return f; }
-  return relit(b, f);
-}
-
 // The picture at a texel with the drawn toy over the receiver of a place: at a rim, a neighbour.
 fn over_receiver(texel: vec2i, place: vec2i, toy: vec4f, n_draws: u32) -> vec3f {
   let frame_color = frame_at(place);
