@@ -39,13 +39,13 @@ fn rim_mixed(texel: vec2i, steps: vec4i, shown: vec3f) -> vec3f {
   let beyond = frame_at(texel + steps.zw);
   let in_plate = plate_differences(texel, steps);
   let is_inside = dot(steps.xy, steps.xy) < dot(steps.zw, steps.zw);
-  let usual = select(1.0 - PART_INSIDE, PART_INSIDE, is_inside);
-  let told = dot(here - beyond, within - beyond) + dot(in_plate[0], in_plate[1]) + RIM_CONTRAST * usual;
-  let most = dot(within - beyond, within - beyond) + dot(in_plate[1], in_plate[1]) + RIM_CONTRAST;
-  let part = saturate(told / most);
+  let prior = select(1.0 - PART_INSIDE, PART_INSIDE, is_inside);
+  let along = dot(here - beyond, within - beyond) + dot(in_plate[0], in_plate[1]) + RIM_CONTRAST * prior;
+  let whole = dot(within - beyond, within - beyond) + dot(in_plate[1], in_plate[1]) + RIM_CONTRAST;
+  let part = saturate(along / whole);
   let change = largest(abs(shown - beyond)) / max(largest(max(shown, beyond)), DARKEST_USABLE);
-  let left = (1.0 - smoothstep(KEEP_ALL, KEEP_NONE, change)) * (here - mix(beyond, within, part));
-  let kept = max(mix(shown, within, part) + left, vec3f(0.0));
+  let remainder = (1.0 - smoothstep(KEEP_ALL, KEEP_NONE, change)) * (here - mix(beyond, within, part));
+  let kept = max(mix(shown, within, part) + remainder, vec3f(0.0));
   let relit_within = textureLoad(plate, texel + steps.xy, 0);
   if !is_relit(relit_within) { return kept; }
   return mix(mix(shown, fit.gain.rgb * relit_within.rgb, part), kept, kept_part(relit_within));

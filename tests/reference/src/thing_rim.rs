@@ -34,15 +34,15 @@ impl Rims<'_> {
         let [here, within, beyond] = places.map(|at| self.frame.at(at));
         let in_plate = places.map(|at| self.plate.at(at));
         let is_inside = steps[0].length_squared() < steps[1].length_squared();
-        let usual = if is_inside { INSIDE } else { 1.0 - INSIDE };
+        let prior = if is_inside { INSIDE } else { 1.0 - INSIDE };
         let mut rows = vec![(here - beyond, within - beyond)];
         if in_plate.iter().all(|color| color.w == 1.0) {
             let [here, within, beyond] = in_plate.map(DVec4::truncate);
             rows.push((here - beyond, within - beyond));
         }
-        let told: f64 = rows.iter().map(|(own, all)| own.dot(*all)).sum();
-        let most: f64 = rows.iter().map(|(_, all)| all.length_squared()).sum();
-        let part = ((told + CONTRAST * usual) / (most + CONTRAST)).clamp(0.0, 1.0);
+        let along: f64 = rows.iter().map(|(own, all)| own.dot(*all)).sum();
+        let whole: f64 = rows.iter().map(|(_, all)| all.length_squared()).sum();
+        let part = ((along + CONTRAST * prior) / (whole + CONTRAST)).clamp(0.0, 1.0);
         let lightest = shown.max(beyond).max_element().max(DARKEST);
         let change = (shown - beyond).abs().max_element() / lightest;
         let deviation = here - beyond.lerp(within, part);

@@ -88,7 +88,7 @@ fn a_fault_at_the_rim_of_a_thing_is_found() {
         ("code > N_DIRECTIONS", "code < N_DIRECTIONS"),
         ("-select(2, 1, is_inside) * outward", "-outward"),
         ("largest(max(shown, beyond))", "1.0"),
-        ("mix(shown, within, part) + left", "mix(shown, within, part)"),
+        ("mix(shown, within, part) + remainder", "mix(shown, within, part)"),
         ("if !is_relit(relit_within) { return kept; }", ""),
         (
             "fit.gain.rgb * relit_within.rgb",
