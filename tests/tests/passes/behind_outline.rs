@@ -6,6 +6,7 @@ use app_core::preset::Preset;
 use app_core::scene::Image;
 use app_core::sharpness::{Sharpness, Spread};
 use app_pipeline::geometry::rect::PixelRect;
+use app_scene::geometry::color::{code_of_linear, linear_from_srgb};
 use glam::{DVec3, DVec4, IVec2, UVec2};
 use reference::behind_outline::plate_change;
 use reference::raster::{Raster, texels_of};
@@ -135,7 +136,7 @@ fn softened(image: &Arc<Image>) -> Arc<Image> {
     let size = UVec2::new(image.width_px, image.height_px);
     let light = Raster::from_fn(size, |at| {
         let first = 4 * (at.y * size.x + at.x) as usize;
-        DVec3::from([0, 1, 2].map(|k| f64::from(image.rgba8[first + k]).powf(2.2)))
+        DVec3::from([0, 1, 2].map(|k| f64::from(linear_from_srgb(f32::from(image.rgba8[first + k]) / 255.0))))
     });
     let along = |light: &Raster<DVec3>, step: IVec2| {
         Raster::from_fn(size, |at| {
@@ -150,10 +151,7 @@ fn softened(image: &Arc<Image>) -> Arc<Image> {
     };
     let soft = along(&along(&light, IVec2::X), IVec2::Y);
     let codes = texels_of(size).flat_map(|at| {
-        let [r, g, b] = soft
-            .at(at)
-            .to_array()
-            .map(|light| light.powf(1.0 / 2.2).round() as u8);
+        let [r, g, b] = soft.at(at).as_vec3().to_array().map(code_of_linear);
         [r, g, b, 255]
     });
     Arc::new(Image {
