@@ -57,6 +57,15 @@ var<workgroup> unknowns: array<f32, N_COLUMNS>;
 var<workgroup> whole: array<f32, 36>;
 var<workgroup> right: array<f32, N_COLUMNS>;
 
+// Irradiance of a light on a receiver's reference point, up to a factor of the light.
+fn irradiance(receiver: u32, i: u32) -> f32 {
+  let to_light = reference_to_light(receiver, i);
+  if to_light.y <= 0.0 { return 0.0; }
+  if globals.receivers[receiver].lights[i].w == 0.0 { return to_light.y; }
+  let distance_m = length(to_light);
+  return to_light.y / (distance_m * distance_m * distance_m);
+}
+
 // A light's irradiance on the fitted receiver, relative to that on the first.
 fn of_first(i: u32) -> f32 {
   let first = irradiance(0u, i);

@@ -125,23 +125,6 @@ fn unhidden(i: u32, point: ReceiverPoint) -> f32 {
   return max(1.0 - hidden_by_all(hidden), 0.0);
 }
 
-// Vector from a receiver's reference point to light `i`, in its plane space: metres, or a unit
-// direction.
-fn reference_to_light(receiver: u32, i: u32) -> vec3f {
-  let light = globals.receivers[receiver].lights[i];
-  let reference = globals.receivers[receiver].reference_in_plane;
-  return light.xyz - light.w * vec3f(reference.x, 0.0, reference.y);
-}
-
-// Irradiance of a light on a receiver's reference point, up to a factor of the light.
-fn irradiance(receiver: u32, i: u32) -> f32 {
-  let to_light = reference_to_light(receiver, i);
-  if to_light.y <= 0.0 { return 0.0; }
-  if globals.receivers[receiver].lights[i].w == 0.0 { return to_light.y; }
-  let distance_m = length(to_light);
-  return to_light.y / (distance_m * distance_m * distance_m);
-}
-
 // Irradiance of light `i` at a receiver point relative to that at the receiver's reference point in
 // the open: cos / d^2, with height over distance as the cosine, for the part of the light that no
 // other receiver hides; 0 if the light is behind the receiver.

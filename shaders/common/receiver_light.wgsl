@@ -7,13 +7,20 @@
 
 //#import common/fit
 //#import common/hemispheres
-//#import common/plate_light
 
 // Part of the light from above that a receiver reflects: middle grey, somewhat reduced, since the
 // toy shades it.
 const PRIOR_REFLECTANCE: f32 = 0.25;
 // Share of all lights below which a light's relation has reduced weight.
 const LEAST_SHARE: f32 = 0.05;
+
+// Vector from a receiver's reference point to light `i`, in its plane space: metres, or a unit
+// direction.
+fn reference_to_light(receiver: u32, i: u32) -> vec3f {
+  let light = globals.receivers[receiver].lights[i];
+  let reference = globals.receivers[receiver].reference_in_plane;
+  return light.xyz - light.w * vec3f(reference.x, 0.0, reference.y);
+}
 
 // Cosine of light `i` to a receiver, at its reference point; 0 if the light is behind it.
 fn reference_cosine(receiver: u32, i: u32) -> f32 {

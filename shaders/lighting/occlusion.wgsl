@@ -199,23 +199,18 @@ fn place_on_way(origin: vec3f, direction: vec3f) -> ReceiverPoint {
 }
 
 // Part of the light of a place that the toy's shadows take; 0 if the camera does not see the place.
-// Of several lights each counts as much as it lights the place's receiver, as in the fit's prior.
 fn taken_from(place: ReceiverPoint) -> f32 {
   let texel = floor(region_px_of(place));
   if any(texel < vec2f(0.0)) || any(texel >= globals.region_size_px) { return 0.0; }
+  if receiver_of(receiver_point(texel + 0.5)) != receiver_of(place) { return 0.0; }
   let hidden = 1.0 - textureLoad(shadows, vec2i(texel), 0);
-  var most = 0.0;
-  for (var i = 0u; i < globals.n_lights; i++) { most = max(most, hidden[i]); }
-  // Most places are in no shadow and need no search.
-  if most == 0.0 || receiver_of(receiver_point(texel + 0.5)) != receiver_of(place) { return 0.0; }
   var taken = 0.0;
-  var all_lights = 0.0;
+  var n_above = 0.0;
   for (var i = 0u; i < globals.n_lights; i++) {
-    let weight = irradiance(receiver_of(place), i);
-    if hidden[i] > 0.0 { taken += weight * hidden[i] * falloff(i, place); }
-    all_lights += weight;
+    if hidden[i] > 0.0 { taken += hidden[i] * falloff(i, place); }
+    n_above += select(0.0, 1.0, globals.receivers[receiver_of(place)].lights[i].y > 0.0);
   }
-  return select(0.0, LIT_PART * taken / all_lights, all_lights > 0.0);
+  return LIT_PART * taken / max(n_above, 1.0);
 }
 
 // The ambient light of an upright receiver, such as a wall or the side of a book. It sees others,

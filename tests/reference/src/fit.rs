@@ -194,7 +194,17 @@ fn receiver_equations(
 /// Priors of bounce and shares without a visible shadow on the receiver.
 fn receiver_priors(region: &Region, receiver: usize, before: &Solution, channel: usize) -> Vec<f64> {
     let n_lights = region.lights.len();
-    let irradiance = ReceiverPlane::reference_irradiance;
+    let irradiance = |plane: &ReceiverPlane, i: usize| {
+        let light = plane.lights[i];
+        let at = DVec3::new(plane.reference_in_plane.x, 0.0, plane.reference_in_plane.y);
+        let to_light = light.truncate() - at * light.w;
+        let falloff = if light.w == 0.0 {
+            1.0
+        } else {
+            to_light.length_squared()
+        };
+        (to_light.normalize().y / falloff).max(0.0)
+    };
     if receiver == 0 {
         // All lights count as if they had the same intensity at one metre.
         let each = (0..n_lights).map(|i| irradiance(&region.receivers[0], i));

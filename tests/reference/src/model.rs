@@ -141,21 +141,6 @@ impl ReceiverPlane {
         self.plane_from_region_px.determinant() > 0.0
     }
 
-    /// Irradiance of light `i` at the reference point, for lights of the same intensity at one
-    /// metre; 0 from behind the receiver.
-    #[must_use]
-    pub fn reference_irradiance(&self, i: usize) -> f64 {
-        let light = self.lights[i];
-        let at = DVec3::new(self.reference_in_plane.x, 0.0, self.reference_in_plane.y);
-        let to_light = light.truncate() - at * light.w;
-        let falloff = if light.w == 0.0 {
-            1.0
-        } else {
-            to_light.length_squared()
-        };
-        (to_light.normalize().y / falloff).max(0.0)
-    }
-
     /// Irradiance of light `i` at a point over that at the reference point: cos / d^2; 0 from
     /// behind the receiver. Nothing is between them.
     fn open_falloff(&self, i: usize, in_plane: DVec2) -> f64 {

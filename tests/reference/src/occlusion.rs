@@ -192,15 +192,13 @@ pub fn taken_from(
     if seen.is_none_or(|seen| seen.receiver != place.receiver) {
         return 0.0;
     }
-    let lights: Vec<_> = (0..plane.lights.len())
-        .map(|i| (i, plane.reference_irradiance(i)))
-        .filter(|(_, irradiance)| *irradiance > 0.0)
+    let above: Vec<usize> = (0..plane.lights.len())
+        .filter(|i| plane.lights[*i].y > 0.0)
         .collect();
-    let all: f64 = lights.iter().map(|(_, irradiance)| irradiance).sum();
-    let taken = lights
+    let taken = above
         .iter()
-        .map(|(i, irradiance)| irradiance / all * hidden(*i, place, at_px) * region.falloff(*i, place));
-    LIT_PART * taken.sum::<f64>()
+        .map(|i| hidden(*i, place, at_px) * region.falloff(*i, place));
+    LIT_PART * taken.sum::<f64>() / above.len().max(1) as f64
 }
 
 /// The nearest place of a receiver that an upright one sees in a direction of its space.

@@ -215,7 +215,7 @@ struct Draws {
     cover: CountingDraws,
     /// Masks pixels that show another receiver, if there are several.
     route: Draw,
-    /// Takes from upright receivers the light of others that the toy's shadows take; for
+    /// Takes from upright receivers the light of the level ones that the toy's shadows take; for
     /// the ambient light alone.
     upright: Option<Draw>,
 }
