@@ -66,5 +66,5 @@ fn cs_add(@builtin(global_invocation_id) id: vec3u) {
     atomicAdd(&sums[first + 3u + channel], u32(one_surface * min(expected[channel], MOST_EXPECTED) * TINT_UNIT));
   }
   atomicAdd(&sums[first + 6u], 1u);
-  if one_surface == 1.0 { atomicAdd(&sums[first + 7u], 1u); }
+  if one_surface == 1.0 { atomicOr(&sums[first + 6u], TINT_UNMIXED); }
 }

@@ -34,10 +34,10 @@ fn summed(first: u32) -> vec3f {
 // sum.
 fn accumulate(slot: u32) -> vec4f {
   let first = N_TINT_SUMS * slot;
-  let n_pixels = f32(sums[first + 6u]);
+  let n_pixels = f32(sums[first + 6u] & ~TINT_UNMIXED);
   if n_pixels == 0.0 { return mean_of(accumulated[slot]); }
   // All sums of a cell without an unmixed pixel have the same weight.
-  let weight = select(1.0, MIXED, sums[first + 7u] == 0u);
+  let weight = select(1.0, MIXED, (sums[first + 6u] & TINT_UNMIXED) == 0u);
   let dark = weight * TINT_UNIT * DARKEST_USABLE * n_pixels;
   let tint = (summed(first) + dark) / (summed(first + 3u) + dark);
   let certainty = min(1.0, n_pixels / FULL_PIXELS);

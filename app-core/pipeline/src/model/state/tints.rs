@@ -23,7 +23,7 @@ pub(crate) const TINT_CELLS: usize = TINT_SIDE * TINT_SIDE * TINT_SIDE;
 /// Cells of all levels of its pyramid: 16, 8, 4, 2 and 1 along each side, a geometric series.
 pub(crate) const TINT_PYRAMID: usize = (8 * TINT_CELLS - 1) / 7;
 /// Sums of a cell of tints.
-pub(crate) const N_TINT_SUMS: usize = 8;
+pub(crate) const N_TINT_SUMS: usize = 7;
 /// Maximum number of materials with a grid of their own.
 const MAX_GRIDS: usize = 8;
 
