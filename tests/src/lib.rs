@@ -1,11 +1,12 @@
 //! Helpers for tests alone: goldens and their comparison, the fuzzing functions, an endless
-//! recording.
+//! recording, shaders as they are built in.
 
 pub mod compare;
 pub mod endless;
 pub mod fuzz;
 pub mod golden;
 pub mod session_format;
+pub mod shader_text;
 pub mod temporary;
 
 use app_core::Core;

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use app_pipeline::shaders;
+use tests::shader_text::without_comments;
 
 /// Passes that draw meshes or copy rather than compute: they have no CPU reference.
 const DRAWING_PASSES: &[&str] = &[
@@ -158,27 +159,20 @@ fn only_the_gpu_layer_creates_on_the_device() {
     ));
 }
 
-/// WGSL without comments, but for imports.
-fn code(text: &str) -> String {
-    let lines = text.split('\n').map(|line| match line.split_once("//") {
-        Some((code, comment)) if !comment.starts_with("#import ") => code,
-        _ => line,
-    });
-    lines.collect::<Vec<&str>>().join("\n")
-}
-
 #[test]
 fn every_shader_file_is_joined_into_a_shader_and_its_own_under_its_name() {
     assert_none(wrong_files(
         sources("shaders", "wgsl"),
         "is in no shader of the registry",
-        |file| !shaders().any(|shader| shader.source().contains(&code(&file.text))),
+        |file| !shaders().any(|shader| shader.source().contains(&without_comments(&file.text))),
     ));
     assert_none(wrong_files(
         pass_files(),
         "is not in the shader of its name",
         |file| {
-            shaders().any(|shader| shader.name == file.stem() && !shader.source().contains(&code(&file.text)))
+            shaders().any(|shader| {
+                shader.name == file.stem() && !shader.source().contains(&without_comments(&file.text))
+            })
         },
     ));
 }

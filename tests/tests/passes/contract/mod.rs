@@ -21,6 +21,7 @@ use app_pipeline::{mirrors, shaders};
 use glam::{DVec2, UVec2};
 use naga::Module;
 use naga::valid::Capabilities;
+use tests::shader_text::without_comments;
 
 use check::{array_length, constant, parse, problems, validate};
 
@@ -49,15 +50,6 @@ fn every_shader_keeps_the_contract() {
         })
         .collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-}
-
-/// WGSL as it is built in.
-fn without_comments(text: &str) -> String {
-    let lines = text.split('\n').map(|line| match line.split_once("//") {
-        Some((code, comment)) if !comment.starts_with("#import ") => code,
-        _ => line,
-    });
-    lines.collect::<Vec<&str>>().join("\n")
 }
 
 /// Each part is included once, after its own imports, and every part has a file.
