@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use app_pipeline::shaders;
-use tests::shader_text::without_comments;
+use harness::shader_text::without_comments;
 
 /// Passes that draw meshes or copy rather than compute: they have no CPU reference.
 const DRAWING_PASSES: &[&str] = &[

@@ -19,9 +19,9 @@ use app_pipeline::model::state::solution::N_COLUMNS;
 use app_pipeline::plan::SceneFacts;
 use app_pipeline::{mirrors, shaders};
 use glam::{DVec2, UVec2};
+use harness::shader_text::without_comments;
 use naga::Module;
 use naga::valid::Capabilities;
-use tests::shader_text::without_comments;
 
 use check::{array_length, constant, parse, problems, validate};
 
