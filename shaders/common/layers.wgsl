@@ -44,12 +44,12 @@ fn layered(position: vec4f, n_draws: u32) -> mat4x4f {
   let masks = vec4f(0.0, 0.0, select(0.0, 1.0, is_receiver), 1.0);
   let in_box = box_texel(texel);
   // A thing before the toy is a part of the clean plate, and so is the rim of a thing beside it.
-  let is_rim = any(rim_steps_at(texel) != vec4i(0)) && toy_layer(in_box, n_draws).a == 0.0;
+  let part = toy_layer(in_box, n_draws).a;
+  let is_rim = any(rim_steps_at(texel) != vec4i(0)) && part == 0.0;
   if is_rim || is_before_toy(evident) {
     return mat4x4f(composed(position, n_draws), vec4f(1.0), vec4f(0.0), masks);
   }
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
-  let part = toy_layer(in_box, n_draws).a;
   find_beyond(texel, part, evident, has_moved, n_draws);
   var change = vec4f(0.0);
   let clean = receiver(position, f, evident, has_moved, 0.0, &change);

@@ -20,6 +20,7 @@
 // projections). Here the blending of one pass accumulates, and not one pass per point.
 
 //#import common/flatten
+//#import common/fullscreen
 //#import common/plate_light
 //#import common/spread
 //#import common/tiles
@@ -172,13 +173,6 @@ fn fs_cover(@location(0) height_m: f32, @location(1) @interpolate(flat, either) 
 // its side; 1.22, and 1.09, 1.07, 1.06 and 1.05 beside a box; and .95, and .84, .83, .83 and .83
 // before a wall.
 const LIT_PART: f32 = 0.8;
-
-// The whole map, once.
-@vertex
-fn vs_whole(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-  let corner = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
-  return vec4f(corner * 2.0 - 1.0, 0.0, 1.0);
-}
 
 // The nearest place of a receiver that is seen along a way through anchor space.
 fn place_on_way(origin: vec3f, direction: vec3f) -> ReceiverPoint {

@@ -161,9 +161,7 @@ impl Grown {
 
     /// Whether a colour in codes is the place's.
     pub(super) fn is_place_color(&self, color: Color) -> bool {
-        self.colors
-            .likelier(color)
-            .is_some_and(|likelier| likelier < -LIKE_PLACE)
+        is_of_place(&self.colors, color)
     }
 
     /// Whether a place in pixels is in a thing's shadow.
@@ -237,14 +235,17 @@ fn without_holes(mut nearer: Vec<f32>, seeds: &Seeds) -> Vec<f32> {
     nearer
 }
 
+/// Whether a colour in codes is likelier the place's.
+fn is_of_place(colors: &Colors, color: Color) -> bool {
+    colors
+        .likelier(color)
+        .is_some_and(|likelier| likelier < -LIKE_PLACE)
+}
+
 /// For each pixel, whether most pixels around it are likelier the place's.
 fn like_place(size_px: IVec2, plate: &Codes, colors: &Colors) -> Vec<bool> {
-    let is_like = |color| {
-        colors
-            .likelier(color)
-            .is_some_and(|likelier| likelier < -LIKE_PLACE)
-    };
-    let is_like: Vec<bool> = plate.pixels.iter().map(|color| is_like(*color)).collect();
+    let pixels = plate.pixels.iter();
+    let is_like: Vec<bool> = pixels.map(|color| is_of_place(colors, *color)).collect();
     let around = |at: IVec2| square(at, AROUND_PX).filter_map(|at| index_in(size_px, at));
     let most = |at: IVec2| 2 * around(at).filter(|index| is_like[*index]).count() > around(at).count();
     places(size_px).map(most).collect()

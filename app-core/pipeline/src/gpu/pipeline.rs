@@ -5,7 +5,10 @@ use std::hash::Hash;
 use std::mem;
 use std::sync::Mutex;
 
-use wgpu::{ColorTargetState, DepthStencilState, Face, VertexAttribute, VertexFormat, VertexStepMode};
+use wgpu::{
+    BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites,
+    DepthStencilState, Face, TextureFormat, VertexAttribute, VertexFormat, VertexStepMode,
+};
 
 use super::bindings::{BindingCache, Layout, N_GROUPS, Slot, locked};
 use super::device::Device;
@@ -41,7 +44,7 @@ impl DrawSpec {
         shader: &'static Shader,
         fragment: &'static str,
         groups: Groups,
-        targets: &[wgpu::TextureFormat],
+        targets: &[TextureFormat],
     ) -> Self {
         Self {
             shader,
@@ -275,10 +278,27 @@ fn buffer(attributes: &[VertexAttribute; 1]) -> wgpu::VertexBufferLayout<'_> {
 /// Depth state with reversed depth that keeps the nearest surface.
 pub(crate) fn nearest_surface() -> DepthStencilState {
     DepthStencilState {
-        format: wgpu::TextureFormat::Depth32Float,
+        format: TextureFormat::Depth32Float,
         depth_write_enabled: Some(true),
         depth_compare: Some(wgpu::CompareFunction::Greater),
         stencil: wgpu::StencilState::default(),
         bias: wgpu::DepthBiasState::default(),
+    }
+}
+
+/// A target that is multiplied by the drawn values.
+pub(crate) fn multiplied(format: TextureFormat) -> ColorTargetState {
+    let product = BlendComponent {
+        src_factor: BlendFactor::Dst,
+        dst_factor: BlendFactor::Zero,
+        operation: BlendOperation::Add,
+    };
+    ColorTargetState {
+        format,
+        blend: Some(BlendState {
+            color: product,
+            alpha: product,
+        }),
+        write_mask: ColorWrites::ALL,
     }
 }

@@ -1,12 +1,8 @@
 //! `things`: objects beside the toy, in the validity mask and in the plate.
 
-use wgpu::{
-    BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites, TextureFormat,
-};
-
 use crate::gpu::bindings::{GROUP_PASS, Slot};
 use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec};
+use crate::gpu::pipeline::{Draw, DrawSpec, multiplied};
 use crate::gpu::recorder::{Recorder, loaded};
 use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
@@ -91,22 +87,5 @@ impl Pass {
         let draw = &self.correct_plate;
         let groups = [recorder.bind(draw, GROUP_PASS, &things.resources())];
         recorder.fullscreen_onto(draw, &groups, &[Some(loaded(photographed))]);
-    }
-}
-
-/// A target that is multiplied by the drawn values.
-fn multiplied(format: TextureFormat) -> ColorTargetState {
-    let product = BlendComponent {
-        src_factor: BlendFactor::Dst,
-        dst_factor: BlendFactor::Zero,
-        operation: BlendOperation::Add,
-    };
-    ColorTargetState {
-        format,
-        blend: Some(BlendState {
-            color: product,
-            alpha: product,
-        }),
-        write_mask: ColorWrites::ALL,
     }
 }

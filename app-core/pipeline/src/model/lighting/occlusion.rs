@@ -2,16 +2,13 @@
 //! for many points of each light, in one pass.
 
 use glam::{UVec2, Vec4};
-use wgpu::{
-    BlendComponent, BlendFactor, BlendOperation, BlendState, Color, ColorTargetState, ColorWrites,
-    CompareFunction, TextureFormat, VertexFormat,
-};
+use wgpu::{BlendOperation, Color, CompareFunction, TextureFormat, VertexFormat};
 
 use crate::geometry::rect::PixelRect;
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Slot};
 use crate::gpu::buffer::Buffer;
 use crate::gpu::context::Gpu;
-use crate::gpu::pipeline::{Draw, DrawSpec, Stream};
+use crate::gpu::pipeline::{Draw, DrawSpec, Stream, multiplied};
 use crate::gpu::recorder::{Recorder, cleared_to};
 use crate::gpu::shader::{Shader, shader};
 use crate::gpu::shared::shared_struct;
@@ -238,8 +235,7 @@ impl Draws {
             ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
         };
         let upright = DrawSpec {
-            vertex: "vs_whole",
-            targets: vec![multiplying(format)],
+            targets: vec![multiplied(format)],
             depth: Some(ordered(CompareFunction::Always)),
             ..DrawSpec::fullscreen(
                 &SHADER,
@@ -255,23 +251,6 @@ impl Draws {
             cover: CountingDraws::new(gpu, &cover),
             route: gpu.draw(&route),
         }
-    }
-}
-
-/// A target that is multiplied by the drawn values.
-fn multiplying(format: TextureFormat) -> ColorTargetState {
-    let product = BlendComponent {
-        src_factor: BlendFactor::Dst,
-        dst_factor: BlendFactor::Zero,
-        operation: BlendOperation::Add,
-    };
-    ColorTargetState {
-        format,
-        blend: Some(BlendState {
-            color: product,
-            alpha: product,
-        }),
-        write_mask: ColorWrites::ALL,
     }
 }
 
