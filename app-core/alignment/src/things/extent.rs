@@ -55,8 +55,8 @@ pub(super) struct Outline<'a> {
 
 /// A rectangle on a plane.
 pub(super) struct Extent {
-    middle: DVec2,
-    turn_rad: f64,
+    pub(super) middle: DVec2,
+    pub(super) turn_rad: f64,
     pub(super) half_m: DVec2,
 }
 
@@ -158,7 +158,7 @@ impl Extent {
     }
 
     /// The smallest rectangle around places: among turns over a quarter, then among finer ones.
-    fn smallest(places: &[DVec2]) -> Option<Self> {
+    pub(super) fn smallest(places: &[DVec2]) -> Option<Self> {
         const STEP_RAD: f64 = std::f64::consts::FRAC_PI_2 / N_TURNS as f64;
         let among = |turns: &mut dyn Iterator<Item = f64>| {
             turns

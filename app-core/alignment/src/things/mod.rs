@@ -8,8 +8,10 @@
 //! that frame and plate both show in the toy's place is **before the toy**; a thing in the plate
 //! alone makes the plate wrong; and a thing in the frame alone matters if it hides the toy.
 
+mod by_shadow;
 mod cast;
 mod codes;
+mod colored_extent;
 mod colors;
 mod edges;
 mod expected_light;
@@ -28,6 +30,7 @@ mod painted;
 pub(crate) mod planes;
 mod seeds;
 mod shade;
+mod shadow_loss;
 mod sides;
 mod sight;
 mod simplex;

@@ -7,11 +7,13 @@
 
 use glam::{DMat4, DQuat, DVec2, DVec3, IVec2, Vec3Swizzles};
 
+use super::by_shadow;
 use super::extent::{Extent, Outline, is_exact};
 use super::grown::Grown;
 use super::inner::{most_on, pixels};
 use super::measured::Measured;
 use super::seeds::Colored;
+use super::shadow_loss::{self, MOST_LOSS, square};
 use super::simplex::descend;
 use crate::lights::{Compared, Comparison, OnPlane};
 use crate::measured_points::MeasuredPoints;
@@ -27,9 +29,7 @@ const MOST_PIXELS: usize = 2500;
 /// Least shadowed pixels that a level and a tilted plane need.
 const LEAST_SHADOWED: [usize; 2] = [90, 250];
 /// Least part of the light that a shadowed pixel loses.
-const SHADOWED: f32 = 0.25;
-/// Largest loss of a pixel: a squared difference in plates.
-const MOST_LOSS: f64 = 0.03;
+pub(super) const SHADOWED: f32 = 0.25;
 /// Largest loss of an accepted plane: absolute, and over the smaller loss of the known receivers and
 /// of no shadow at all.
 const OF_PLANE: f64 = 0.0012;
@@ -56,9 +56,6 @@ pub(super) const GROUND: usize = 0;
 /// A level plane wins if its loss is at most this factor times a tilted plane's, plus a constant.
 const LEVEL_TIMES: f64 = 1.3;
 const LEVEL_MORE: f64 = 1e-4;
-/// Least and largest depth of the shadow over the expected one, and rounds of its estimate.
-const DEPTHS: [f64; 2] = [0.6, 1.3];
-const N_ROUNDS: usize = 3;
 /// Heights of the first search, over the toy's radius: the first, the step, and their number.
 const HEIGHTS: (f64, f64, usize) = (-0.03, 0.03, 24);
 /// Slopes of the first search, and the directions of each.
@@ -152,7 +149,7 @@ pub(super) fn find(
                 .into_iter()
                 .flatten()
                 .min_by(|a, b| a.report.losses[1].total_cmp(&b.report.losses[1]))?,
-            None => found(search()?, &outline)?,
+            None => found(search()?, &outline).or_else(|| by_shadow::found(search()?, &outline))?,
         };
         Some(FoundPlane {
             instead_of: (on != GROUND && found.is_near(&receivers[on])).then_some(on),
@@ -175,17 +172,7 @@ fn found(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     let losses = search.significant_losses(raster, &plane, outline.colored)?;
     let endless = search.plane(&plane.heights).plane_from_camera;
     let extent = Extent::of(outline, &endless, plane.is_level)?;
-    Some(FoundPlane {
-        plane: extent.plane(&endless),
-        instead_of: None,
-        contrast: extent.contrast(outline.level, &endless),
-        report: PlaneAlignment {
-            height_m: extent.height_m(&endless, search.table),
-            tilt_rad: (plane.heights[1].hypot(plane.heights[2]) / search.size_m).atan(),
-            half_extent_m: extent.half_m.to_array(),
-            losses,
-        },
-    })
+    Some(search.reported(&extent, (&endless, &plane), outline.level, losses))
 }
 
 /// A plane near a listed one.
@@ -197,21 +184,22 @@ pub(super) struct Nearer {
 }
 
 /// A candidate for a thing's plane.
-struct Candidate {
-    heights: Heights,
-    loss: f64,
-    is_level: bool,
+pub(super) struct Candidate {
+    pub(super) heights: Heights,
+    pub(super) loss: f64,
+    pub(super) is_level: bool,
 }
 
 /// Parameters of a plane, in metres: its height above the receiver at the thing's centre, and its
 /// rise over the thing's size along either axis.
-type Heights = [f64; 3];
+pub(super) type Heights = [f64; 3];
 
 /// A search for one thing's plane.
 pub(super) struct Search<'a> {
-    on_plane: OnPlane<'a>,
-    table: &'a SeenReceiver,
-    intrinsics: Intrinsics,
+    pub(super) comparison: &'a Comparison,
+    pub(super) on_plane: OnPlane<'a>,
+    pub(super) table: &'a SeenReceiver,
+    pub(super) intrinsics: Intrinsics,
     /// Sampling stride of the pixels.
     apart: usize,
     pixels: Vec<IVec2>,
@@ -219,8 +207,8 @@ pub(super) struct Search<'a> {
     /// Prediction of the known receivers.
     expected: Vec<Option<Color>>,
     /// The thing's centre and size on the receiver, in metres.
-    middle: DVec2,
-    size_m: f64,
+    pub(super) middle: DVec2,
+    pub(super) size_m: f64,
     radius_m: f64,
     /// The plane that a depth sensor measured.
     measured: Option<Measured>,
@@ -244,21 +232,34 @@ impl<'a> Search<'a> {
         let middle = ground.iter().sum::<DVec2>() / n;
         let square = ground.iter().map(|at| at.distance_squared(middle)).sum::<f64>() / n;
         let size_m = square.sqrt();
-        let apart = pixels.len().div_ceil(MOST_PIXELS).max(1);
-        let looked_at = || pixels.iter().step_by(apart);
-        (size_m > 0.0).then(|| Self {
+        let search = (size_m > 0.0).then(|| Self {
+            comparison,
             on_plane: OnPlane::new(comparison, (shape, receivers), GROUND, level),
             table,
             intrinsics: level.intrinsics,
-            apart,
-            pixels: looked_at().map(|pixel| pixel.at).collect(),
-            seen: looked_at().map(|pixel| (pixel.ratio, pixel.noise)).collect(),
-            expected: looked_at().map(|pixel| Some(pixel.model)).collect(),
+            apart: 1,
+            pixels: Vec::new(),
+            seen: Vec::new(),
+            expected: Vec::new(),
             middle,
             size_m,
             radius_m: shape.radius_m,
             measured: None,
-        })
+        })?;
+        Some(search.of_pixels(pixels))
+    }
+
+    /// The same search, with other pixels.
+    pub(super) fn of_pixels(self, pixels: &[&Compared]) -> Self {
+        let apart = pixels.len().div_ceil(MOST_PIXELS).max(1);
+        let looked_at = || pixels.iter().step_by(apart);
+        Self {
+            apart,
+            pixels: looked_at().map(|pixel| pixel.at).collect(),
+            seen: looked_at().map(|pixel| (pixel.ratio, pixel.noise)).collect(),
+            expected: looked_at().map(|pixel| Some(pixel.model)).collect(),
+            ..self
+        }
     }
 
     /// The plane near a listed one that explains the shadow far better; `None` if there is none.
@@ -287,8 +288,30 @@ impl<'a> Search<'a> {
         })
     }
 
+    /// A found plane with its bounds and losses.
+    pub(super) fn reported(
+        &self,
+        extent: &Extent,
+        (endless, candidate): (&DMat4, &Candidate),
+        level: &Level,
+        losses: [f64; 2],
+    ) -> FoundPlane {
+        let [_, along_x, along_z] = candidate.heights;
+        FoundPlane {
+            plane: extent.plane(endless),
+            instead_of: None,
+            contrast: extent.contrast(level, endless),
+            report: PlaneAlignment {
+                height_m: extent.height_m(endless, self.table),
+                tilt_rad: (along_x.hypot(along_z) / self.size_m).atan(),
+                half_extent_m: extent.half_m.to_array(),
+                losses,
+            },
+        }
+    }
+
     /// The plane with the smallest residual.
-    fn best_plane(&self, raster: &mut Rasterizer) -> Option<Candidate> {
+    pub(super) fn best_plane(&self, raster: &mut Rasterizer) -> Option<Candidate> {
         let (first, step, n) = HEIGHTS;
         let level = (0..n).map(|i| [(first + step * i as f64) * self.radius_m, 0.0, 0.0]);
         let measured = self
@@ -312,7 +335,7 @@ impl<'a> Search<'a> {
     }
 
     /// The best plane after descents from some level and some tilted ones.
-    fn refined(
+    pub(super) fn refined(
         &self,
         raster: &mut Rasterizer,
         level: &[(f64, Heights)],
@@ -352,7 +375,7 @@ impl<'a> Search<'a> {
     }
 
     /// Losses of the known receivers and of the plane; `None` if the plane is no clear improvement.
-    fn significant_losses(
+    pub(super) fn significant_losses(
         &self,
         raster: &mut Rasterizer,
         candidate: &Candidate,
@@ -412,7 +435,7 @@ impl<'a> Search<'a> {
         tried
     }
 
-    fn plane(&self, [height_m, along_x, along_z]: &Heights) -> SeenReceiver {
+    pub(super) fn plane(&self, [height_m, along_x, along_z]: &Heights) -> SeenReceiver {
         let slope = DVec2::new(*along_x, *along_z) / self.size_m;
         let normal = DVec3::new(-slope.x, 1.0, -slope.y).normalize();
         let turn = DQuat::from_rotation_arc(DVec3::Y, normal);
@@ -443,27 +466,9 @@ impl<'a> Search<'a> {
         losses.sum::<f64>() / self.seen.len().max(1) as f64
     }
 
-    /// Depth of the shadow over the prediction, which is uncertain if the receiver shows little of
-    /// it.
-    fn depth(&self, expected: &[Option<Color>]) -> f64 {
-        let mut depth = 1.0;
-        for _ in 0..N_ROUNDS {
-            let pixels = expected.iter().zip(&self.seen);
-            let pixels = pixels.filter_map(|(expected, seen)| Some((seen, (*expected)?)));
-            let like = pixels.filter(|(seen, expected)| square(seen, *expected, depth) < MOST_LOSS);
-            let (mut product, mut own) = (0.0, 0.0);
-            for ((ratio, _), expected) in like {
-                for channel in 0..3 {
-                    let taken = f64::from(1.0 - expected[channel]);
-                    product += taken * f64::from(1.0 - ratio[channel]);
-                    own += taken * taken;
-                }
-            }
-            if own > 0.0 {
-                depth = (product / own).clamp(DEPTHS[0], DEPTHS[1]);
-            }
-        }
-        depth
+    /// Depth of the shadow over a prediction of each pixel.
+    pub(super) fn depth(&self, expected: &[Option<Color>]) -> f64 {
+        shadow_loss::depth(&self.seen, expected)
     }
 
     /// Whether enough of the shadow falls on a plane.
@@ -477,7 +482,7 @@ impl<'a> Search<'a> {
     }
 
     /// Prediction of a plane for each pixel that shows it.
-    fn ratios(&self, raster: &mut Rasterizer, plane: &SeenReceiver) -> Vec<Option<Color>> {
+    pub(super) fn ratios(&self, raster: &mut Rasterizer, plane: &SeenReceiver) -> Vec<Option<Color>> {
         self.on_plane.ratios(raster, plane, &self.pixels)
     }
 }
@@ -486,14 +491,4 @@ impl<'a> Search<'a> {
 fn keep<T>(values: &mut Vec<T>, marks: &[bool]) {
     let mut marks = marks.iter();
     values.retain(|_| marks.next().is_some_and(|is_kept| *is_kept));
-}
-
-/// Squared difference between photograph and prediction, with a scaled shadow, less the squared
-/// noise.
-fn square((ratio, noise): &(Color, f32), expected: Color, depth: f64) -> f64 {
-    let squares = (0..3).map(|channel| {
-        let expected = 1.0 - depth * f64::from(1.0 - expected[channel]);
-        (f64::from(ratio[channel]) - expected).powi(2)
-    });
-    (squares.sum::<f64>() / 3.0 - f64::from(*noise).powi(2)).clamp(0.0, MOST_LOSS)
 }

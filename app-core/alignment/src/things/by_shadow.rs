@@ -1,0 +1,96 @@
+//! Finds a level plane by the toy's shadow alone, of a thing that does not grow to its edges since its
+//! colours are the place's.
+//!
+//! The first plane comes from the few pixels that are certainly of the thing. Which other pixels show
+//! it the shadow tells, where it falls on the plane and on the receiver unlike; these have the plane's
+//! colours, by which it is bounded, and all pixels within its bounds are the next evidence.
+
+use glam::{DVec3, IVec2};
+
+use super::colored_extent::{Surroundings, Told};
+use super::extent::Outline;
+use super::inner::NOISIEST;
+use super::planes::{Candidate, FoundPlane, SHADOWED, Search};
+use super::seeds::Colored;
+use super::shadow_loss::square;
+use crate::lights::{Compared, Comparison};
+use crate::picture::brightness;
+use crate::raster::Rasterizer;
+use crate::receivers::SeenReceiver;
+
+/// Largest loss of what a pixel shows, and least of what it does not show: squares of what is surely
+/// explained and of what is surely not, as for the seeds of things.
+const EXPLAINED: f64 = 0.0036;
+const UNEXPLAINED: f64 = 0.0225;
+/// Distance from the thing's middle up to which it may reach, over the size of its certain pixels.
+const REACH: f64 = 3.0;
+/// Rounds of bounds and plane.
+const N_ROUNDS: usize = 2;
+
+/// The plane; `None` if none is a clear improvement.
+pub(super) fn found(mut search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
+    let raster = &mut Rasterizer::default();
+    let mut candidate = search.best_plane(raster)?;
+    let mut bounds = None;
+    for _ in 0..N_ROUNDS {
+        if !candidate.is_level {
+            return None;
+        }
+        let told = search.told(raster, &candidate);
+        let endless = search.plane(&candidate.heights).plane_from_camera;
+        let on_table = DVec3::new(search.middle.x, 0.0, search.middle.y);
+        let middle = search
+            .table
+            .plane_from_camera
+            .inverse()
+            .transform_point3(on_table);
+        let surroundings = Surroundings::new(outline.level, &endless, (middle, REACH * search.size_m))?;
+        let extent = surroundings.extent(&told)?;
+        search = search.over(&extent.plane(&endless));
+        let start = (candidate.loss, candidate.heights);
+        candidate = search.refined(raster, &[start], &[start])?;
+        bounds = Some(extent);
+    }
+    let losses = search.significant_losses(raster, &candidate, Colored::Alike)?;
+    let endless = search.plane(&candidate.heights).plane_from_camera;
+    Some(search.reported(&bounds?, (&endless, &candidate), outline.level, losses))
+}
+
+impl Search<'_> {
+    /// The pixels of which the shadow tells whether they show a plane or the known
+    /// receivers. A pixel that is lit may also show a side below the plane.
+    fn told(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Vec<Told> {
+        let plane = self.plane(&candidate.heights);
+        let depth = self.depth(&self.ratios(raster, &plane));
+        let pixels = certain(self.comparison);
+        let places: Vec<IVec2> = pixels.iter().map(|pixel| pixel.at).collect();
+        let ratios = self.on_plane.ratios(raster, &plane, &places);
+        let told = pixels.iter().zip(ratios).filter_map(|(pixel, of_plane)| {
+            let of_plane = of_plane?;
+            let seen = (pixel.ratio, pixel.noise);
+            let [known, new] = [(pixel.model, 1.0), (of_plane, depth)]
+                .map(|(expected, depth)| square(&seen, expected, depth));
+            let is_told = known.min(new) < EXPLAINED && known.max(new) > UNEXPLAINED;
+            let is_on_plane = new < known;
+            let is_shadowed = brightness(&of_plane) < 1.0 - SHADOWED;
+            (is_told && (is_shadowed || !is_on_plane)).then_some(Told {
+                at: pixel.at,
+                is_on_plane,
+            })
+        });
+        told.collect()
+    }
+
+    /// The same search, with the pixels of a rectangle.
+    fn over(self, plane: &SeenReceiver) -> Self {
+        let mut pixels = certain(self.comparison);
+        pixels.retain(|pixel| plane.point_at(&self.intrinsics, pixel.at).is_some());
+        self.of_pixels(&pixels)
+    }
+}
+
+/// Pixels with little noise.
+fn certain(comparison: &Comparison) -> Vec<&Compared> {
+    let pixels = comparison.pixels.iter();
+    pixels.filter(|pixel| pixel.noise < NOISIEST).collect()
+}

@@ -1,0 +1,194 @@
+//! Extent of a level plane whose colours are the place's, so that no thing grows to its edges: the
+//! rectangle that has the colours of the pixels where the toy's shadow lies on the plane.
+//!
+//! Source: Rother et al. 2004 (GrabCut: the colours inside and outside are learned in turn), with a
+//! rectangle on the plane in place of a cut.
+
+use glam::{DMat4, DVec2, DVec3, IVec2, Vec3Swizzles};
+
+use super::codes::Codes;
+use super::colors::Colors;
+use super::extent::Extent;
+use crate::picture::{Level, index_in, places, square};
+use crate::receivers::SeenReceiver;
+
+/// Least pixels whose shadow shows that they are on the plane.
+const LEAST_SHOWN: usize = 40;
+/// Rounds of learning colours, and of moving opposite sides in turn. A third round of colours moves
+/// no side of a checked book by a millimetre.
+const N_ROUNDS: usize = 2;
+const N_MOVES: usize = 4;
+/// Number of trial angles over a quarter turn, and of finer ones on either side of the best.
+const N_TURNS: i32 = 45;
+const N_FINER: i32 = 10;
+/// Largest log likelihood ratio of a pixel by its colour, and that of one whose shadow shows what it
+/// is.
+const MOST: f32 = 2.0;
+const SHOWN: f32 = 4.0;
+/// Distance in pixels up to which ratios are averaged: a pattern has colours of the place, too.
+const AROUND_PX: i32 = 1;
+/// Width in metres of the strips among which the sides are chosen.
+const STRIP_M: f64 = 5e-4;
+
+/// A pixel of which the toy's shadow tells whether it shows a plane.
+pub(super) struct Told {
+    pub(super) at: IVec2,
+    pub(super) is_on_plane: bool,
+}
+
+/// The picture around a thing: its pixels with their places on a plane.
+pub(super) struct Surroundings<'a> {
+    level: &'a Level,
+    plane_from_camera: &'a DMat4,
+    plate: Codes,
+    /// Index and place of each pixel.
+    near: Vec<(usize, DVec2)>,
+}
+
+impl<'a> Surroundings<'a> {
+    /// Within a distance in metres from a point of the camera's space; `None` without a plate.
+    pub(super) fn new(
+        level: &'a Level,
+        plane_from_camera: &'a DMat4,
+        (middle, reach_m): (DVec3, f64),
+    ) -> Option<Self> {
+        let plate = Codes::of(level.plate.as_ref()?);
+        let endless = SeenReceiver::of_size(*plane_from_camera, DVec2::INFINITY);
+        let near = places(plate.size_px).zip(0..).filter_map(|(at, index)| {
+            let point = endless.point_at(&level.intrinsics, at)?;
+            let place = plane_from_camera.transform_point3(point).xz();
+            (point.distance(middle) < reach_m).then_some((index, place))
+        });
+        Some(Self {
+            level,
+            plane_from_camera,
+            near: near.collect(),
+            plate,
+        })
+    }
+
+    /// The rectangle of the colours of those pixels that are on the plane; `None` if they are too few.
+    pub(super) fn extent(&self, told: &[Told]) -> Option<Extent> {
+        let mut is_inside = vec![false; self.plate.pixels.len()];
+        for told in told.iter().filter(|told| told.is_on_plane) {
+            if let Some(index) = index_in(self.plate.size_px, told.at) {
+                is_inside[index] = true;
+            }
+        }
+        let of_told = self.near.iter().filter(|(index, _)| is_inside[*index]);
+        let of_told: Vec<DVec2> = of_told.map(|(_, place)| *place).collect();
+        if of_told.len() < LEAST_SHOWN {
+            return None;
+        }
+        let mut extent = Extent::smallest(&of_told)?;
+        for _ in 0..N_ROUNDS {
+            let likelier = self.likelier(&is_inside, told);
+            let places = self.near.iter().map(|(index, place)| (*place, likelier[*index]));
+            extent = likeliest(&places.collect::<Vec<_>>(), &extent)?;
+            let rectangle = extent.plane(self.plane_from_camera);
+            for (at, is_inside) in places_of(&self.plate).zip(&mut is_inside) {
+                *is_inside = rectangle.point_at(&self.level.intrinsics, at).is_some();
+            }
+        }
+        Some(extent)
+    }
+
+    /// For each pixel, the log likelihood ratio that it shows what the inner ones show, by the pixels
+    /// around it.
+    fn likelier(&self, is_inside: &[bool], told: &[Told]) -> Vec<f32> {
+        let of = |kind: bool| {
+            let near = self
+                .near
+                .iter()
+                .filter(move |(index, _)| is_inside[*index] == kind);
+            near.map(|(index, _)| self.plate.pixels[*index])
+        };
+        let colors = Colors::of(of(true), of(false));
+        let by_color = |color| colors.likelier(color).unwrap_or(0.0).clamp(-MOST, MOST);
+        let mut likelier: Vec<f32> = self.plate.pixels.iter().map(|color| by_color(*color)).collect();
+        for told in told {
+            if let Some(index) = index_in(self.plate.size_px, told.at) {
+                likelier[index] = if told.is_on_plane { SHOWN } else { -SHOWN };
+            }
+        }
+        let mean = |at: IVec2| {
+            let around = || square(at, AROUND_PX).filter_map(|at| index_in(self.plate.size_px, at));
+            around().map(|index| likelier[index]).sum::<f32>() / around().count().max(1) as f32
+        };
+        places_of(&self.plate).map(mean).collect()
+    }
+}
+
+fn places_of(picture: &Codes) -> impl Iterator<Item = IVec2> + use<> {
+    places(picture.size_px)
+}
+
+/// The rectangle of places with the largest sum of values, near another one: among turns over a
+/// quarter, then among finer ones.
+fn likeliest(values: &[(DVec2, f32)], about: &Extent) -> Option<Extent> {
+    const STEP_RAD: f64 = std::f64::consts::FRAC_PI_2 / N_TURNS as f64;
+    let among = |turns: &mut dyn Iterator<Item = f64>| {
+        turns
+            .map(|turn_rad| turned(values, about, turn_rad))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let (_, coarse) = among(&mut (0..N_TURNS).map(|i| STEP_RAD * f64::from(i)))?;
+    let fine = |i: i32| coarse.turn_rad + STEP_RAD * f64::from(i) / f64::from(N_FINER);
+    let (sum, extent) = among(&mut (-N_FINER..=N_FINER).map(fine))?;
+    (sum > 0.0).then_some(extent)
+}
+
+/// The same with a given turn, and the sum.
+fn turned(values: &[(DVec2, f32)], about: &Extent, turn_rad: f64) -> (f32, Extent) {
+    let axes = [DVec2::from_angle(turn_rad), DVec2::from_angle(turn_rad).perp()];
+    let reach_m = 0.5 * about.half_m.length();
+    let mut ends = axes.map(|axis| [-reach_m, reach_m].map(|by_m| about.middle.dot(axis) + by_m));
+    let mut sum = 0.0;
+    for _ in 0..N_MOVES {
+        for along in 0..2 {
+            let [low, high] = ends[1 - along];
+            let strip = values.iter().filter(|(place, _)| {
+                let across = place.dot(axes[1 - along]);
+                across >= low && across <= high
+            });
+            let strip = strip.map(|(place, value)| (place.dot(axes[along]), *value));
+            (sum, ends[along]) = largest_sum(&strip.collect::<Vec<_>>());
+        }
+    }
+    let [low, high] = [0, 1].map(|end| DVec2::new(ends[0][end], ends[1][end]));
+    let extent = Extent {
+        middle: axes[0].rotate(0.5 * (low + high)),
+        turn_rad,
+        half_m: 0.5 * (high - low),
+    };
+    (sum, extent)
+}
+
+/// The interval with the largest sum of values at places on a line, and that sum. Source: Kadane's
+/// algorithm (Bentley 1984), on strips.
+fn largest_sum(values: &[(f64, f32)]) -> (f32, [f64; 2]) {
+    let first_m = values.iter().map(|(at, _)| *at).fold(f64::INFINITY, f64::min);
+    let mut strips: Vec<f32> = Vec::new();
+    for (at, value) in values {
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a number of strips from the first"
+        )]
+        let strip = ((at - first_m) / STRIP_M) as usize;
+        strips.resize(strips.len().max(strip + 1), 0.0);
+        strips[strip] += value;
+    }
+    let (mut largest, mut interval) = (0.0, [0, 0]);
+    let (mut sum, mut first) = (0.0_f32, 0);
+    for (strip, value) in strips.into_iter().enumerate() {
+        if sum <= 0.0 {
+            (sum, first) = (0.0, strip);
+        }
+        sum += value;
+        if sum > largest {
+            (largest, interval) = (sum, [first, strip + 1]);
+        }
+    }
+    (largest, interval.map(|strip| first_m + strip as f64 * STRIP_M))
+}
