@@ -174,6 +174,21 @@ fn a_tilted_plane_is_found() {
     assert!((tilts[0] - tilts[1].abs()).abs() < TILT_RAD, "{tilts:?}");
 }
 
+/// Every second square has the table's colour, so that the board does not grow to its edges.
+#[test]
+fn a_level_plane_of_checks_is_found() {
+    let world_from_board = board(0.018, 0.0);
+    let colors = [DVec3::new(0.45, 0.35, 0.25), DVec3::new(0.25, 0.3, 0.45)];
+    let checks = Paint::Tiles {
+        colors,
+        side_m: 0.006,
+    };
+    let session = painted(&[(world_from_board, HALF_M)], &checks);
+    let (heights_m, tilts) = found_in(&session, None, (world_from_board, 0.0)).expect("a plane");
+    assert_height(heights_m);
+    assert!(tilts[0] == 0.0, "{tilts:?}");
+}
+
 /// A board of the table's material that is a little darker: its colours alone show neither that it
 /// is there nor how far it reaches, so its extent is not tested.
 #[test]

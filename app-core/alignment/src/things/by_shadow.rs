@@ -28,9 +28,12 @@ const REACH: f64 = 3.0;
 const N_ROUNDS: usize = 2;
 
 /// The plane; `None` if none is a clear improvement.
-pub(super) fn found(mut search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
+pub(super) fn found(
+    mut search: Search<'_>,
+    mut candidate: Candidate,
+    outline: &Outline<'_>,
+) -> Option<FoundPlane> {
     let raster = &mut Rasterizer::default();
-    let mut candidate = search.best_plane(raster)?;
     let mut bounds = None;
     for _ in 0..N_ROUNDS {
         if !candidate.is_level {

@@ -35,6 +35,7 @@ mod sides;
 mod sight;
 mod simplex;
 mod standing;
+mod tops;
 mod toy;
 mod upright;
 mod upright_shadows;
@@ -269,7 +270,7 @@ impl Sight<'_> {
         let of = |things: Option<&Grown>, colored, are_things_of_points| {
             let place = place(are_things_of_points);
             things.map_or(Vec::new(), |things| {
-                planes::find(&place, level, compared, (things, colored))
+                tops::find(&place, level, compared, (things, colored))
             })
         };
         let standing = standing(shown, (&points, self.receivers), level, &compared.pixels);

@@ -7,10 +7,7 @@
 
 use glam::{DMat4, DQuat, DVec2, DVec3, IVec2, Vec3Swizzles};
 
-use super::by_shadow;
-use super::extent::{Extent, Outline, is_exact};
-use super::grown::Grown;
-use super::inner::{most_on, pixels};
+use super::extent::Extent;
 use super::measured::Measured;
 use super::seeds::Colored;
 use super::shadow_loss::{self, MOST_LOSS, square};
@@ -22,7 +19,7 @@ use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
 use crate::report::PlaneAlignment;
 use crate::shape::Shape;
-use app_scene::scene::{Intrinsics, MAX_RECEIVERS};
+use app_scene::scene::Intrinsics;
 
 /// Most pixels of the level that a search samples.
 const MOST_PIXELS: usize = 2500;
@@ -71,9 +68,6 @@ const N_TRIES: usize = 60;
 /// Side of the cells that merge the toy's vertices, in pixels of the level.
 pub(super) const CELL_PX: f64 = 0.7;
 
-/// Maximum number of things whose planes are searched: more receivers are not moved.
-const MOST_SEARCHED: usize = MAX_RECEIVERS - 1;
-
 /// A plane with its extent and its evidence.
 pub(crate) struct FoundPlane {
     pub(crate) plane: SeenReceiver,
@@ -93,7 +87,7 @@ pub(super) fn is_clearer(planes: &[FoundPlane], others: &[FoundPlane]) -> bool {
 
 impl FoundPlane {
     /// Whether its centre is close to a receiver.
-    fn is_near(&self, receiver: &SeenReceiver) -> bool {
+    pub(super) fn is_near(&self, receiver: &SeenReceiver) -> bool {
         let middle = self.plane.plane_from_camera.inverse().w_axis.truncate();
         receiver.plane_from_camera.transform_point3(middle).y.abs() < SAME_M
     }
@@ -106,73 +100,6 @@ pub(super) struct Place<'a> {
     pub(super) points: &'a [MeasuredPoints],
     /// Whether the things are those of exact points, which then bound their planes.
     pub(super) are_things_of_points: bool,
-}
-
-/// Finds the planes of a level's things: their upper sides.
-pub(super) fn find(
-    place: &Place<'_>,
-    level: &Level,
-    comparison: &Comparison,
-    (grown, colored): (&Grown, Colored),
-) -> Vec<FoundPlane> {
-    let (shape, receivers) = (place.shape, place.receivers);
-    // Each search takes a second: only the largest things are searched.
-    let mut things: Vec<usize> = (0..grown.n_things()).collect();
-    things.sort_by_key(|thing| std::cmp::Reverse(grown.n_seeds(*thing)));
-    things.truncate(MOST_SEARCHED);
-    let planes = things.into_iter().filter_map(|thing| {
-        let pixels = pixels(comparison, grown, thing);
-        let on = most_on(&pixels)?;
-        let search = || Search::new((shape, receivers), level, comparison, &pixels);
-        let outline = Outline {
-            level,
-            table: receivers.get(GROUND)?,
-            grown,
-            thing,
-            colored,
-            points: None,
-            is_bounded_by_points: place.are_things_of_points,
-        };
-        let by_points = |points| {
-            let outline = Outline {
-                points: Some(points),
-                ..outline
-            };
-            let mut about = search()?;
-            about.measured = Some(Measured::of(&outline, about.middle)?);
-            Some((found(about, &outline)?, points))
-        };
-        // Points with noise are one start of two: on a ramp, 5 mm of noise ended 1.5 degrees too flat.
-        let found = match place.points.iter().find_map(by_points) {
-            Some((measured, points)) if is_exact(points) => measured,
-            Some((measured, _)) => [found(search()?, &outline), Some(measured)]
-                .into_iter()
-                .flatten()
-                .min_by(|a, b| a.report.losses[1].total_cmp(&b.report.losses[1]))?,
-            None => found(search()?, &outline).or_else(|| by_shadow::found(search()?, &outline))?,
-        };
-        Some(FoundPlane {
-            instead_of: (on != GROUND && found.is_near(&receivers[on])).then_some(on),
-            ..found
-        })
-    });
-    planes.collect()
-}
-
-/// Searches for a thing's plane, first with all of its pixels, then with those of its upper side.
-fn found(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
-    let raster = &mut Rasterizer::default();
-    let first = search.best_plane(raster)?;
-    let endless = search.plane(&first.heights).plane_from_camera;
-    let extent = Extent::of(outline, &endless, first.is_level)?;
-    let search = search.within(&extent.plane(&endless));
-    let heights = first.heights;
-    let level = [(first.loss, [heights[0], 0.0, 0.0])];
-    let plane = search.refined(raster, &level, &[(first.loss, heights)])?;
-    let losses = search.significant_losses(raster, &plane, outline.colored)?;
-    let endless = search.plane(&plane.heights).plane_from_camera;
-    let extent = Extent::of(outline, &endless, plane.is_level)?;
-    Some(search.reported(&extent, (&endless, &plane), outline.level, losses))
 }
 
 /// A plane near a listed one.
@@ -211,7 +138,7 @@ pub(super) struct Search<'a> {
     pub(super) size_m: f64,
     radius_m: f64,
     /// The plane that a depth sensor measured.
-    measured: Option<Measured>,
+    pub(super) measured: Option<Measured>,
 }
 
 impl<'a> Search<'a> {
@@ -361,7 +288,7 @@ impl<'a> Search<'a> {
     }
 
     /// The same search, restricted to the pixels of a rectangle.
-    fn within(mut self, plane: &SeenReceiver) -> Self {
+    pub(super) fn within(mut self, plane: &SeenReceiver) -> Self {
         let k = self.intrinsics;
         let is_within: Vec<bool> = self
             .pixels
