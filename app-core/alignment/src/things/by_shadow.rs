@@ -56,7 +56,10 @@ pub(super) fn found(
     }
     let losses = search.significant_losses(raster, &candidate, Colored::Alike)?;
     let endless = search.plane(&candidate.heights).plane_from_camera;
-    Some(search.reported(&bounds?, (&endless, &candidate), outline.level, losses))
+    let bounds = bounds?;
+    let face_m = bounds.height_m(&endless, search.table);
+    let bounds = bounds.on_near_edges(outline.level, &endless, face_m);
+    Some(search.reported(&bounds, (&endless, &candidate), outline.level, losses))
 }
 
 impl Search<'_> {

@@ -29,6 +29,10 @@ const LOW: f64 = 0.4;
 /// Largest move of a side inward, over its distance from the middle.
 const MOST_INWARD: f64 = 0.8;
 
+/// Distance in metres from which on an edge above a face is taken for a line of a pattern. It is 4 mm at
+/// a uniform book whose side was taken for its top, and 16 mm or more at checked books.
+const PATTERN_M: f64 = 0.006;
+
 /// Largest deviation in metres of points that bound the rectangle themselves; the largest distance
 /// of one from the plane in deviations, of which the least is in metres, too.
 /// Points of 1 mm bound a ramp of 35 mm as exact ones do; a LiDAR's, of 5 mm, reach down to the
@@ -198,6 +202,21 @@ impl Extent {
     /// The rectangle with its sides on edges of the plate, above upright faces of a height.
     fn on_edges(self, level: &Level, plane_from_camera: &DMat4, face_m: Option<f64>) -> Self {
         self.moved(face_m, |side| moved_m(side, plane_from_camera, level))
+    }
+
+    /// The same if no side moves far; if one does, to a line of a pattern, then with each side on the
+    /// nearest edge.
+    pub(super) fn on_near_edges(self, level: &Level, plane_from_camera: &DMat4, face_m: f64) -> Self {
+        let on_edges =
+            |face_m: Option<f64>| self.moved(face_m, |side| moved_m(side, plane_from_camera, level));
+        let above_face = on_edges(Some(face_m));
+        let longer_m = (above_face.half_m - self.half_m).abs().max_element();
+        let farthest_m = above_face.middle.distance(self.middle) + longer_m;
+        if farthest_m < PATTERN_M {
+            above_face
+        } else {
+            on_edges(None)
+        }
     }
 
     /// The rectangle with its sides moved outward by some metres.
