@@ -214,7 +214,7 @@ impl Seeds {
     }
 
     /// The same for things that the frame alone shows: against the place, and against the toy in
-    /// pixels that look as expected, without those in a thing's colours.
+    /// pixels that look as expected, of both without those in a thing's colours.
     pub(super) fn in_frame(&self, frame: &Codes, toy: &[usize]) -> Self {
         let keep = |seed: &Seed| match seed {
             Seed::InFrame | Seed::Receiver => *seed,
@@ -231,8 +231,8 @@ impl Seeds {
             ..*self
         };
         found.learn_in_frame(frame);
-        // Skin in less light is like a pale toy.
-        found.drop_like_thing(toy.to_vec(), frame, |found| found.learn_in_frame(frame));
+        // Skin in less light is like a pale toy, and like the table in the toy's shadow.
+        found.drop_like_thing(found.of(Seed::Receiver), frame, |found| found.learn_in_frame(frame));
         found
     }
 
