@@ -35,6 +35,13 @@ const TEAL: [u8; 3] = [20, 120, 130];
 /// In less light it is like the toy's hair.
 const SKIN: [u8; 3] = [140, 104, 72];
 
+/// The same without the lamp's light, nearly as the table in the toy's shadow.
+const SKIN_IN_SHADOW: [u8; 3] = [110, 88, 74];
+/// A hand around the forelegs: an arm beside the shadow, a palm that reaches the shadow, and a finger in it.
+const SHADED_ARM: Rect = [UVec2::new(160, 222), UVec2::new(222, 280)];
+const PALM: Rect = [UVec2::new(222, 222), UVec2::new(350, 280)];
+const FINGER: Rect = [UVec2::new(350, 236), UVec2::new(430, 262)];
+
 fn painted(image: &Image, rect: Rect) -> Image {
     painted_where(image, (TEAL, rect), |_| true)
 }
@@ -176,6 +183,24 @@ fn in_frame_alone((color, rect): ([u8; 3], Rect), is_painted: impl Fn(usize) -> 
 fn a_hand_before_a_toy_of_its_hue_is_whole() {
     let found = in_frame_alone((SKIN, OVER_LEGS), |_| true);
     found.assert_whole(Mark::BeforeToy);
+}
+
+#[test]
+fn a_finger_in_the_shadow_that_is_as_bright_as_the_table_is_of_the_hand() {
+    let (scene, input) = &*SESSION;
+    let parts = [
+        (SKIN, PALM),
+        (SKIN_IN_SHADOW, SHADED_ARM),
+        (SKIN_IN_SHADOW, FINGER),
+    ];
+    let image = Image::clone(input.image.rgba());
+    let image = parts
+        .into_iter()
+        .fold(image, |image, part| painted_where(&image, part, |_| true));
+    let input = input.clone().with_image(Arc::new(image));
+    let things = Observer::default().observed(scene, &input).unwrap().things;
+    let of_it = Found { things, rect: FINGER }.part(Mark::BeforeToy);
+    assert!(of_it > 0.9, "{of_it:.2} of it");
 }
 
 #[test]

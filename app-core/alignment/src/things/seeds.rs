@@ -232,7 +232,9 @@ impl Seeds {
         };
         found.learn_in_frame(frame);
         // Skin in less light is like a pale toy, and like the table in the toy's shadow.
-        found.drop_like_thing(found.of(Seed::Receiver), frame, |found| found.learn_in_frame(frame));
+        found.drop_like_thing(found.of(Seed::Receiver), frame, |found| {
+            found.learn_in_frame(frame)
+        });
         found
     }
 
