@@ -3,13 +3,13 @@
 
 use std::sync::Arc;
 
-use app_core::alignment::{Aligner, Observer};
+use app_core::alignment::{Aligner, AlignmentWarning, Observer};
 use app_core::frame::FrameInput;
-use app_core::scene::{Image, Scene};
+use app_core::scene::{Image, Light, Scene};
 use app_core::session::GroundTruth;
 use app_core::things::{MOST_PAINTED, Mark, Things};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
-use glam::{DVec3, UVec2};
+use glam::{DMat3, DVec3, UVec2};
 use harness::bundled_session;
 
 use super::bundled::SESSION;
@@ -23,6 +23,10 @@ const IN_SHADOW: Rect = [UVec2::new(365, 220), UVec2::new(415, 262)];
 const ACROSS_SHADOW: Rect = [UVec2::new(340, 180), UVec2::new(440, 290)];
 /// Over the toy's forelegs, and to both sides of them.
 const OVER_LEGS: Rect = [UVec2::new(222, 222), UVec2::new(292, 254)];
+/// The table left of the forelegs, away from the shadow.
+const BESIDE_LEGS: Rect = [UVec2::new(130, 230), UVec2::new(210, 300)];
+/// Over the forelegs, and over most of the shadow.
+const ON_SHADOW: Rect = [UVec2::new(222, 222), UVec2::new(430, 270)];
 /// Beside the forelegs, far enough for a thing that is not before the toy.
 const AROUND_LEGS: Rect = [UVec2::new(150, 222), UVec2::new(350, 290)];
 /// Over the hind legs and a part of the back, so that no pose fits the visible outline.
@@ -201,6 +205,29 @@ fn a_finger_in_the_shadow_that_is_as_bright_as_the_table_is_of_the_hand() {
     let things = Observer::default().observed(scene, &input).unwrap().things;
     let of_it = Found { things, rect: FINGER }.part(Mark::BeforeToy);
     assert!(of_it > 0.9, "{of_it:.2} of it");
+}
+
+/// A hand on most of the shadow, and what may be its own shadow, leave half of the shadows unexplained.
+#[test]
+fn a_list_is_doubted_beside_a_hand_only_if_its_own_shadow_is_not_there() {
+    let (scene, input) = &*SESSION;
+    let image = shaded(input.image.rgba(), BESIDE_LEGS, 0.5);
+    let image = painted_where(&image, (SKIN, ON_SHADOW), |_| true);
+    let input = input.clone().with_image(Arc::new(image));
+    let warnings = [0.0_f64, 5.0].map(|turned_deg| {
+        let mut scene = scene.clone();
+        let Light::Sphere {
+            position_in_world, ..
+        } = &mut scene.lights[0]
+        else {
+            panic!("{:?}", scene.lights);
+        };
+        *position_in_world = DMat3::from_rotation_y(turned_deg.to_radians()) * *position_in_world;
+        Aligner::new(Arc::new(scene)).align(&input).unwrap().warnings
+    });
+    let is_right = matches!(&warnings, [right, wrong]
+        if right.is_empty() && matches!(wrong[..], [AlignmentWarning::ListUnexplained { .. }]));
+    assert!(is_right, "{warnings:?}");
 }
 
 #[test]
