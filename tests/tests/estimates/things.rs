@@ -319,6 +319,17 @@ fn a_shadow_in_the_plate_alone_is_measured() {
 }
 
 #[test]
+fn a_dark_thing_in_the_plate_is_no_shadow() {
+    let (scene, input) = &*SESSION;
+    let mut scene = Scene::clone(scene);
+    // As dark as a black toy, in the table's hue and with its texture: the toy's shadow leaves .4.
+    let rect = ACROSS_SHADOW;
+    scene.plates[0].image = Arc::new(shaded(&scene.plates[0].image, rect, 0.12));
+    let things = Observer::default().observed(&scene, input).unwrap().things;
+    Found { things, rect }.assert_whole(Mark::WrongPlate);
+}
+
+#[test]
 fn the_shadow_of_a_thing_belongs_to_it() {
     let (scene, input) = &*SESSION;
     let (mut scene, input) = (Scene::clone(scene), FrameInput::clone(input));
