@@ -36,6 +36,7 @@ const LONG: Rect = [UVec2::new(240, 200), UVec2::new(276, 355)];
 /// A colour of a dozen codes beside the table's.
 const FACE: [u8; 3] = [150, 134, 122];
 const TEAL: [u8; 3] = [20, 120, 130];
+const SIDE: [u8; 3] = [190, 60, 120];
 /// In less light it is like the toy's hair.
 const SKIN: [u8; 3] = [140, 104, 72];
 
@@ -325,6 +326,46 @@ fn a_thing_in_the_plate_alone_makes_the_plate_wrong() {
     );
 }
 
+#[test]
+fn a_side_as_dark_as_its_surroundings_is_part_of_its_thing() {
+    let (scene, input) = &*SESSION;
+    let mut scene = Scene::clone(scene);
+    let before = Image::clone(&scene.plates[0].image);
+    let [first, end] = ACROSS_SHADOW;
+    let side = [first, UVec2::new(390, end.y)];
+    let front = [UVec2::new(390, first.y), end];
+    // The front has a spot in the side's colour.
+    let spot = [UVec2::new(390, 225), UVec2::new(400, 245)];
+    let thing = |image: &Image, side_color| {
+        let image = painted(image, front);
+        [side, spot].into_iter().fold(image, |image, rect| {
+            painted_where(&image, (side_color, rect), |_| true)
+        })
+    };
+    let plate = thing(&before, SIDE);
+    // The side is as dark as the table would be there.
+    let mut frame = thing(input.image.rgba(), SIDE);
+    for at in pixels_of(side, frame.width_px) {
+        for channel in 4 * at..4 * at + 3 {
+            let [now, full] = [&input.image.rgba().rgba8, &before.rgba8]
+                .map(|codes| linear_from_srgb(f32::from(codes[channel]) / 255.0));
+            let shown = linear_from_srgb(f32::from(plate.rgba8[channel]) / 255.0) * (now / full).min(1.0);
+            frame.rgba8[channel] = (255.0 * srgb_from_linear(shown)).round() as u8;
+        }
+    }
+    scene.plates[0].image = Arc::new(plate);
+    let input = FrameInput::clone(input).with_image(Arc::new(frame));
+    let things = Observer::default().observed(&scene, &input).unwrap().things;
+    let found = Found { things, rect: side };
+    let of_it = found.part(Mark::Thing);
+    assert!(of_it > 0.85, "{of_it:.2} of it");
+}
+
+/// Indices of a rectangle's pixels.
+fn pixels_of([first, end]: Rect, width_px: u32) -> impl Iterator<Item = usize> {
+    (first.y..end.y).flat_map(move |y| (first.x..end.x).map(move |x| (y * width_px + x) as usize))
+}
+
 /// A picture with another light in a rectangle.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
 fn shaded(image: &Image, [first, end]: Rect, light: f32) -> Image {
@@ -368,6 +409,17 @@ fn a_shadow_in_the_plate_alone_is_measured() {
     let others = [Mark::Thing, Mark::BeforeToy, Mark::WrongPlate].map(|mark| things.count(mark));
     assert!(right > 0.9, "{right:.2} of it");
     assert_eq!(others, [0; 3]);
+}
+
+#[test]
+fn a_dark_thing_in_the_plate_is_no_shadow() {
+    let (scene, input) = &*SESSION;
+    let mut scene = Scene::clone(scene);
+    // As dark as a black toy, in the table's hue and with its texture: the toy's shadow leaves .4.
+    let rect = ACROSS_SHADOW;
+    scene.plates[0].image = Arc::new(shaded(&scene.plates[0].image, rect, 0.12));
+    let things = Observer::default().observed(&scene, input).unwrap().things;
+    Found { things, rect }.assert_whole(Mark::WrongPlate);
 }
 
 #[test]
