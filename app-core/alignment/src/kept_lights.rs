@@ -47,6 +47,8 @@ pub(super) struct KeptLights {
     pub(super) assumed: Option<AssumedLight>,
     /// Whether one light is applied as a line of round ones.
     pub(super) is_long: bool,
+    /// Whether what a list leaves unexplained in the latest view is of a thing before the toy.
+    pub(super) is_beside_thing: bool,
     /// Their loss in the view of the estimate.
     explained: Option<Watched>,
     /// The latest view with their shadows.
@@ -70,6 +72,7 @@ impl KeptLights {
             discovered: None,
             assumed: None,
             is_long: false,
+            is_beside_thing: false,
             explained: None,
             latest: None,
             in_vain: None,
@@ -130,9 +133,15 @@ impl KeptLights {
         self
     }
 
+    /// Whether little of the shadows is unexplained.
+    pub(super) fn are_explained(watched: Watched) -> bool {
+        watched.unexplained <= MOST_UNEXPLAINED
+    }
+
     /// The fraction of the latest shadows that a list leaves unexplained, if that is too much.
     pub(super) fn misfit(&self) -> Option<f64> {
-        let latest = self.latest.filter(|_| self.discovered.is_none())?;
+        let is_judged = self.discovered.is_none() && !self.is_beside_thing;
+        let latest = self.latest.filter(|_| is_judged)?;
         Self::leaves_too_much(latest).then_some(latest.unexplained)
     }
 

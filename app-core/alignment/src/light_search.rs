@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use super::Aligner;
 use super::kept_lights::KeptLights;
-use super::lights::Watched;
+use super::lights::{Counted, Watched};
 use super::photograph::MOST_OUTLINE_PX;
 use super::view::Seen;
 use crate::no_light::NoLight;
 use crate::things::{self, Colored};
 use app_scene::scene::{Light, LightUncertainty, MAX_LIGHTS, Scene};
-use app_scene::things::Things;
+use app_scene::things::{Mark, Things};
 use app_scene::toy::ToyError;
 
 /// Largest distance, in pixels, between the outlines of toy and picture for a search of lights.
@@ -238,6 +238,9 @@ impl Aligner {
             let in_light = (lights.in_use(), things.as_ref());
             self.gloss = Some(seen.photograph.gloss(&self.scene, toy, in_light)?);
         }
+        lights.is_beside_thing = false;
+        lights.is_beside_thing =
+            lights.misfit().is_some() && self.explain_own_shadows(&lights, (seen, things.as_ref()))?;
         things::adopt(&mut self.things, things);
         Ok(lights)
     }
@@ -283,7 +286,24 @@ impl Aligner {
         if !self.can_tell_lights(lights.in_use()) || !seen.view.is_trusted(DISCOVERY_OUTLINE_PX) {
             return Ok(None);
         }
-        seen.photograph.watch(&self.scene, &seen.input, lights.in_use())
+        let lights = (lights.in_use(), Counted::All);
+        seen.photograph.watch(&self.scene, &seen.input, lights)
+    }
+
+    /// Whether a thing stands before the toy, such as a hand, and lights explain their own shadows beside it,
+    /// as far as the view shows these: what else it shows may be a part of the thing, or its shadow.
+    fn explain_own_shadows(
+        &self,
+        lights: &KeptLights,
+        (seen, things): (&Seen, Option<&Things>),
+    ) -> Result<bool, ToyError> {
+        let Some(things) = things.filter(|things| things.count(Mark::BeforeToy) > 0) else {
+            return Ok(false);
+        };
+        let photograph = seen.photograph.clear_of(things);
+        let lights = (lights.in_use(), Counted::InShadows);
+        let watched = photograph.watch(&self.scene, &seen.input, lights)?;
+        Ok(watched.is_some_and(KeptLights::are_explained))
     }
 
     /// Whether pictures can constrain that number of lights; without a plate, only unlisted lights.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
-use super::lights::{FoundLight, Hints, InitialLight, Relight, Watched};
+use super::lights::{Counted, FoundLight, Hints, InitialLight, Relight, Watched};
 use super::picture::{Mask, Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
 use super::report::{AssumedLight, EstimatedLight, LightAlignment, PoseAlignment, PoseDeviation};
@@ -275,7 +275,7 @@ impl Photograph {
         &self,
         scene: &Scene,
         input: &FrameInput,
-        lights: &[Light],
+        lights: (&[Light], Counted),
     ) -> Result<Option<Watched>, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
         let world_from_camera = &input.camera.world_from_camera;

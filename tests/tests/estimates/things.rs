@@ -3,13 +3,13 @@
 
 use std::sync::Arc;
 
-use app_core::alignment::{Aligner, Observer};
+use app_core::alignment::{Aligner, AlignmentWarning, Observer};
 use app_core::frame::FrameInput;
-use app_core::scene::{Image, Scene};
+use app_core::scene::{Image, Light, Scene};
 use app_core::session::GroundTruth;
 use app_core::things::{MOST_PAINTED, Mark, Things};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
-use glam::{DVec3, UVec2};
+use glam::{DMat3, DVec3, UVec2};
 use harness::bundled_session;
 
 use super::bundled::SESSION;
@@ -23,6 +23,10 @@ const IN_SHADOW: Rect = [UVec2::new(365, 220), UVec2::new(415, 262)];
 const ACROSS_SHADOW: Rect = [UVec2::new(340, 180), UVec2::new(440, 290)];
 /// Over the toy's forelegs, and to both sides of them.
 const OVER_LEGS: Rect = [UVec2::new(222, 222), UVec2::new(292, 254)];
+/// The table left of the forelegs, away from the shadow.
+const BESIDE_LEGS: Rect = [UVec2::new(130, 230), UVec2::new(210, 300)];
+/// Over the forelegs, and over most of the shadow.
+const ON_SHADOW: Rect = [UVec2::new(222, 222), UVec2::new(430, 270)];
 /// Beside the forelegs, far enough for a thing that is not before the toy.
 const AROUND_LEGS: Rect = [UVec2::new(150, 222), UVec2::new(350, 290)];
 /// Over the hind legs and a part of the back, so that no pose fits the visible outline.
@@ -32,8 +36,16 @@ const LONG: Rect = [UVec2::new(240, 200), UVec2::new(276, 355)];
 /// A colour of a dozen codes beside the table's.
 const FACE: [u8; 3] = [150, 134, 122];
 const TEAL: [u8; 3] = [20, 120, 130];
+const SIDE: [u8; 3] = [190, 60, 120];
 /// In less light it is like the toy's hair.
 const SKIN: [u8; 3] = [140, 104, 72];
+
+/// The same without the lamp's light, nearly as the table in the toy's shadow.
+const SKIN_IN_SHADOW: [u8; 3] = [110, 88, 74];
+/// A hand around the forelegs: an arm beside the shadow, a palm that reaches the shadow, and a finger in it.
+const SHADED_ARM: Rect = [UVec2::new(160, 222), UVec2::new(222, 280)];
+const PALM: Rect = [UVec2::new(222, 222), UVec2::new(350, 280)];
+const FINGER: Rect = [UVec2::new(350, 236), UVec2::new(430, 262)];
 
 fn painted(image: &Image, rect: Rect) -> Image {
     painted_where(image, (TEAL, rect), |_| true)
@@ -179,6 +191,47 @@ fn a_hand_before_a_toy_of_its_hue_is_whole() {
 }
 
 #[test]
+fn a_finger_in_the_shadow_that_is_as_bright_as_the_table_is_of_the_hand() {
+    let (scene, input) = &*SESSION;
+    let parts = [
+        (SKIN, PALM),
+        (SKIN_IN_SHADOW, SHADED_ARM),
+        (SKIN_IN_SHADOW, FINGER),
+    ];
+    let image = Image::clone(input.image.rgba());
+    let image = parts
+        .into_iter()
+        .fold(image, |image, part| painted_where(&image, part, |_| true));
+    let input = input.clone().with_image(Arc::new(image));
+    let things = Observer::default().observed(scene, &input).unwrap().things;
+    let of_it = Found { things, rect: FINGER }.part(Mark::BeforeToy);
+    assert!(of_it > 0.9, "{of_it:.2} of it");
+}
+
+/// A hand on most of the shadow, and what may be its own shadow, leave half of the shadows unexplained.
+#[test]
+fn a_list_is_doubted_beside_a_hand_only_if_its_own_shadow_is_not_there() {
+    let (scene, input) = &*SESSION;
+    let image = shaded(input.image.rgba(), BESIDE_LEGS, 0.5);
+    let image = painted_where(&image, (SKIN, ON_SHADOW), |_| true);
+    let input = input.clone().with_image(Arc::new(image));
+    let warnings = [0.0_f64, 5.0].map(|turned_deg| {
+        let mut scene = scene.clone();
+        let Light::Sphere {
+            position_in_world, ..
+        } = &mut scene.lights[0]
+        else {
+            panic!("{:?}", scene.lights);
+        };
+        *position_in_world = DMat3::from_rotation_y(turned_deg.to_radians()) * *position_in_world;
+        Aligner::new(Arc::new(scene)).align(&input).unwrap().warnings
+    });
+    let is_right = matches!(&warnings, [right, wrong]
+        if right.is_empty() && matches!(wrong[..], [AlignmentWarning::ListUnexplained { .. }]));
+    assert!(is_right, "{warnings:?}");
+}
+
+#[test]
 fn the_table_beside_a_hand_is_its_shadow_only_where_it_is_dark() {
     let (scene, input) = &*SESSION;
     let parts = [0.85, 0.5].map(|light| {
@@ -273,6 +326,46 @@ fn a_thing_in_the_plate_alone_makes_the_plate_wrong() {
     );
 }
 
+#[test]
+fn a_side_as_dark_as_its_surroundings_is_part_of_its_thing() {
+    let (scene, input) = &*SESSION;
+    let mut scene = Scene::clone(scene);
+    let before = Image::clone(&scene.plates[0].image);
+    let [first, end] = ACROSS_SHADOW;
+    let side = [first, UVec2::new(390, end.y)];
+    let front = [UVec2::new(390, first.y), end];
+    // The front has a spot in the side's colour.
+    let spot = [UVec2::new(390, 225), UVec2::new(400, 245)];
+    let thing = |image: &Image, side_color| {
+        let image = painted(image, front);
+        [side, spot].into_iter().fold(image, |image, rect| {
+            painted_where(&image, (side_color, rect), |_| true)
+        })
+    };
+    let plate = thing(&before, SIDE);
+    // The side is as dark as the table would be there.
+    let mut frame = thing(input.image.rgba(), SIDE);
+    for at in pixels_of(side, frame.width_px) {
+        for channel in 4 * at..4 * at + 3 {
+            let [now, full] = [&input.image.rgba().rgba8, &before.rgba8]
+                .map(|codes| linear_from_srgb(f32::from(codes[channel]) / 255.0));
+            let shown = linear_from_srgb(f32::from(plate.rgba8[channel]) / 255.0) * (now / full).min(1.0);
+            frame.rgba8[channel] = (255.0 * srgb_from_linear(shown)).round() as u8;
+        }
+    }
+    scene.plates[0].image = Arc::new(plate);
+    let input = FrameInput::clone(input).with_image(Arc::new(frame));
+    let things = Observer::default().observed(&scene, &input).unwrap().things;
+    let found = Found { things, rect: side };
+    let of_it = found.part(Mark::Thing);
+    assert!(of_it > 0.85, "{of_it:.2} of it");
+}
+
+/// Indices of a rectangle's pixels.
+fn pixels_of([first, end]: Rect, width_px: u32) -> impl Iterator<Item = usize> {
+    (first.y..end.y).flat_map(move |y| (first.x..end.x).map(move |x| (y * width_px + x) as usize))
+}
+
 /// A picture with another light in a rectangle.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
 fn shaded(image: &Image, [first, end]: Rect, light: f32) -> Image {
@@ -316,6 +409,17 @@ fn a_shadow_in_the_plate_alone_is_measured() {
     let others = [Mark::Thing, Mark::BeforeToy, Mark::WrongPlate].map(|mark| things.count(mark));
     assert!(right > 0.9, "{right:.2} of it");
     assert_eq!(others, [0; 3]);
+}
+
+#[test]
+fn a_dark_thing_in_the_plate_is_no_shadow() {
+    let (scene, input) = &*SESSION;
+    let mut scene = Scene::clone(scene);
+    // As dark as a black toy, in the table's hue and with its texture: the toy's shadow leaves .4.
+    let rect = ACROSS_SHADOW;
+    scene.plates[0].image = Arc::new(shaded(&scene.plates[0].image, rect, 0.12));
+    let things = Observer::default().observed(&scene, input).unwrap().things;
+    Found { things, rect }.assert_whole(Mark::WrongPlate);
 }
 
 #[test]

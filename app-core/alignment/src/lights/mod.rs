@@ -54,7 +54,7 @@ use prior::Prior;
 pub(super) use reflection::{FoundReflection, reflected, reflection};
 pub(super) use relight::Relight;
 pub(super) use search::scores;
-pub(super) use watch::{Watched, watch};
+pub(super) use watch::{Counted, Watched, watch};
 
 use shadows::{LEAST_PIXELS, ROBUST_FAR, ROBUST_NEAR, Shadows, WIDE_PENUMBRA_PX};
 

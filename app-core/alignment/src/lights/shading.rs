@@ -132,6 +132,22 @@ impl Shaded<'_> {
         shading
     }
 
+    /// Mean robust loss of a shading, for a channel of the pixels with a property; 0 without any.
+    pub(super) fn loss(&self, shading: &Shading, robust: f64, is_counted: impl Fn(usize) -> bool) -> f64 {
+        let (mut loss, mut n) = (0.0, 0.0);
+        for index in (0..self.pixels.len()).filter(|index| is_counted(*index)) {
+            let columns = self.columns(index);
+            let factors = &shading.factors[self.pixels[index].receiver];
+            for (channel, factors) in factors.iter().enumerate() {
+                if let Some(one) = self.residual((index, channel), &columns, factors, robust) {
+                    loss += one.loss;
+                    n += 1.0;
+                }
+            }
+        }
+        if n > 0.0 { loss / n } else { 0.0 }
+    }
+
     fn refit(&self, from: &Shading, robust: f64) -> Shading {
         let mut normals = vec![[Normal::identity() * PRIOR; 3]; from.factors.len()];
         let mut sides = vec![[Factors::zeros(); 3]; from.factors.len()];

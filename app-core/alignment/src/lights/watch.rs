@@ -27,6 +27,17 @@ impl Watched {
     }
 }
 
+/// The pixels at which a loss counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Counted {
+    All,
+    /// Those in the lights' shadows: all others may show something else than a shadow of the toy.
+    InShadows,
+}
+
+/// Part of a light from which on a pixel is in its shadow: the middle of the penumbra.
+const SHADOWED: f32 = 0.5;
+
 /// The loss that given lights leave in a picture; the intensity of each, and the light on the
 /// receivers without a toy, are fitted anew. `None` if too little of the receivers is visible, and
 /// without a plate.
@@ -34,7 +45,7 @@ impl Watched {
 /// Measured on six captures and the bundled session, in all their frames: .001 to .019 with exact
 /// lights, .010 to .058 with one that is a degree off, .11 to .35 with one that is four.
 pub(crate) fn watch(
-    lights: &[Light],
+    (lights, counted): (&[Light], Counted),
     shape: &Shape,
     receivers: &[SeenReceiver],
     pyramid: &Pyramid,
@@ -52,10 +63,25 @@ pub(crate) fn watch(
     if shadows.pixels.len() < LEAST_PIXELS {
         return None;
     }
-    let without = shadows.shading(&mut raster, &[], ROBUST_FAR).loss;
+    let no_light = shadows.shading(&mut raster, &[], ROBUST_FAR);
     let shading = shadows.shading(&mut raster, &lamps, ROBUST_FAR);
-    shadows.light(&lamps, &shading);
-    let with = shadows.shading(&mut raster, &lamps, ROBUST_FAR).loss;
+    let (without, with) = match counted {
+        Counted::All => {
+            shadows.light(&lamps, &shading);
+            let with = shadows.shading(&mut raster, &lamps, ROBUST_FAR);
+            (no_light.loss, with.loss)
+        }
+        Counted::InShadows => {
+            let taken = shadows.taken_of_all(&mut raster, &lamps);
+            let is_shadowed = |index: usize| taken.iter().any(|taken| taken[index] > SHADOWED);
+            let without = shadows.shaded(&[]).loss(&no_light, ROBUST_FAR, is_shadowed);
+            shadows.light(&lamps, &shading);
+            let taken = shadows.taken_of_all(&mut raster, &lamps);
+            let shaded = shadows.shaded(&taken);
+            let with = shaded.fit(receivers.len(), ROBUST_FAR);
+            (without, shaded.loss(&with, ROBUST_FAR, is_shadowed))
+        }
+    };
     Some(Watched {
         shadows: without,
         unexplained: if without > 0.0 { with / without } else { 0.0 },

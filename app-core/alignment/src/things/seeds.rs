@@ -30,6 +30,11 @@ const COMMON: f32 = 0.02;
 /// number of rounds.
 const LIKE_THING: f32 = 1.0;
 const N_DROPS: usize = 3;
+/// The same ratio of a group of such pixels, against the place without it, and the group's size: the
+/// minimum number of pixels, and the maximum as a part of all that show a receiver.
+const LIKE_THING_ALONE: f32 = 3.0;
+const LEAST_PART: usize = 8;
+const MOST_PARTS: usize = 4;
 /// Largest log likelihood ratio of a thing in the frame's colours for a group in the plate alone.
 const OF_PLACE: f32 = 1.0;
 /// Limits of that ratio for a group in the frame alone: the largest in the plate, and the smallest
@@ -180,6 +185,42 @@ impl Seeds {
     fn drop_like_things(&mut self, plate: &Codes) {
         let learn = |seeds: &mut Self| seeds.colors = seeds.colors_against(&seeds.of(Seed::Receiver), plate);
         self.drop_like_thing(self.of(Seed::Receiver), plate, learn);
+        self.drop_parts_like_things(plate);
+    }
+
+    /// Drops groups of receivers in colours of things that no receiver outside the group has, such
+    /// as a side of a mug with as much of the shadow as its surroundings.
+    fn drop_parts_like_things(&mut self, plate: &Codes) {
+        let receivers = self.of(Seed::Receiver);
+        let may_be_thing = |index: usize| {
+            let likelier = self.colors[0].likelier(plate.pixels[index]);
+            self.seeds[index] == Seed::Receiver && likelier.is_some_and(|likelier| likelier > 0.0)
+        };
+        let mut dropped = Vec::new();
+        for group in groups(self.size_px, may_be_thing) {
+            let is_part = (LEAST_PART..receivers.len() / MOST_PARTS).contains(&group.len());
+            if is_part && self.is_like_things_alone(&group, &receivers, plate) {
+                dropped.extend(group);
+            }
+        }
+        for index in &dropped {
+            self.seeds[*index] = Seed::None;
+        }
+        if !dropped.is_empty() {
+            self.colors = self.colors_against(&self.of(Seed::Receiver), plate);
+        }
+    }
+
+    /// Whether a group of receivers has colours of things, and of no other receiver.
+    fn is_like_things_alone(&self, group: &[usize], receivers: &[usize], plate: &Codes) -> bool {
+        let mut is_of_group = vec![false; self.seeds.len()];
+        group.iter().for_each(|index| is_of_group[*index] = true);
+        let others: Vec<usize> = receivers
+            .iter()
+            .copied()
+            .filter(|index| !is_of_group[*index])
+            .collect();
+        self.colors_against(&others, plate)[0].median(plate, group) > LIKE_THING_ALONE
     }
 
     /// Drops those of given seeds whose colours in a picture are a thing's, and learns the colours
@@ -214,7 +255,7 @@ impl Seeds {
     }
 
     /// The same for things that the frame alone shows: against the place, and against the toy in
-    /// pixels that look as expected, without those in a thing's colours.
+    /// pixels that look as expected, of both without those in a thing's colours.
     pub(super) fn in_frame(&self, frame: &Codes, toy: &[usize]) -> Self {
         let keep = |seed: &Seed| match seed {
             Seed::InFrame | Seed::Receiver => *seed,
@@ -231,8 +272,10 @@ impl Seeds {
             ..*self
         };
         found.learn_in_frame(frame);
-        // Skin in less light is like a pale toy.
-        found.drop_like_thing(toy.to_vec(), frame, |found| found.learn_in_frame(frame));
+        // Skin in less light is like a pale toy, and like the table in the toy's shadow.
+        found.drop_like_thing(found.of(Seed::Receiver), frame, |found| {
+            found.learn_in_frame(frame)
+        });
         found
     }
 

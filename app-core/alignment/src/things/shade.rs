@@ -13,11 +13,18 @@ use super::codes::{Codes, UNLIKE_CODES, from_shaded};
 use super::groups::{STEPS, groups, place_of};
 use super::grown::Grown;
 use crate::lights::Compared;
+use crate::median::median;
 use crate::picture::{Color, Level, Mask, Picture, UNKNOWN, bilinear, index_in, places, square};
 use crate::raster::Coverage;
+use app_scene::geometry::color::linear_from_srgb;
 
 /// Light that the model takes from a pixel up to which the pixel is in the open.
 const OPEN: f32 = 0.1;
+/// The same from which on a pixel is in the toy's shadow, and the part of the light that is left
+/// there below which it is no shadow. Left by the toy's shadow: .39; in the place of a dark toy that
+/// the plate shows: .05 to .16 at most of its pixels; in a hand's shadow: .57 and more.
+const SHADOWED: f32 = 0.25;
+const DARKER: f32 = 0.5;
 /// Factor by which the frame is brighter than the plate where that has a shadow, and the minimum
 /// number of such pixels in a group, and in all.
 const BRIGHTER: f32 = 1.15;
@@ -67,7 +74,8 @@ impl Brightness {
     ) -> Option<Self> {
         let size_px = plate.size_px;
         let brighter = brighter(compared, size_px);
-        if brighter.len() < LEAST_PIXELS || !is_shadow(&brighter, (frame, plate)) {
+        let darkest = DARKER * left_by_toy(compared)?;
+        if brighter.len() < LEAST_PIXELS || !is_shadow(&brighter, (frame, plate), darkest) {
             return None;
         }
         let mut used = Mask::new(size_px);
@@ -191,11 +199,28 @@ fn brighter(compared: &[Compared], size_px: IVec2) -> Vec<usize> {
     pixels
 }
 
+/// The light that the toy's own shadow usually leaves, as a share of the plate's; `None` without a
+/// shadow.
+fn left_by_toy(compared: &[Compared]) -> Option<f32> {
+    let taken = compared.iter().map(Compared::taken);
+    let left = median(taken.filter(|taken| *taken > SHADOWED), f32::total_cmp)?;
+    Some(1.0 - left)
+}
+
 /// Whether the plate shows the place in less light at some pixels in the open: in the frame's hue,
-/// and with its texture.
-fn is_shadow(pixels: &[usize], (frame, plate): (&Codes, &Codes)) -> bool {
+/// with no less than a share of its light, and with its texture.
+fn is_shadow(pixels: &[usize], (frame, plate): (&Codes, &Codes), darkest: f32) -> bool {
     let [frame, plate] = [&frame.pixels, &plate.pixels];
-    let is_shaded = |index: &&usize| from_shaded(plate[**index], frame[**index]) < UNLIKE_CODES;
+    let light = |color: Color| {
+        color
+            .iter()
+            .map(|code| linear_from_srgb(code / 255.0))
+            .sum::<f32>()
+    };
+    let is_shaded = |index: &&usize| {
+        let [frame, plate] = [frame[**index], plate[**index]];
+        from_shaded(plate, frame) < UNLIKE_CODES && light(plate) > darkest * light(frame)
+    };
     let n_shaded = pixels.iter().filter(is_shaded).count();
     let (mut texture, mut other, mut n) = (0.0, 0.0, 0.0);
     // Neighbours in a row follow each other.
