@@ -349,8 +349,7 @@ fn a_side_as_dark_as_its_surroundings_is_part_of_its_thing() {
         for channel in 4 * at..4 * at + 3 {
             let [now, full] = [&input.image.rgba().rgba8, &before.rgba8]
                 .map(|codes| linear_from_srgb(f32::from(codes[channel]) / 255.0));
-            let shown = linear_from_srgb(f32::from(plate.rgba8[channel]) / 255.0) * (now / full).min(1.0);
-            frame.rgba8[channel] = (255.0 * srgb_from_linear(shown)).round() as u8;
+            frame.rgba8[channel] = in_light(plate.rgba8[channel], (now / full).min(1.0));
         }
     }
     scene.plates[0].image = Arc::new(plate);
@@ -366,16 +365,21 @@ fn pixels_of([first, end]: Rect, width_px: u32) -> impl Iterator<Item = usize> {
     (first.y..end.y).flat_map(move |y| (first.x..end.x).map(move |x| (y * width_px + x) as usize))
 }
 
-/// A picture with another light in a rectangle.
+/// A code in another light.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
+fn in_light(code: u8, light: f32) -> u8 {
+    let shown = light * linear_from_srgb(f32::from(code) / 255.0);
+    (255.0 * srgb_from_linear(shown)).round() as u8
+}
+
+/// A picture with another light in a rectangle.
 fn shaded(image: &Image, [first, end]: Rect, light: f32) -> Image {
     let mut image = image.clone();
     for y in first.y..end.y {
         for x in first.x..end.x {
             let at = 4 * (y * image.width_px + x) as usize;
             for code in &mut image.rgba8[at..at + 3] {
-                let shown = light * linear_from_srgb(f32::from(*code) / 255.0);
-                *code = (255.0 * srgb_from_linear(shown)).round() as u8;
+                *code = in_light(*code, light);
             }
         }
     }
