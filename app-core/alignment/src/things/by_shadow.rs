@@ -1,13 +1,13 @@
 //! Finds a level plane by the toy's shadow alone, of a thing that does not grow to its edges since its
 //! colours are the place's.
 //!
-//! The first plane comes from the few pixels that are certainly of the thing. Which other pixels show
-//! it the shadow tells, where it falls on the plane and on the receiver unlike; these have the plane's
-//! colours, by which it is bounded, and all pixels within its bounds are the next evidence.
+//! The first plane comes from the few pixels that are certainly of the thing. Where the shadow would fall
+//! on the plane unlike on the receiver, it decides which other pixels show the plane; these have the
+//! plane's colours, by which it is bounded, and all pixels within its bounds are the next evidence.
 
 use glam::{DVec3, IVec2};
 
-use super::colored_extent::{Surroundings, Told};
+use super::colored_extent::{Evidence, Surroundings};
 use super::extent::Outline;
 use super::inner::NOISIEST;
 use super::planes::{Candidate, FoundPlane, SHADOWED, Search};
@@ -39,7 +39,7 @@ pub(super) fn found(
         if !candidate.is_level {
             return None;
         }
-        let told = search.told(raster, &candidate);
+        let evidence = search.evidence(raster, &candidate);
         let endless = search.plane(&candidate.heights).plane_from_camera;
         let on_table = DVec3::new(search.middle.x, 0.0, search.middle.y);
         let middle = search
@@ -48,7 +48,7 @@ pub(super) fn found(
             .inverse()
             .transform_point3(on_table);
         let surroundings = Surroundings::new(outline.level, &endless, (middle, REACH * search.size_m))?;
-        let extent = surroundings.extent(&told)?;
+        let extent = surroundings.extent(&evidence)?;
         search = search.over(&extent.plane(&endless));
         let start = (candidate.loss, candidate.heights);
         candidate = search.refined(raster, &[start], &[start])?;
@@ -63,28 +63,28 @@ pub(super) fn found(
 }
 
 impl Search<'_> {
-    /// The pixels of which the shadow tells whether they show a plane or the known
-    /// receivers. A pixel that is lit may also show a side below the plane.
-    fn told(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Vec<Told> {
+    /// The pixels where the shadow decides whether they show a plane or the known receivers. A pixel
+    /// that is lit may also show a side below the plane.
+    fn evidence(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Vec<Evidence> {
         let plane = self.plane(&candidate.heights);
         let depth = self.depth(&self.ratios(raster, &plane));
         let pixels = certain(self.comparison);
         let places: Vec<IVec2> = pixels.iter().map(|pixel| pixel.at).collect();
         let ratios = self.on_plane.ratios(raster, &plane, &places);
-        let told = pixels.iter().zip(ratios).filter_map(|(pixel, of_plane)| {
+        let evidence = pixels.iter().zip(ratios).filter_map(|(pixel, of_plane)| {
             let of_plane = of_plane?;
             let seen = (pixel.ratio, pixel.noise);
             let [known, new] = [(pixel.model, 1.0), (of_plane, depth)]
                 .map(|(expected, depth)| square(&seen, expected, depth));
-            let is_told = known.min(new) < EXPLAINED && known.max(new) > UNEXPLAINED;
+            let is_certain = known.min(new) < EXPLAINED && known.max(new) > UNEXPLAINED;
             let is_on_plane = new < known;
             let is_shadowed = brightness(&of_plane) < 1.0 - SHADOWED;
-            (is_told && (is_shadowed || !is_on_plane)).then_some(Told {
+            (is_certain && (is_shadowed || !is_on_plane)).then_some(Evidence {
                 at: pixel.at,
                 is_on_plane,
             })
         });
-        told.collect()
+        evidence.collect()
     }
 
     /// The same search, with the pixels of a rectangle.

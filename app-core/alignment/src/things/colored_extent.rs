@@ -31,11 +31,12 @@ const SHOWN: f32 = 4.0;
 const OF_PLACE: f32 = 0.25;
 /// Distance in pixels up to which ratios are averaged: a pattern has colours of the place, too.
 const AROUND_PX: i32 = 1;
-/// Width in metres of the strips among which the sides are chosen.
-const STRIP_M: f64 = 5e-4;
+/// Number of strips among which the sides are chosen, along the way that a thing may reach: half a
+/// millimetre for a book.
+const STRIPS_A_REACH: f64 = 600.0;
 
-/// A pixel of which the toy's shadow tells whether it shows a plane.
-pub(super) struct Told {
+/// A pixel where the toy's shadow decides whether it shows a plane.
+pub(super) struct Evidence {
     pub(super) at: IVec2,
     pub(super) is_on_plane: bool,
 }
@@ -78,23 +79,24 @@ impl<'a> Surroundings<'a> {
 
     /// The rectangle of the colours of those pixels that are on the plane; `None` if they are too few,
     /// or the colours have no end.
-    pub(super) fn extent(&self, told: &[Told]) -> Option<Extent> {
+    pub(super) fn extent(&self, evidence: &[Evidence]) -> Option<Extent> {
         let mut is_inside = vec![false; self.plate.pixels.len()];
-        for told in told.iter().filter(|told| told.is_on_plane) {
-            if let Some(index) = index_in(self.plate.size_px, told.at) {
+        for pixel in evidence.iter().filter(|pixel| pixel.is_on_plane) {
+            if let Some(index) = index_in(self.plate.size_px, pixel.at) {
                 is_inside[index] = true;
             }
         }
-        let of_told = self.near.iter().filter(|(index, _)| is_inside[*index]);
-        let of_told: Vec<DVec2> = of_told.map(|(_, place)| *place).collect();
-        if of_told.len() < LEAST_SHOWN {
+        let inside = self.near.iter().filter(|(index, _)| is_inside[*index]);
+        let inside: Vec<DVec2> = inside.map(|(_, place)| *place).collect();
+        if inside.len() < LEAST_SHOWN {
             return None;
         }
-        let mut extent = Extent::smallest(&of_told)?;
+        let mut extent = Extent::smallest(&inside)?;
+        let strip_m = self.reach_m / STRIPS_A_REACH;
         for _ in 0..N_ROUNDS {
-            let likelier = self.likelier(&is_inside, told);
+            let likelier = self.likelier(&is_inside, evidence);
             let places = self.near.iter().map(|(index, place)| (*place, likelier[*index]));
-            extent = likeliest(&places.collect::<Vec<_>>(), &extent)?;
+            extent = likeliest((&places.collect::<Vec<_>>(), strip_m), &extent)?;
             let rectangle = extent.plane(self.plane_from_camera);
             for (at, is_inside) in places_of(&self.plate).zip(&mut is_inside) {
                 *is_inside = rectangle.point_at(&self.level.intrinsics, at).is_some();
@@ -106,7 +108,7 @@ impl<'a> Surroundings<'a> {
 
     /// For each pixel, the log likelihood ratio that it shows what the inner ones show, by the pixels
     /// around it.
-    fn likelier(&self, is_inside: &[bool], told: &[Told]) -> Vec<f32> {
+    fn likelier(&self, is_inside: &[bool], evidence: &[Evidence]) -> Vec<f32> {
         let of = |kind: bool| {
             let near = self
                 .near
@@ -117,9 +119,9 @@ impl<'a> Surroundings<'a> {
         let colors = Colors::of(of(true), of(false));
         let by_color = |color| (colors.likelier(color).unwrap_or(0.0) - OF_PLACE).clamp(-MOST, MOST);
         let mut likelier: Vec<f32> = self.plate.pixels.iter().map(|color| by_color(*color)).collect();
-        for told in told {
-            if let Some(index) = index_in(self.plate.size_px, told.at) {
-                likelier[index] = if told.is_on_plane { SHOWN } else { -SHOWN };
+        for pixel in evidence {
+            if let Some(index) = index_in(self.plate.size_px, pixel.at) {
+                likelier[index] = if pixel.is_on_plane { SHOWN } else { -SHOWN };
             }
         }
         let mean = |at: IVec2| {
@@ -135,12 +137,12 @@ fn places_of(picture: &Codes) -> impl Iterator<Item = IVec2> + use<> {
 }
 
 /// The rectangle of places with the largest sum of values, near another one: among turns over a
-/// quarter, then among finer ones.
-fn likeliest(values: &[(DVec2, f32)], about: &Extent) -> Option<Extent> {
+/// quarter, then among finer ones. Its sides are on borders of strips of some metres.
+fn likeliest((values, strip_m): (&[(DVec2, f32)], f64), about: &Extent) -> Option<Extent> {
     const STEP_RAD: f64 = std::f64::consts::FRAC_PI_2 / N_TURNS as f64;
     let among = |turns: &mut dyn Iterator<Item = f64>| {
         turns
-            .map(|turn_rad| turned(values, about, turn_rad))
+            .map(|turn_rad| turned((values, strip_m), about, turn_rad))
             .max_by(|a, b| a.0.total_cmp(&b.0))
     };
     let (_, coarse) = among(&mut (0..N_TURNS).map(|i| STEP_RAD * f64::from(i)))?;
@@ -150,7 +152,7 @@ fn likeliest(values: &[(DVec2, f32)], about: &Extent) -> Option<Extent> {
 }
 
 /// The same with a given turn, and the sum.
-fn turned(values: &[(DVec2, f32)], about: &Extent, turn_rad: f64) -> (f32, Extent) {
+fn turned((values, strip_m): (&[(DVec2, f32)], f64), about: &Extent, turn_rad: f64) -> (f32, Extent) {
     let axes = [DVec2::from_angle(turn_rad), DVec2::from_angle(turn_rad).perp()];
     let reach_m = 0.5 * about.half_m.length();
     let mut ends = axes.map(|axis| [-reach_m, reach_m].map(|by_m| about.middle.dot(axis) + by_m));
@@ -163,7 +165,7 @@ fn turned(values: &[(DVec2, f32)], about: &Extent, turn_rad: f64) -> (f32, Exten
                 across >= low && across <= high
             });
             let strip = strip.map(|(place, value)| (place.dot(axes[along]), *value));
-            (sum, ends[along]) = largest_sum(&strip.collect::<Vec<_>>());
+            (sum, ends[along]) = largest_sum(&strip.collect::<Vec<_>>(), strip_m);
         }
     }
     let [low, high] = [0, 1].map(|end| DVec2::new(ends[0][end], ends[1][end]));
@@ -177,7 +179,7 @@ fn turned(values: &[(DVec2, f32)], about: &Extent, turn_rad: f64) -> (f32, Exten
 
 /// The interval with the largest sum of values at places on a line, and that sum. Source: Kadane's
 /// algorithm (Bentley 1984), on strips.
-fn largest_sum(values: &[(f64, f32)]) -> (f32, [f64; 2]) {
+fn largest_sum(values: &[(f64, f32)], strip_m: f64) -> (f32, [f64; 2]) {
     let first_m = values.iter().map(|(at, _)| *at).fold(f64::INFINITY, f64::min);
     let mut strips: Vec<f32> = Vec::new();
     for (at, value) in values {
@@ -186,7 +188,7 @@ fn largest_sum(values: &[(f64, f32)]) -> (f32, [f64; 2]) {
             clippy::cast_sign_loss,
             reason = "a number of strips from the first"
         )]
-        let strip = ((at - first_m) / STRIP_M) as usize;
+        let strip = ((at - first_m) / strip_m) as usize;
         strips.resize(strips.len().max(strip + 1), 0.0);
         strips[strip] += value;
     }
@@ -201,5 +203,5 @@ fn largest_sum(values: &[(f64, f32)]) -> (f32, [f64; 2]) {
             (largest, interval) = (sum, [first, strip + 1]);
         }
     }
-    (largest, interval.map(|strip| first_m + strip as f64 * STRIP_M))
+    (largest, interval.map(|strip| first_m + strip as f64 * strip_m))
 }
