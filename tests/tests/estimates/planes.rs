@@ -125,7 +125,7 @@ fn found_in(
     observer
         .observed(scene, &shot.input.clone().with_depth(depth))
         .unwrap();
-    let told = observer.planes().first()?;
+    let reported = observer.planes().first()?;
     assert_eq!(observer.planes().len(), 1, "a board has no upright sides");
     let known = observer.scene(scene);
     let found = &known.receivers[1];
@@ -143,7 +143,7 @@ fn found_in(
             && off.z.abs() < most_m,
         "half sides of {half_m:?} m, the middle {off} m off"
     );
-    Some(([off.y, 0.0], [told.tilt_rad, tilt_rad]))
+    Some(([off.y, 0.0], [reported.tilt_rad, tilt_rad]))
 }
 
 fn found(height_m: f64, tilt_rad: f64) -> Option<([f64; 2], [f64; 2])> {

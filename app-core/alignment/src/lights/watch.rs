@@ -37,10 +37,13 @@ pub(crate) enum Counted {
 
 /// Part of a light from which on a pixel is in its shadow: the middle of the penumbra.
 const SHADOWED: f32 = 0.5;
+/// Minimum number of such pixels of the level, since a thing may hide nearly all of a shadow: 70 and 109
+/// are left beside two hands.
+const LEAST_SHADOWED: usize = 40;
 
 /// The loss that given lights leave in a picture; the intensity of each, and the light on the
-/// receivers without a toy, are fitted anew. `None` if too little of the receivers is visible, and
-/// without a plate.
+/// receivers without a toy, are fitted anew. `None` if too little of the receivers, or of the shadows that
+/// count, is visible, and without a plate.
 ///
 /// Measured on six captures and the bundled session, in all their frames: .001 to .019 with exact
 /// lights, .010 to .058 with one that is a degree off, .11 to .35 with one that is four.
@@ -74,6 +77,12 @@ pub(crate) fn watch(
         Counted::InShadows => {
             let taken = shadows.taken_of_all(&mut raster, &lamps);
             let is_shadowed = |index: usize| taken.iter().any(|taken| taken[index] > SHADOWED);
+            let n_shadowed = (0..shadows.pixels.len())
+                .filter(|index| is_shadowed(*index))
+                .count();
+            if n_shadowed < LEAST_SHADOWED {
+                return None;
+            }
             let without = shadows.shaded(&[]).loss(&no_light, ROBUST_FAR, is_shadowed);
             shadows.light(&lamps, &shading);
             let taken = shadows.taken_of_all(&mut raster, &lamps);

@@ -1,9 +1,10 @@
 //! Finds a level plane by the toy's shadow alone, of a thing that does not grow to its edges since its
 //! colours are the place's.
 //!
-//! The first plane comes from the few pixels that are certainly of the thing. Where the shadow would fall
-//! on the plane unlike on the receiver, it decides which other pixels show the plane; these have the
-//! plane's colours, by which it is bounded, and all pixels within its bounds are the next evidence.
+//! The first plane comes from the few pixels that are certainly of the thing. Where the
+//! shadow on the plane would differ from that on the receiver, the picture shows which of both a pixel
+//! has. Those on the plane have its colours, by which it is bounded, and all pixels within its bounds
+//! are the next evidence.
 
 use glam::{DVec3, IVec2};
 
@@ -35,10 +36,10 @@ pub(super) fn found(
 ) -> Option<FoundPlane> {
     let raster = &mut Rasterizer::default();
     let mut bounds = None;
+    if !candidate.is_level {
+        return None;
+    }
     for _ in 0..N_ROUNDS {
-        if !candidate.is_level {
-            return None;
-        }
         let evidence = search.evidence(raster, &candidate);
         let endless = search.plane(&candidate.heights).plane_from_camera;
         let on_table = DVec3::new(search.middle.x, 0.0, search.middle.y);
@@ -52,6 +53,9 @@ pub(super) fn found(
         search = search.over(&extent.plane(&endless));
         let start = (candidate.loss, candidate.heights);
         candidate = search.refined(raster, &[start], &[start])?;
+        if !candidate.is_level {
+            return None;
+        }
         bounds = Some(extent);
     }
     let losses = search.significant_losses(raster, &candidate, Colored::Alike)?;
@@ -63,7 +67,7 @@ pub(super) fn found(
 }
 
 impl Search<'_> {
-    /// The pixels where the shadow decides whether they show a plane or the known receivers. A pixel
+    /// The pixels that show a shadow of only one of both: on a plane, or on the known receivers. A pixel
     /// that is lit may also show a side below the plane.
     fn evidence(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Vec<Evidence> {
         let plane = self.plane(&candidate.heights);
@@ -76,10 +80,10 @@ impl Search<'_> {
             let seen = (pixel.ratio, pixel.noise);
             let [known, new] = [(pixel.model, 1.0), (of_plane, depth)]
                 .map(|(expected, depth)| square(&seen, expected, depth));
-            let is_certain = known.min(new) < EXPLAINED && known.max(new) > UNEXPLAINED;
+            let is_decided = known.min(new) < EXPLAINED && known.max(new) > UNEXPLAINED;
             let is_on_plane = new < known;
             let is_shadowed = brightness(&of_plane) < 1.0 - SHADOWED;
-            (is_certain && (is_shadowed || !is_on_plane)).then_some(Evidence {
+            (is_decided && (is_shadowed || !is_on_plane)).then_some(Evidence {
                 at: pixel.at,
                 is_on_plane,
             })

@@ -31,11 +31,12 @@ const SHOWN: f32 = 4.0;
 const OF_PLACE: f32 = 0.25;
 /// Distance in pixels up to which ratios are averaged: a pattern has colours of the place, too.
 const AROUND_PX: i32 = 1;
-/// Number of strips among which the sides are chosen, along the way that a thing may reach: half a
-/// millimetre for a book.
+/// Number of strips along the distance that a thing may reach, among which the sides are chosen: each is
+/// a fraction of a pixel. With strips of half a millimetre the shadow's RMS error on three checked books
+/// is 1.94, 1.75 and 2.59 codes, with these it is 1.90, 1.87 and 2.57.
 const STRIPS_A_REACH: f64 = 600.0;
 
-/// A pixel where the toy's shadow decides whether it shows a plane.
+/// A pixel whose shadow shows whether it is on a plane.
 pub(super) struct Evidence {
     pub(super) at: IVec2,
     pub(super) is_on_plane: bool,
@@ -137,7 +138,7 @@ fn places_of(picture: &Codes) -> impl Iterator<Item = IVec2> + use<> {
 }
 
 /// The rectangle of places with the largest sum of values, near another one: among turns over a
-/// quarter, then among finer ones. Its sides are on borders of strips of some metres.
+/// quarter, then among finer ones. Its sides are on borders of strips of `strip_m` metres.
 fn likeliest((values, strip_m): (&[(DVec2, f32)], f64), about: &Extent) -> Option<Extent> {
     const STEP_RAD: f64 = std::f64::consts::FRAC_PI_2 / N_TURNS as f64;
     let among = |turns: &mut dyn Iterator<Item = f64>| {
@@ -160,12 +161,12 @@ fn turned((values, strip_m): (&[(DVec2, f32)], f64), about: &Extent, turn_rad: f
     for _ in 0..N_MOVES {
         for along in 0..2 {
             let [low, high] = ends[1 - along];
-            let strip = values.iter().filter(|(place, _)| {
+            let band = values.iter().filter(|(place, _)| {
                 let across = place.dot(axes[1 - along]);
                 across >= low && across <= high
             });
-            let strip = strip.map(|(place, value)| (place.dot(axes[along]), *value));
-            (sum, ends[along]) = largest_sum(&strip.collect::<Vec<_>>(), strip_m);
+            let band = band.map(|(place, value)| (place.dot(axes[along]), *value));
+            (sum, ends[along]) = largest_sum(&band.collect::<Vec<_>>(), strip_m);
         }
     }
     let [low, high] = [0, 1].map(|end| DVec2::new(ends[0][end], ends[1][end]));

@@ -74,7 +74,7 @@ impl Brightness {
     ) -> Option<Self> {
         let size_px = plate.size_px;
         let brighter = brighter(compared, size_px);
-        let darkest = DARKER * left_by_toy(compared)?;
+        let darkest = DARKER * left_by_toy(compared);
         if brighter.len() < LEAST_PIXELS || !is_shadow(&brighter, (frame, plate), darkest) {
             return None;
         }
@@ -199,12 +199,12 @@ fn brighter(compared: &[Compared], size_px: IVec2) -> Vec<usize> {
     pixels
 }
 
-/// The light that the toy's own shadow usually leaves, as a share of the plate's; `None` without a
-/// shadow.
-fn left_by_toy(compared: &[Compared]) -> Option<f32> {
+/// The light that the toy's own shadow usually leaves, as a share of the plate's; 0 without such a
+/// shadow, which bounds nothing.
+fn left_by_toy(compared: &[Compared]) -> f32 {
     let taken = compared.iter().map(Compared::taken);
-    let left = median(taken.filter(|taken| *taken > SHADOWED), f32::total_cmp)?;
-    Some(1.0 - left)
+    let taken = median(taken.filter(|taken| *taken > SHADOWED), f32::total_cmp);
+    taken.map_or(0.0, |taken| 1.0 - taken)
 }
 
 /// Whether the plate shows the place in less light at some pixels in the open: in the frame's hue,
