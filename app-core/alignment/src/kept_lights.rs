@@ -103,6 +103,11 @@ impl KeptLights {
         self.latest.is_some_and(Self::leaves_too_much)
     }
 
+    /// The same, if these are the listed ones.
+    pub(super) fn is_list_that_leaves_too_much(&self) -> bool {
+        self.discovered.is_none() && self.leave_too_much()
+    }
+
     /// Whether these lights were found, and explain what others, which leave `by_others`, do not.
     pub(super) fn stand_in_for(&self, watched: Watched, by_others: Watched) -> bool {
         self.are_found() && watched.unexplained <= MOST_UNEXPLAINED.min(OF_OTHERS * by_others.unexplained)
@@ -140,9 +145,8 @@ impl KeptLights {
 
     /// The fraction of the latest shadows that a list leaves unexplained, if that is too much.
     pub(super) fn misfit(&self) -> Option<f64> {
-        let is_judged = self.discovered.is_none() && !self.is_beside_thing;
-        let latest = self.latest.filter(|_| is_judged)?;
-        Self::leaves_too_much(latest).then_some(latest.unexplained)
+        let is_misfit = self.is_list_that_leaves_too_much() && !self.is_beside_thing;
+        self.latest.filter(|_| is_misfit).map(|latest| latest.unexplained)
     }
 
     /// With an assumed light, if there is no other.
@@ -203,8 +207,7 @@ impl KeptLights {
 
     /// Whether the latest view shows shadows, and these lights explain them.
     pub(super) fn explain_latest(&self) -> bool {
-        let is_explained =
-            |latest: Watched| latest.shadows >= LEAST_SHADOWS && latest.unexplained <= MOST_UNEXPLAINED;
+        let is_explained = |latest: Watched| latest.shadows >= LEAST_SHADOWS && Self::are_explained(latest);
         self.latest.is_some_and(is_explained)
     }
 

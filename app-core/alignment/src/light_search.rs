@@ -238,9 +238,8 @@ impl Aligner {
             let in_light = (lights.in_use(), things.as_ref());
             self.gloss = Some(seen.photograph.gloss(&self.scene, toy, in_light)?);
         }
-        lights.is_beside_thing = false;
-        lights.is_beside_thing =
-            lights.misfit().is_some() && self.explain_own_shadows(&lights, (seen, things.as_ref()))?;
+        lights.is_beside_thing = lights.is_list_that_leaves_too_much()
+            && self.explain_own_shadows(&lights, (seen, things.as_ref()))?;
         things::adopt(&mut self.things, things);
         Ok(lights)
     }

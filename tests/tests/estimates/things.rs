@@ -115,10 +115,8 @@ impl Found {
     /// The share of the rectangle with a mark.
     fn part(&self, mark: Mark) -> f64 {
         let Some(things) = &self.things else { return 0.0 };
-        let [first, end] = self.rect;
         let width_px = things.size_px().x;
-        let pixels =
-            (first.y..end.y).flat_map(|y| (first.x..end.x).map(move |x| (y * width_px + x) as usize));
+        let pixels = pixels_of(self.rect, width_px);
         pixels.filter(|at| things.marks()[*at] == mark).count() as f64 / self.size()
     }
 
@@ -336,15 +334,15 @@ fn a_side_as_dark_as_its_surroundings_is_part_of_its_thing() {
     let front = [UVec2::new(390, first.y), end];
     // The front has a spot in the side's colour.
     let spot = [UVec2::new(390, 225), UVec2::new(400, 245)];
-    let thing = |image: &Image, side_color| {
+    let thing = |image: &Image| {
         let image = painted(image, front);
-        [side, spot].into_iter().fold(image, |image, rect| {
-            painted_where(&image, (side_color, rect), |_| true)
-        })
+        [side, spot]
+            .into_iter()
+            .fold(image, |image, rect| painted_where(&image, (SIDE, rect), |_| true))
     };
-    let plate = thing(&before, SIDE);
+    let plate = thing(&before);
     // The side is as dark as the table would be there.
-    let mut frame = thing(input.image.rgba(), SIDE);
+    let mut frame = thing(input.image.rgba());
     for at in pixels_of(side, frame.width_px) {
         for channel in 4 * at..4 * at + 3 {
             let [now, full] = [&input.image.rgba().rgba8, &before.rgba8]
@@ -373,14 +371,11 @@ fn in_light(code: u8, light: f32) -> u8 {
 }
 
 /// A picture with another light in a rectangle.
-fn shaded(image: &Image, [first, end]: Rect, light: f32) -> Image {
+fn shaded(image: &Image, rect: Rect, light: f32) -> Image {
     let mut image = image.clone();
-    for y in first.y..end.y {
-        for x in first.x..end.x {
-            let at = 4 * (y * image.width_px + x) as usize;
-            for code in &mut image.rgba8[at..at + 3] {
-                *code = in_light(*code, light);
-            }
+    for at in pixels_of(rect, image.width_px) {
+        for code in &mut image.rgba8[4 * at..4 * at + 3] {
+            *code = in_light(*code, light);
         }
     }
     image
@@ -407,7 +402,7 @@ fn a_shadow_in_the_plate_alone_is_measured() {
     // Real shadows have no such sharp edges: behind the legs they are interpolated.
     let [first, end] = [rect[0] + 8, rect[1] - 8];
     let width_px = things.size_px().x;
-    let pixels = (first.y..end.y).flat_map(|y| (first.x..end.x).map(move |x| (y * width_px + x) as usize));
+    let pixels = pixels_of([first, end], width_px);
     let size = f64::from((end - first).element_product());
     let right = pixels.filter(|at| is_right(&things.marks()[*at])).count() as f64 / size;
     let others = [Mark::Thing, Mark::BeforeToy, Mark::WrongPlate].map(|mark| things.count(mark));

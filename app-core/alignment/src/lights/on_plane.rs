@@ -21,6 +21,7 @@ const N_DIRECTIONS: usize = 16;
 const LEAST_UNSHADOWED: f64 = 0.05;
 
 /// The light on a receiver, and a toy in it.
+#[derive(Clone)]
 pub(crate) struct OnPlane<'a> {
     shape: &'a Shape,
     lamps: &'a [Lamp],

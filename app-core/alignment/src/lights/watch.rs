@@ -67,16 +67,16 @@ pub(crate) fn watch(
         return None;
     }
     let no_light = shadows.shading(&mut raster, &[], ROBUST_FAR);
-    let shading = shadows.shading(&mut raster, &lamps, ROBUST_FAR);
+    let first_taken = shadows.taken_of_all(&mut raster, &lamps);
+    let shading = shadows.shaded(&first_taken).fit(receivers.len(), ROBUST_FAR);
+    shadows.light(&lamps, &shading);
+    let taken = shadows.taken_of_all(&mut raster, &lamps);
+    let lit = shadows.shaded(&taken);
+    let with_lights = lit.fit(receivers.len(), ROBUST_FAR);
     let (without, with) = match counted {
-        Counted::All => {
-            shadows.light(&lamps, &shading);
-            let with = shadows.shading(&mut raster, &lamps, ROBUST_FAR);
-            (no_light.loss, with.loss)
-        }
+        Counted::All => (no_light.loss, with_lights.loss),
         Counted::InShadows => {
-            let taken = shadows.taken_of_all(&mut raster, &lamps);
-            let is_shadowed = |index: usize| taken.iter().any(|taken| taken[index] > SHADOWED);
+            let is_shadowed = |index: usize| first_taken.iter().any(|taken| taken[index] > SHADOWED);
             let n_shadowed = (0..shadows.pixels.len())
                 .filter(|index| is_shadowed(*index))
                 .count();
@@ -84,11 +84,7 @@ pub(crate) fn watch(
                 return None;
             }
             let without = shadows.shaded(&[]).loss(&no_light, ROBUST_FAR, is_shadowed);
-            shadows.light(&lamps, &shading);
-            let taken = shadows.taken_of_all(&mut raster, &lamps);
-            let shaded = shadows.shaded(&taken);
-            let with = shaded.fit(receivers.len(), ROBUST_FAR);
-            (without, shaded.loss(&with, ROBUST_FAR, is_shadowed))
+            (without, lit.loss(&with_lights, ROBUST_FAR, is_shadowed))
         }
     };
     Some(Watched {

@@ -12,17 +12,13 @@ use super::colored_extent::{Evidence, Surroundings};
 use super::extent::Outline;
 use super::inner::NOISIEST;
 use super::planes::{Candidate, FoundPlane, SHADOWED, Search};
-use super::seeds::Colored;
+use super::seeds::{Colored, EXPLAINED, UNEXPLAINED};
 use super::shadow_loss::square;
 use crate::lights::{Compared, Comparison};
 use crate::picture::brightness;
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
 
-/// Largest loss of what a pixel shows, and least of what it does not show: squares of what is surely
-/// explained and of what is surely not, as for the seeds of things.
-const EXPLAINED: f64 = 0.0036;
-const UNEXPLAINED: f64 = 0.0225;
 /// Distance from the thing's middle up to which it may reach, over the size of its certain pixels.
 const REACH: f64 = 3.0;
 /// Rounds of bounds and plane.
@@ -80,7 +76,9 @@ impl Search<'_> {
             let seen = (pixel.ratio, pixel.noise);
             let [known, new] = [(pixel.model, 1.0), (of_plane, depth)]
                 .map(|(expected, depth)| square(&seen, expected, depth));
-            let is_decided = known.min(new) < EXPLAINED && known.max(new) > UNEXPLAINED;
+            // What is surely explained, and what is surely not, is as for the seeds of things.
+            let [explained, unexplained] = [EXPLAINED, UNEXPLAINED].map(|away| f64::from(away).powi(2));
+            let is_decided = known.min(new) < explained && known.max(new) > unexplained;
             let is_on_plane = new < known;
             let is_shadowed = brightness(&of_plane) < 1.0 - SHADOWED;
             (is_decided && (is_shadowed || !is_on_plane)).then_some(Evidence {

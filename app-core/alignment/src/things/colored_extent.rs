@@ -18,8 +18,7 @@ const LEAST_SHOWN: usize = 40;
 /// no side of a checked book by a millimetre.
 const N_ROUNDS: usize = 2;
 const N_MOVES: usize = 4;
-/// Number of trial angles over a quarter turn, and of finer ones on either side of the best.
-const N_TURNS: i32 = 45;
+/// Number of finer trial angles on either side of the best.
 const N_FINER: i32 = 10;
 /// Largest log likelihood ratio of a pixel by its colour, and that of one whose shadow shows what it
 /// is.
@@ -96,10 +95,10 @@ impl<'a> Surroundings<'a> {
         let strip_m = self.reach_m / STRIPS_A_REACH;
         for _ in 0..N_ROUNDS {
             let likelier = self.likelier(&is_inside, evidence);
-            let places = self.near.iter().map(|(index, place)| (*place, likelier[*index]));
-            extent = likeliest((&places.collect::<Vec<_>>(), strip_m), &extent)?;
+            let values = self.near.iter().map(|(index, place)| (*place, likelier[*index]));
+            extent = likeliest(&values.collect::<Vec<_>>(), strip_m, &extent)?;
             let rectangle = extent.plane(self.plane_from_camera);
-            for (at, is_inside) in places_of(&self.plate).zip(&mut is_inside) {
+            for (at, is_inside) in places(self.plate.size_px).zip(&mut is_inside) {
                 *is_inside = rectangle.point_at(&self.level.intrinsics, at).is_some();
             }
         }
@@ -129,27 +128,19 @@ impl<'a> Surroundings<'a> {
             let around = || square(at, AROUND_PX).filter_map(|at| index_in(self.plate.size_px, at));
             around().map(|index| likelier[index]).sum::<f32>() / around().count().max(1) as f32
         };
-        places_of(&self.plate).map(mean).collect()
+        places(self.plate.size_px).map(mean).collect()
     }
 }
 
-fn places_of(picture: &Codes) -> impl Iterator<Item = IVec2> + use<> {
-    places(picture.size_px)
-}
-
-/// The rectangle of places with the largest sum of values, near another one: among turns over a
-/// quarter, then among finer ones. Its sides are on borders of strips of `strip_m` metres.
-fn likeliest((values, strip_m): (&[(DVec2, f32)], f64), about: &Extent) -> Option<Extent> {
-    const STEP_RAD: f64 = std::f64::consts::FRAC_PI_2 / N_TURNS as f64;
-    let among = |turns: &mut dyn Iterator<Item = f64>| {
-        turns
-            .map(|turn_rad| turned((values, strip_m), about, turn_rad))
-            .max_by(|a, b| a.0.total_cmp(&b.0))
+/// The rectangle of places with the largest sum of values, near another one. Its sides are on borders of
+/// strips of `strip_m` metres.
+fn likeliest(values: &[(DVec2, f32)], strip_m: f64, about: &Extent) -> Option<Extent> {
+    let turned = |turn_rad| {
+        let (sum, extent) = turned((values, strip_m), about, turn_rad);
+        (-f64::from(sum), extent)
     };
-    let (_, coarse) = among(&mut (0..N_TURNS).map(|i| STEP_RAD * f64::from(i)))?;
-    let fine = |i: i32| coarse.turn_rad + STEP_RAD * f64::from(i) / f64::from(N_FINER);
-    let (sum, extent) = among(&mut (-N_FINER..=N_FINER).map(fine))?;
-    (sum > 0.0).then_some(extent)
+    let (cost, extent) = Extent::of_least(N_FINER, turned)?;
+    (cost < 0.0).then_some(extent)
 }
 
 /// The same with a given turn, and the sum.

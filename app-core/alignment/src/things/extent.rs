@@ -147,9 +147,9 @@ impl Extent {
         let places = measured.or_else(shown)?;
         let smallest = Self::smallest(&places)?;
         let face_m = (is_level && !is_measured).then(|| smallest.height_m(plane_from_camera, outline.table));
-        let on_edges = |extent: Self| extent.on_edges(outline.level, plane_from_camera, face_m);
+        let on_edges = |extent: &Self| extent.on_edges(outline.level, plane_from_camera, face_m);
         // The first round corrects the lengths that the second one looks along.
-        let smallest = on_edges(on_edges(smallest));
+        let smallest = on_edges(&on_edges(&smallest));
         // How far a thing in the place's own colours reaches is not seen.
         let is_filled =
             outline.colored == Colored::Alike || outline.filled(&smallest.plane(plane_from_camera)) >= FILLED;
@@ -161,17 +161,26 @@ impl Extent {
         is_filled.then_some(whole)
     }
 
-    /// The smallest rectangle around places: among turns over a quarter, then among finer ones.
+    /// The smallest rectangle around places.
     pub(super) fn smallest(places: &[DVec2]) -> Option<Self> {
-        const STEP_RAD: f64 = std::f64::consts::FRAC_PI_2 / N_TURNS as f64;
-        let among = |turns: &mut dyn Iterator<Item = f64>| {
-            turns
-                .map(|turn_rad| Self::turned(places, turn_rad))
-                .min_by(|a, b| a.half_m.element_product().total_cmp(&b.half_m.element_product()))
+        let turned = |turn_rad| {
+            let extent = Self::turned(places, turn_rad);
+            (extent.half_m.element_product(), extent)
         };
-        let about = among(&mut (0..N_TURNS).map(|i| STEP_RAD * f64::from(i)))?.turn_rad;
-        let fine = |i: i32| about + STEP_RAD * f64::from(i) / f64::from(N_FINER);
-        among(&mut (-N_FINER..=N_FINER).map(fine))
+        Self::of_least(N_FINER, turned).map(|(_, extent)| extent)
+    }
+
+    /// The rectangle of the least cost: among turns over a quarter, then among this many finer ones on
+    /// either side of the best. A function gives cost and rectangle of each.
+    pub(super) fn of_least(n_finer: i32, turned: impl Fn(f64) -> (f64, Self)) -> Option<(f64, Self)> {
+        const STEP_RAD: f64 = std::f64::consts::FRAC_PI_2 / N_TURNS as f64;
+        let among =
+            |turns: &mut dyn Iterator<Item = f64>| turns.map(&turned).min_by(|a, b| a.0.total_cmp(&b.0));
+        let about = among(&mut (0..N_TURNS).map(|i| STEP_RAD * f64::from(i)))?
+            .1
+            .turn_rad;
+        let fine = |i: i32| about + STEP_RAD * f64::from(i) / f64::from(n_finer);
+        among(&mut (-n_finer..=n_finer).map(fine))
     }
 
     /// The rectangle of a receiver on a plane close to its own.
@@ -200,15 +209,14 @@ impl Extent {
     }
 
     /// The rectangle with its sides on edges of the plate, above upright faces of a height.
-    fn on_edges(self, level: &Level, plane_from_camera: &DMat4, face_m: Option<f64>) -> Self {
+    fn on_edges(&self, level: &Level, plane_from_camera: &DMat4, face_m: Option<f64>) -> Self {
         self.moved(face_m, |side| moved_m(side, plane_from_camera, level))
     }
 
     /// The same if no side moves far; if one does, to a line of a pattern, then with each side on the
     /// nearest edge.
     pub(super) fn on_near_edges(self, level: &Level, plane_from_camera: &DMat4, face_m: f64) -> Self {
-        let on_edges =
-            |face_m: Option<f64>| self.moved(face_m, |side| moved_m(side, plane_from_camera, level));
+        let on_edges = |face_m: Option<f64>| self.on_edges(level, plane_from_camera, face_m);
         let above_face = on_edges(Some(face_m));
         let longer_m = (above_face.half_m - self.half_m).abs().max_element();
         let farthest_m = above_face.middle.distance(self.middle) + longer_m;

@@ -122,6 +122,7 @@ pub(super) struct Candidate {
 pub(super) type Heights = [f64; 3];
 
 /// A search for one thing's plane.
+#[derive(Clone)]
 pub(super) struct Search<'a> {
     pub(super) comparison: &'a Comparison,
     pub(super) on_plane: OnPlane<'a>,

@@ -12,8 +12,8 @@ use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 
 /// Smallest difference from the model, in plates, that no light on a receiver explains; a larger
 /// one excludes a receiver.
-const UNEXPLAINED: f32 = 0.15;
-const EXPLAINED: f32 = 0.06;
+pub(super) const UNEXPLAINED: f32 = 0.15;
+pub(super) const EXPLAINED: f32 = 0.06;
 /// Minimum of that difference in standard deviations of the noise.
 const OF_NOISE: f32 = 4.0;
 /// Smallest loss of light in the model at which a pixel can certainly show a receiver.
@@ -220,7 +220,7 @@ impl Seeds {
             .copied()
             .filter(|index| !is_of_group[*index])
             .collect();
-        self.colors_against(&others, plate)[0].median(plate, group) > LIKE_THING_ALONE
+        self.colors_of(Seed::Thing, &others, plate).median(plate, group) > LIKE_THING_ALONE
     }
 
     /// Drops those of given seeds whose colours in a picture are a thing's, and learns the colours
@@ -245,13 +245,16 @@ impl Seeds {
     /// Colours of things, and of those that the plate alone shows, against some pixels of the
     /// place.
     fn colors_against(&self, place: &[usize], plate: &Codes) -> [Colors; 2] {
-        [Seed::Thing, Seed::WrongPlate].map(|seed| {
-            let seeds = self.of(seed).into_iter();
-            Colors::of(
-                seeds.map(|index| plate.pixels[index]),
-                place.iter().map(|index| plate.pixels[*index]),
-            )
-        })
+        [Seed::Thing, Seed::WrongPlate].map(|seed| self.colors_of(seed, place, plate))
+    }
+
+    /// Colours of the seeds of a kind against some pixels of the place.
+    fn colors_of(&self, kind: Seed, place: &[usize], plate: &Codes) -> Colors {
+        let seeds = self.of(kind).into_iter();
+        Colors::of(
+            seeds.map(|index| plate.pixels[index]),
+            place.iter().map(|index| plate.pixels[*index]),
+        )
     }
 
     /// The same for things that the frame alone shows: against the place, and against the toy in

@@ -63,7 +63,7 @@ pub(super) fn find(
                 .into_iter()
                 .flatten()
                 .min_by(|a, b| a.report.losses[1].total_cmp(&b.report.losses[1]))?,
-            None => in_pictures(search, &outline)?,
+            None => in_pictures(search()?, &outline)?,
         };
         Some(FoundPlane {
             instead_of: (on != GROUND && found.is_near(&receivers[on])).then_some(on),
@@ -76,13 +76,13 @@ pub(super) fn find(
 /// The plane by what the pictures show: within the bounds to which the thing grows, or within those by
 /// the shadow if only they are known or the plate shows them much more clearly. The shadow bounds level
 /// planes only.
-fn in_pictures<'a>(search: impl Fn() -> Option<Search<'a>>, outline: &Outline<'_>) -> Option<FoundPlane> {
-    let first = search()?.best_plane(&mut Rasterizer::default())?;
-    let grown = found_from(search()?, &first, outline);
+fn in_pictures(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
+    let first = search.best_plane(&mut Rasterizer::default())?;
+    let grown = found_from(search.clone(), &first, outline);
     if grown.as_ref().is_some_and(|grown| grown.report.tilt_rad > 0.0) {
         return grown;
     }
-    let by_shadow = by_shadow::found(search()?, first, outline);
+    let by_shadow = by_shadow::found(search, first, outline);
     match (grown, by_shadow) {
         (Some(grown), Some(by_shadow)) if by_shadow.contrast < MUCH_CLEARER * grown.contrast => Some(grown),
         (grown, by_shadow) => by_shadow.or(grown),
