@@ -211,6 +211,18 @@ impl KeptLights {
         self.latest.is_some_and(is_explained)
     }
 
+    /// Whether these are fewer lights than others of the same shadows, or as many that leave less
+    /// unexplained.
+    ///
+    /// A llama's ramp showed two lights beside the things of two searches: one that is a degree off left
+    /// .075, the right one .035.
+    pub(super) fn explain_better_than(&self, others: &Self) -> bool {
+        let [own, other] =
+            [self, others].map(|lights| lights.latest.map_or(f64::INFINITY, |latest| latest.unexplained));
+        let [n, n_others] = [self, others].map(|lights| lights.in_use().len());
+        n < n_others || (n == n_others && own < other)
+    }
+
     /// With these lights in place of the same estimated ones, as seen from the toy at a place.
     pub(super) fn move_to(&mut self, lights: Arc<[Light]>, place_in_world: DVec3) {
         for ((report, given), light) in self.report.iter_mut().zip(&*self.given).zip(&*lights) {

@@ -100,10 +100,9 @@ impl Aligner {
             if let Looked::Planes(again) = self.look_for_things(lights.in_use(), seen, planes_of)? {
                 return Ok(Some(Explained::Planes(again)));
             }
-            // Of two explanations, that with fewer lights.
             if beside
                 .as_ref()
-                .is_none_or(|other| lights.in_use().len() < other.in_use().len())
+                .is_none_or(|other| lights.explain_better_than(other))
             {
                 beside = Some(lights);
             }
