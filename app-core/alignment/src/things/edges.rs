@@ -91,6 +91,18 @@ pub(super) fn contrast(side: &Side, plane_from_camera: &DMat4, level: &Level) ->
     seen.contrast((0.0, 0.0), BESIDE_PX * seen.px_m()?)
 }
 
+/// The smaller contrast of a side and of its upright face's foot, where that is largest among the places
+/// that count as where the side is; 0 if the face is not seen.
+pub(super) fn face_contrast(side: &Side, plane_from_camera: &DMat4, level: &Level) -> f64 {
+    let seen = SeenSide::of(side, plane_from_camera, level);
+    let (Some(px_m), Some(face_m)) = (seen.px_m(), seen.face_m()) else {
+        return 0.0;
+    };
+    let at = |step: i32, down_m: f64| seen.contrast((px_m * step_px(step), down_m), BESIDE_PX * px_m);
+    let both = |step: i32| Some(at(step, 0.0)?.min(at(step, face_m)?));
+    (-AS_LISTED..=AS_LISTED).filter_map(both).fold(0.0, f64::max)
+}
+
 /// The step of most contrast.
 fn clearest(steps: RangeInclusive<i32>, contrast: impl Fn(i32) -> f64) -> Option<i32> {
     let all = steps.map(|step| (contrast(step), step));
