@@ -33,7 +33,7 @@ fn things() -> Things {
             let code = if is_gap {
                 0
             } else {
-                codes[at.element_sum() as usize / 6 * 11 % 7]
+                codes[at.element_sum() as usize / 6 * 11 % 8]
             };
             [code, light, light / 2, 255 - light]
         }),
