@@ -72,6 +72,9 @@ impl Hidden<'_> {
         let of_hidden: Vec<IVec2> = places(size_px)
             .filter(|at| hidden.has(*at) && self.place_m(at.as_dvec2() + 0.5).is_some())
             .collect();
+        if of_hidden.is_empty() {
+            return None;
+        }
         let middle_px =
             of_hidden.iter().map(|at| at.as_dvec2() + 0.5).sum::<DVec2>() / of_hidden.len() as f64;
         let around = self.around(&hidden);
@@ -85,7 +88,7 @@ impl Hidden<'_> {
         )?;
         let best_m = self.offset_m(middle_px, offsets.first()?.px)?;
         let left = residual(&self.pairs(&checked, best_m))?.differs;
-        if !(left < REPEATS * REPEATS * smooth.differs) {
+        if left >= REPEATS * REPEATS * smooth.differs {
             return None;
         }
         let mut marks = self.marks.to_vec();
