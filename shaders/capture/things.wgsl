@@ -11,10 +11,12 @@
 // Writes: the same mask, but r is 0 on a thing, and b is 1 if its pixel is clear of the toy; a is
 // THING or BEFORE_TOY, for which g is 0 as well, less BEFORE_THING on a pixel of another thing, and
 // one of 16 codes more at the thing's rim: the pixels on either side of the end of its marks. The
-// plate's colour and alpha are multiplied: by 0 in a wrong part.
+// plate's colour and alpha are multiplied: by 0 in a wrong part, and its alpha by that of an estimate where the
+// receiver's pattern is known.
 // CPU reference: tests/reference/src/things.rs.
 
 //#import common/fullscreen
+//#import common/estimated
 //#import common/marks
 //#import common/thing_marks
 
@@ -112,5 +114,7 @@ fn fs_correct_plate(@builtin(position) position: vec4f) -> @location(0) vec4f {
   if code == CODE_SHADED_PLATE { return vec4f(1.0 / max(mark.gba, vec3f(LEAST_LEFT)), 1.0); }
   if code == CODE_HIDDEN_THING { return vec4f(mark.gba, 1.0); }
   if code == CODE_PAINTED_THING { return vec4f(MOST_PAINTED * mark.gba * mark.gba, 1.0); }
+  // An estimate counts as such.
+  if code == CODE_COMPLETED_PLATE { return vec4f(MOST_COMPLETED * mark.gba * mark.gba, ESTIMATED); }
   return vec4f(1.0);
 }

@@ -18,8 +18,11 @@ const CODE_WRONG_PLATE: u32 = 3u;
 const CODE_SHADED_PLATE: u32 = 4u;
 const CODE_HIDDEN_THING: u32 = 5u;
 const CODE_PAINTED_THING: u32 = 6u;
+const CODE_COMPLETED_PLATE: u32 = 7u;
 // Light of a painted thing with the largest codes, whose squares are proportional to light.
 const MOST_PAINTED: f32 = 16.0;
+// The same of a completed plate.
+const MOST_COMPLETED: f32 = 64.0;
 // Height of a code of 1 in the lower one.
 const HEIGHT_STEP_M: f32 = 1e-5;
 

@@ -61,6 +61,6 @@ fn is_sharp(seen: &Seen) -> bool {
 fn is_misleading(mark: Mark) -> bool {
     matches!(
         mark,
-        Mark::BeforeToy | Mark::WrongPlate | Mark::ShadedPlate { .. }
+        Mark::BeforeToy | Mark::WrongPlate | Mark::CompletedPlate { .. } | Mark::ShadedPlate { .. }
     )
 }

@@ -19,6 +19,13 @@ pub enum Mark {
     BeforeToy,
     /// A receiver whose plate shows something else; it is treated as not photographed there.
     WrongPlate,
+    /// The same where the toy hides the receiver, whose pattern is known: the plate in a light that
+    /// gives it the pattern's colours. They count as an estimate.
+    CompletedPlate {
+        /// Square root of the light relative to the plate, of 255 for [`MOST_COMPLETED`], for each
+        /// channel.
+        light: [u8; 3],
+    },
     /// A receiver whose plate shows it in a shadow that the picture does not have.
     ShadedPlate {
         /// Light that remains in the plate, of 255, for each channel; 0 counts as 1.
@@ -41,6 +48,10 @@ pub enum Mark {
 /// Largest light of a painted thing, relative to the plate: that of skin over a dark slate. Codes of its square
 /// root leave 1.6 % of a light of 1 undetermined, a code and a half.
 pub const MOST_PAINTED: f32 = 16.0;
+
+/// Largest light of a completed plate, relative to the plate: that of a white tile over a black shoe. Codes
+/// leave 3 % of a light of 1 undetermined, two codes and a half.
+pub const MOST_COMPLETED: f32 = 64.0;
 
 /// Step of the heights of raised points, in metres.
 pub const HEIGHT_STEP_M: f32 = 1e-5;
@@ -113,6 +124,15 @@ impl Mark {
         is_possible.then_some(Self::PaintedThing { light })
     }
 
+    /// A receiver whose plate is wrong, in this light relative to the plate, for each channel, or in the
+    /// most that a mark can give it; `None` if it is unknown.
+    #[must_use]
+    pub fn completed_plate(light: [f32; 3]) -> Option<Self> {
+        let is_known = light.iter().all(|light| *light >= 0.0);
+        let light = light.map(|light| code_of((light / MOST_COMPLETED).sqrt()));
+        is_known.then_some(Self::CompletedPlate { light })
+    }
+
     /// Whether the mark has the light of a thing that the toy hides.
     #[must_use]
     pub fn is_behind_toy(self) -> bool {
@@ -125,7 +145,7 @@ impl Mark {
             Self::None => None,
             Self::Thing | Self::HiddenThing { .. } | Self::PaintedThing { .. } => Some(0),
             Self::BeforeToy => Some(1),
-            Self::WrongPlate => Some(2),
+            Self::WrongPlate | Self::CompletedPlate { .. } => Some(2),
             Self::ShadedPlate { .. } => Some(3),
         }
     }
@@ -257,7 +277,8 @@ impl Things {
     /// Whether any pixel's plate needs another light.
     #[must_use]
     pub fn has_light(&self) -> bool {
-        self.counts[3] > 0 || self.marks.iter().any(|mark| mark.is_behind_toy())
+        let has_light = |mark: &Mark| mark.is_behind_toy() || matches!(mark, Mark::CompletedPlate { .. });
+        self.counts[3] > 0 || self.marks.iter().any(has_light)
     }
 }
 

@@ -19,7 +19,7 @@ const TELLS_NONE: f64 = 0.1;
 pub struct Known<'a> {
     /// The pictures; `seen` is 1 well clear of the toy.
     pub pictures: &'a Pictures,
-    /// 1 where the plate was photographed.
+    /// 1 where the plate was photographed, [`ESTIMATED`] where it has the place's pattern.
     pub photographed: &'a Raster<f64>,
     /// The fit's result.
     pub solution: &'a Solution,
@@ -38,7 +38,11 @@ pub fn complete(region: &Region, known: &Known<'_>, is_final: bool, texel: UVec2
         return photographed;
     };
     let (grid, lit) = &known.lit[point.receiver];
-    let smooth = grid.value_at(lit, point.in_plane);
+    let smooth = if photographed.w == ESTIMATED {
+        photographed.truncate()
+    } else {
+        grid.value_at(lit, point.in_plane)
+    };
     let ambient = coarse_at(&pictures.ambient, region, at);
     let model = known
         .solution

@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec2, DVec3, DVec4, IVec2, UVec2};
 
+use super::estimate::ESTIMATED;
 use super::model::centre_px;
 use super::raster::Raster;
 
@@ -17,7 +18,11 @@ pub const SHADED_PLATE: u8 = 4;
 pub const HIDDEN_THING: u8 = 5;
 /// Code of a thing that the toy hides and no plate shows.
 pub const PAINTED_THING: u8 = 6;
-/// Light of such a thing with the largest codes, whose squares are proportional to light.
+/// Code of a plate that is completed by the place's pattern.
+pub const COMPLETED_PLATE: u8 = 7;
+/// Light of such a plate with the largest codes, whose squares are proportional to light.
+const MOST_COMPLETED: f64 = 64.0;
+/// Light of a painted thing with the largest codes, whose squares are proportional to light.
 const MOST_PAINTED: f64 = 16.0;
 /// Alpha of the marks of things, in the same order.
 pub(super) const ALPHAS: [f64; 2] = [0.8, 0.6];
@@ -148,6 +153,7 @@ pub fn plate_factors(things: &Things, texel: UVec2) -> DVec4 {
         WRONG_PLATE => DVec4::ZERO,
         SHADED_PLATE => light.max(DVec3::splat(0.00392)).recip().extend(1.0),
         HIDDEN_THING => light.extend(1.0),
+        COMPLETED_PLATE => (MOST_COMPLETED * light * light).extend(ESTIMATED),
         PAINTED_THING => (MOST_PAINTED * light * light).extend(1.0),
         _ => DVec4::ONE,
     }

@@ -28,3 +28,4 @@ mod uncertainty;
 mod upright;
 mod withheld;
 mod world_scale;
+mod wrong_plate;

@@ -67,7 +67,13 @@ const ALLOWED: f64 = 1e-4;
 
 /// Errors of the colours and alpha that `source` makes.
 fn errors(source: &str) -> Errors {
-    let (device, scene) = (Device::shared(), Scrambled::new());
+    let (device, mut scene) = (Device::shared(), Scrambled::new());
+    // Some of what was not photographed has the place's pattern.
+    let plate = Raster::from_fn(scene.plate.size(), |at| match scene.plate.at(at) {
+        texel if texel.w == 0.0 && at.x % 3 == 0 => texel.truncate().extend(ESTIMATED),
+        texel => texel,
+    });
+    scene.plate = plate;
     let lit = scene.plane_grids().map(|grid| {
         let colors = Raster::from_fn(grid.size, |at| {
             DVec3::from([80, 81, 82].map(|seed| number(at, seed)))
@@ -123,6 +129,7 @@ fn plates_are_completed() {
 fn a_fault_in_the_completion_is_found() {
     let faults = [
         ("ESTIMATED: f32 = 0.25", "ESTIMATED: f32 = 0.3"),
+        ("photographed.a == ESTIMATED || ", ""),
         ("TELLS_ALL: f32 = 0.3", "TELLS_ALL: f32 = 0.31"),
         ("TELLS_NONE: f32 = 0.1", "TELLS_NONE: f32 = 0.09"),
         ("(texel)).b == 0.0", "(texel)).r == 0.0"),

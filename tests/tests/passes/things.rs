@@ -3,7 +3,8 @@
 use glam::{DMat3, DVec3, DVec4, UVec2};
 use reference::raster::Raster;
 use reference::things::{
-    BEFORE_TOY, HIDDEN_THING, PAINTED_THING, SHADED_PLATE, THING, Things, WRONG_PLATE, mark, plate_factors,
+    BEFORE_TOY, COMPLETED_PLATE, HIDDEN_THING, PAINTED_THING, SHADED_PLATE, THING, Things, WRONG_PLATE, mark,
+    plate_factors,
 };
 
 use crate::alone::{Draw, check_faults, source};
@@ -22,6 +23,7 @@ fn things() -> Things {
         BEFORE_TOY,
         WRONG_PLATE,
         HIDDEN_THING,
+        COMPLETED_PLATE,
     ];
     Things {
         codes: Raster::from_fn(UVec2::new(97, 83), |at| {
@@ -31,7 +33,7 @@ fn things() -> Things {
             let code = if is_gap {
                 0
             } else {
-                codes[at.element_sum() as usize / 6 * 11 % 7]
+                codes[at.element_sum() as usize / 6 * 11 % 8]
             };
             [code, light, light / 2, 255 - light]
         }),
@@ -113,6 +115,11 @@ fn a_fault_in_marking_things_is_found() {
         ("1.0 / max(mark.gba", "max(mark.gba"),
         ("MOST_PAINTED * mark.gba * mark.gba", "MOST_PAINTED * mark.gba"),
         ("MOST_PAINTED: f32 = 16.0", "MOST_PAINTED: f32 = 15.0"),
+        (
+            "MOST_COMPLETED * mark.gba * mark.gba, ESTIMATED",
+            "MOST_COMPLETED * mark.gba * mark.gba, 1.0",
+        ),
+        ("MOST_COMPLETED: f32 = 64.0", "MOST_COMPLETED: f32 = 63.0"),
         (" || code == CODE_PAINTED_THING", ""),
     ];
     check_faults("things", &faults, 1e-6, errors);

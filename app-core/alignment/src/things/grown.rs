@@ -243,7 +243,7 @@ fn is_of_place(colors: &Colors, color: Color) -> bool {
 }
 
 /// For each pixel, whether most pixels around it are likelier the place's.
-fn like_place(size_px: IVec2, plate: &Codes, colors: &Colors) -> Vec<bool> {
+pub(super) fn like_place(size_px: IVec2, plate: &Codes, colors: &Colors) -> Vec<bool> {
     let pixels = plate.pixels.iter();
     let is_like: Vec<bool> = pixels.map(|color| is_of_place(colors, *color)).collect();
     let around = |at: IVec2| square(at, AROUND_PX).filter_map(|at| index_in(size_px, at));

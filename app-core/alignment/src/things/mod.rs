@@ -27,6 +27,7 @@ mod measured;
 mod memory;
 mod outline;
 mod painted;
+mod pattern;
 pub(crate) mod planes;
 mod seeds;
 mod shade;
@@ -62,6 +63,7 @@ use found::Found;
 use grown::Grown;
 use known::Known;
 use memory::Place;
+use pattern::Hidden;
 use planes::{FoundPlane, is_clearer};
 pub(crate) use seeds::Colored;
 use seeds::{Seed, Seeds};
@@ -166,11 +168,27 @@ impl Sight<'_> {
         };
         let sighting = Sighting {
             size_px,
-            marks,
+            marks: self.with_pattern(marks),
             raised,
             planes: found.planes,
         };
         (Some(sighting), memory)
+    }
+
+    /// Marks of the largest level, with the place's pattern behind the toy. It depends on the marks and the
+    /// plate alone, so that it stays as long as both do.
+    fn with_pattern(&self, marks: Vec<Mark>) -> Vec<Mark> {
+        if !marks.contains(&Mark::WrongPlate) {
+            return marks;
+        }
+        let level = self.pyramid.level(0);
+        let hidden = Hidden {
+            level,
+            receivers: self.receivers,
+            coverage: &Toy::of(self, level).coverage,
+            marks: &marks,
+        };
+        hidden.completed().unwrap_or(marks)
     }
 
     /// The things of a level, in these colours.
@@ -237,7 +255,7 @@ impl Sight<'_> {
             grown,
             before,
             alone,
-            wrong: wrong.map(|wrong| wrong_plate(&wrong, toy, size_px, &compared.pixels)),
+            wrong: wrong.map(|wrong| wrong_plate(&wrong, toy, plate, &compared.pixels)),
             in_plate: in_plate.as_ref(),
             on_things,
             in_frame,

@@ -2,11 +2,13 @@
 
 use glam::IVec2;
 
+use super::codes::Codes;
+use super::colors::Colors;
 use super::groups::{groups, in_level, place_of};
-use super::grown::Grown;
+use super::grown::{Grown, like_place};
 use super::toy::Toy;
 use crate::lights::Compared;
-use crate::picture::{Mask, index_in, places};
+use crate::picture::{Mask, places};
 
 /// Difference between plate and model around a wrong part of the plate, in plates, and the margin
 /// in pixels that is wrong, too.
@@ -14,16 +16,33 @@ const DIFFERS: f32 = 0.05;
 const WRONG_PX: i32 = 2;
 
 /// Wrong part of a level's plate: everything that is connected with seeds and differs from the
-/// model; behind the toy, the area that it grew to.
-pub(super) fn wrong_plate(grown: &Grown, toy: &Toy, size_px: IVec2, compared: &[Compared]) -> Mask {
-    let differs = in_level(size_px, compared, false, |pixel| {
-        pixel.away() > DIFFERS.max(2.0 * pixel.noise)
+/// model; behind the toy, the area that it grew to, without what has the place's colours in the plate.
+///
+/// The colours are learned from all that is seen to be wrong or right, also away from the toy's shadow:
+/// a blockman on tiles had 7614 of his pixels marked, of which 2059 hide the toy in the plate, and has
+/// 2548 now; a heron on gingham 2747, of which 772 do, and 1096.
+pub(super) fn wrong_plate(grown: &Grown, toy: &Toy, plate: &Codes, compared: &[Compared]) -> Mask {
+    let size_px = plate.size_px;
+    let differs = in_level(size_px, compared, None, |pixel| {
+        Some(pixel.away() > DIFFERS.max(2.0 * pixel.noise))
     });
+    let is_behind = |at: IVec2| toy.coverage.is_near(at, WRONG_PX);
+    let has_grown = |at: IVec2| grown.of_pixel(at).is_some();
+    let mut seen = [Vec::new(), Vec::new()];
+    for ((at, differs), color) in places(size_px).zip(&differs).zip(&plate.pixels) {
+        match differs.filter(|_| !is_behind(at)) {
+            Some(true) if has_grown(at) => seen[0].push(*color),
+            Some(false) => seen[1].push(*color),
+            _ => {}
+        }
+    }
+    let [wrong, right] = seen;
+    let colors = Colors::of(wrong.into_iter(), right.into_iter());
+    let is_like_place = like_place(size_px, plate, &colors);
     let mut wrong = Mask::new(size_px);
-    for at in places(size_px) {
-        let near_toy = toy.coverage.is_near(at, WRONG_PX);
-        let differs = index_in(size_px, at).is_some_and(|index| differs[index]);
-        if grown.of_pixel(at).is_some() && (near_toy || differs) {
+    for ((at, differs), is_like_place) in places(size_px).zip(differs).zip(is_like_place) {
+        let is_wrong = differs == Some(true) || (is_behind(at) && !is_like_place);
+        if has_grown(at) && is_wrong {
             wrong.mark(at);
         }
     }

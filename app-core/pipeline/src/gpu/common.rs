@@ -21,6 +21,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "cells",
     "channels",
     "completed",
+    "estimated",
     "covered",
     "depth",
     "drawn_toy",

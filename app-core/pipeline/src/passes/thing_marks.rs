@@ -1,7 +1,9 @@
 //! Marks of objects on the device: codes of the picture in which they were detected, and the
 //! positions of that picture's pixels in a view.
 
-use app_scene::things::{HEIGHT_STEP_M, MOST_PAINTED, Mark, RaisedPoint, Things as GivenThings};
+use app_scene::things::{
+    HEIGHT_STEP_M, MOST_COMPLETED, MOST_PAINTED, Mark, RaisedPoint, Things as GivenThings,
+};
 use bytemuck::Zeroable;
 use glam::{DMat3, DMat4};
 use wgpu::TextureFormat;
@@ -16,7 +18,7 @@ pub(crate) const THING_MARKS: Mirrors = mirrors!(
     structs: [ThingsView],
     constants: [
         CODE_THING, CODE_BEFORE_TOY, CODE_WRONG_PLATE, CODE_SHADED_PLATE, CODE_HIDDEN_THING,
-        CODE_PAINTED_THING, MOST_PAINTED, HEIGHT_STEP_M,
+        CODE_PAINTED_THING, CODE_COMPLETED_PLATE, MOST_PAINTED, MOST_COMPLETED, HEIGHT_STEP_M,
     ]
 );
 
@@ -26,6 +28,7 @@ pub(crate) const CODE_WRONG_PLATE: u32 = 3;
 pub(crate) const CODE_SHADED_PLATE: u32 = 4;
 pub(crate) const CODE_HIDDEN_THING: u32 = 5;
 pub(crate) const CODE_PAINTED_THING: u32 = 6;
+pub(crate) const CODE_COMPLETED_PLATE: u32 = 7;
 
 shared_struct! {
     /// Positions of the marks' pixels in the region.
@@ -105,7 +108,7 @@ impl Things {
 }
 
 /// A mark's code and light, or the height of a thing's point and the lights' share there.
-#[allow(clippy::cast_possible_truncation, reason = "codes below 7")]
+#[allow(clippy::cast_possible_truncation, reason = "codes below 8")]
 fn texel(mark: Mark, raised: RaisedPoint) -> [u8; 4] {
     let [high, low] = raised.height().to_be_bytes();
     let of_thing = [high, low, raised.of_lights()];
@@ -114,6 +117,7 @@ fn texel(mark: Mark, raised: RaisedPoint) -> [u8; 4] {
         Mark::Thing => (CODE_THING, of_thing),
         Mark::BeforeToy => (CODE_BEFORE_TOY, of_thing),
         Mark::WrongPlate => (CODE_WRONG_PLATE, [0; 3]),
+        Mark::CompletedPlate { light } => (CODE_COMPLETED_PLATE, light),
         Mark::ShadedPlate { left } => (CODE_SHADED_PLATE, left),
         Mark::HiddenThing { light } => (CODE_HIDDEN_THING, light),
         Mark::PaintedThing { light } => (CODE_PAINTED_THING, light),
