@@ -27,6 +27,7 @@
 //#import common/spread
 //#import common/still_toy
 //#import common/gloss
+//#import common/unmixed
 
 // Offset of the whole picture, in pixels to the right and down.
 @group(1) @binding(0) var<uniform> offset_px: vec2f;
@@ -121,6 +122,11 @@ fn looks(base: vec3f, lit: vec3f, reflects: vec3f) -> vec3f {
   return lit;
 }
 
+// The model's radiance at a texel of the physical box, relative to the gain and the tint.
+fn expected_at(texel: vec2i) -> vec3f {
+  return textureLoad(appearance_base, texel, 0).rgb * seen_under(texel);
+}
+
 // Texel of the physical box of one of the four pixels around a point.
 fn physical_tap(low: vec2f, k: u32) -> vec2i {
   return physical_texel(vec2i(low)) + vec2i(vec2u(k & 1u, k >> 1u));
@@ -170,7 +176,8 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, expecte
       *is_beside = true;
       continue;
     }
-    let color = paint_color(source_texel(texel, number));
+    let source = source_texel(texel, number);
+    let color = vec4f(unmixed_factor(source), 1.0) * paint_color(source);
     let corner = vec2f(vec2u(k & 1u, k >> 1u));
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let own = bilinear * select(CARRIED_WEIGHT, 1.0, surface > 0.0) * select(1.0, OTHER_PAINT_WEIGHT, is_other);
@@ -283,7 +290,7 @@ fn fs_toy(
     let before = light_before(in_region, place, normal, physical_place, physical_normal, was_received, &after);
     relit_part = light_change(looks(base, after, reflects), looks(base, before, reflects_before));
     if is_seen_still(in_region, physical_px, clip.z / clip.w, base) {
-      let own = paint_color(physical_texel(in_region));
+      let own = vec4f(unmixed_factor(physical_texel(in_region)), 1.0) * paint_color(physical_texel(in_region));
       paint = mix(paint, relit(own.rgb, after, before, model * after), own.a * (1.0 - is_moved));
     }
   }
