@@ -10,7 +10,6 @@
 
 //#import common/fit
 //#import common/frame
-//#import common/toy_radiance
 //#import common/pixel
 //#import common/channels
 //#import common/tint_grid
@@ -42,12 +41,6 @@ const MOST_EXPECTED: f32 = 3.0;
 fn paint_at(in_box: vec2i, shown: vec3f) -> vec3f {
   if !IS_GLOSSY { return shown; }
   return max(shown - fit.gain.rgb * textureLoad(reflected, in_box, 0).rgb, vec3f(0.0));
-}
-
-// The model's radiance at a texel of the physical box, relative to the gain and the tint.
-fn expected_at(texel: vec2i) -> vec3f {
-  let lit = toy_radiance_over_base(textureLoad(gbuffer_normal, texel, 0).xyz, textureLoad(gbuffer_received, texel, 0));
-  return textureLoad(gbuffer_base, texel, 0).rgb * lit;
 }
 
 @compute @workgroup_size(8, 8)

@@ -1,16 +1,22 @@
 // One surface's part of a colour of the toy, in a soft picture that mixes those beside it.
 //
-// The importing shader declares `gbuffer_depth` and `expected_at`, the model's radiance at a texel of the
-// physical box.
+// The importing shader declares `gbuffer_depth`, `gbuffer_base`, `gbuffer_normal` and `gbuffer_received`.
 
 //#import common/globals
 //#import common/pixel
 //#import common/spread
+//#import common/toy_radiance
 
 // In a heron's picture with a known motion of 5 px the low-passed error of the toy's edge is 1.48 codes with 32
 // positions, and 1.43 with 64.
 const N_UNMIXED: u32 = 64u;
 const UNMIXED_ROW_STEP: u32 = 19u;
+
+// The model's radiance at a texel of the physical box, relative to the gain and the tint.
+fn expected_at(texel: vec2i) -> vec3f {
+  let lit = toy_radiance_over_base(textureLoad(gbuffer_normal, texel, 0).xyz, textureLoad(gbuffer_received, texel, 0));
+  return textureLoad(gbuffer_base, texel, 0).rgb * lit;
+}
 
 // Factor from the colour of the toy in a camera pixel to that of the point at its centre: the model's over
 // its mean over the spread. It depends on no tint that the mixed surfaces share.

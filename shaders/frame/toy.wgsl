@@ -27,7 +27,6 @@
 //#import common/spread
 //#import common/still_toy
 //#import common/gloss
-//#import common/unmixed
 
 // Offset of the whole picture, in pixels to the right and down.
 @group(1) @binding(0) var<uniform> offset_px: vec2f;
@@ -42,6 +41,8 @@
 // Reflected radiance of a glossy toy, relative to the gain; alpha is the visibility of the paint.
 @group(1) @binding(8) var reflected: texture_2d<f32>;
 @group(1) @binding(9) var<uniform> specular: Specular;
+// Factor from a soft picture's mixture of the toy's surfaces to the one at the pixel's centre.
+@group(1) @binding(10) var unmixed: texture_2d<f32>;
 
 // Whether the light of the camera's pixel replaces the point's own in the test for changes.
 override IS_COARSE: bool = false;
@@ -122,11 +123,6 @@ fn looks(base: vec3f, lit: vec3f, reflects: vec3f) -> vec3f {
   return lit;
 }
 
-// The model's radiance at a texel of the physical box, relative to the gain and the tint.
-fn expected_at(texel: vec2i) -> vec3f {
-  return textureLoad(appearance_base, texel, 0).rgb * seen_under(texel);
-}
-
 // Texel of the physical box of one of the four pixels around a point.
 fn physical_tap(low: vec2f, k: u32) -> vec2i {
   return physical_texel(vec2i(low)) + vec2i(vec2u(k & 1u, k >> 1u));
@@ -177,7 +173,7 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, expecte
       continue;
     }
     let source = source_texel(texel, number);
-    let color = vec4f(unmixed_factor(source), 1.0) * paint_color(source);
+    let color = unmixed_paint(source);
     let corner = vec2f(vec2u(k & 1u, k >> 1u));
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let own = bilinear * select(CARRIED_WEIGHT, 1.0, surface > 0.0) * select(1.0, OTHER_PAINT_WEIGHT, is_other);
@@ -290,7 +286,7 @@ fn fs_toy(
     let before = light_before(in_region, place, normal, physical_place, physical_normal, was_received, &after);
     relit_part = light_change(looks(base, after, reflects), looks(base, before, reflects_before));
     if is_seen_still(in_region, physical_px, clip.z / clip.w, base) {
-      let own = vec4f(unmixed_factor(physical_texel(in_region)), 1.0) * paint_color(physical_texel(in_region));
+      let own = unmixed_paint(physical_texel(in_region));
       paint = mix(paint, relit(own.rgb, after, before, model * after), own.a * (1.0 - is_moved));
     }
   }

@@ -14,12 +14,9 @@ use crate::numbers::{number, numbers};
 use crate::rim::{root, spread};
 use crate::scrambled::{Scrambled, buffers};
 
-/// A pass that imports it; it has no vertices for a whole target.
-const PASS: &str = "toy";
+/// The pass that stores the factor.
+const PASS: &str = "rim";
 const PROBE: &str = "
-@vertex fn vs_fullscreen(@builtin(vertex_index) k: u32) -> @builtin(position) vec4f {
-  return vec4f(vec2f(vec2u(k & 1u, k >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
-}
 @fragment fn fs_unmixed(@builtin(position) position: vec4f) -> @location(0) vec4f {
   return vec4f(unmixed_factor(vec2i(position.xy)), 1.0);
 }";
@@ -40,20 +37,25 @@ fn errors(source: &str) -> Errors {
     });
     let base = Raster::from_fn(BOX.size_px, |at| {
         let color = numbers(BOX.size_px, 16).at(at / 5).truncate();
-        (color * color).extend(number(at / 5, 62)).as_vec4().as_dvec4()
+        (color * color).extend(1.0).as_vec4().as_dvec4()
+    });
+    let normals = Raster::from_fn(BOX.size_px, |at| {
+        (DVec3::Y * (2.0 * number(at / 5, 62) - 1.0))
+            .extend(0.0)
+            .as_vec4()
+            .as_dvec4()
     });
     let received = numbers(BOX.size_px, 17).map(|light: DVec4| light.as_vec4().as_dvec4());
     let model = Raster::from_fn(BOX.size_px, |at| {
-        let normal = DVec3::Y * (2.0 * base.at(at).w - 1.0);
-        let light = toy_radiance(&scene.solution, normal, received.at(at));
+        let light = toy_radiance(&scene.solution, normals.at(at).truncate(), received.at(at));
         (depth.at(at) > 0.0).then(|| base.at(at).truncate() * light)
     });
     let sharp = scene.stand.globals(&scene.rect).with_boxes(&BOX, &BOX);
     let (toy, maps) = (
         device.depth(&depth),
-        [&base, &received].map(|map| device.map(map)),
+        [&normals, &received, &base].map(|map| device.map(map)),
     );
-    let own: Vec<_> = [(1, &toy), (2, &maps[0]), (3, &maps[1])]
+    let own: Vec<_> = [(6, &toy), (7, &maps[0]), (8, &maps[1]), (9, &maps[2])]
         .map(|(slot, map)| (slot, wgpu::BindingResource::TextureView(map)))
         .into();
     let source = format!("{source}{PROBE}");
