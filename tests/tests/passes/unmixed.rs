@@ -1,0 +1,103 @@
+//! `common/unmixed` on scrambled inputs, for a toy of specks and patches.
+
+use app_core::wgpu;
+use app_pipeline::geometry::rect::PixelRect;
+use glam::{DVec3, DVec4, UVec2};
+use reference::fit::toy_radiance;
+use reference::raster::{Raster, texels_of};
+use reference::unmixed::unmixed_factor;
+
+use crate::alone::{Draw, check_faults, source};
+use crate::device::Device;
+use crate::errors::{Errors, channels};
+use crate::numbers::{number, numbers};
+use crate::rim::{root, spread};
+use crate::scrambled::{Scrambled, buffers};
+
+/// The pass that stores the factor.
+const PASS: &str = "rim";
+const PROBE: &str = "
+@fragment fn fs_unmixed(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  return vec4f(unmixed_factor(vec2i(position.xy)), 1.0);
+}";
+const BOX: PixelRect = PixelRect {
+    origin_px: UVec2::new(14, 9),
+    size_px: UVec2::new(83, 71),
+};
+/// One of 64 positions may lie in another texel by rounding: up to a tenth of a factor, in few texels.
+const ALLOWED: (f64, f64) = (1e-3, 0.03);
+const ALLOWED_ANYWHERE: f64 = 0.3;
+
+/// Factors of a picture of a blur, or of one that is as sharp as its pixels.
+fn errors(source: &str) -> Errors {
+    let (device, scene) = (Device::shared(), Scrambled::new());
+    let depth = Raster::from_fn(BOX.size_px, |at| {
+        let is_toy = number(at / 7, 170) < 0.7 || number(at, 171) < 0.03;
+        if is_toy { 0.25 } else { 0.0 }
+    });
+    let base = Raster::from_fn(BOX.size_px, |at| {
+        let color = numbers(BOX.size_px, 16).at(at / 5).truncate();
+        (color * color).extend(1.0).as_vec4().as_dvec4()
+    });
+    let normals = Raster::from_fn(BOX.size_px, |at| {
+        (DVec3::Y * (2.0 * number(at / 5, 62) - 1.0))
+            .extend(0.0)
+            .as_vec4()
+            .as_dvec4()
+    });
+    let received = numbers(BOX.size_px, 17).map(|light: DVec4| light.as_vec4().as_dvec4());
+    let model = Raster::from_fn(BOX.size_px, |at| {
+        let light = toy_radiance(&scene.solution, normals.at(at).truncate(), received.at(at));
+        (depth.at(at) > 0.0).then(|| base.at(at).truncate() * light)
+    });
+    let sharp = scene.stand.globals(&scene.rect).with_boxes(&BOX, &BOX);
+    let (toy, maps) = (
+        device.depth(&depth),
+        [&normals, &received, &base].map(|map| device.map(map)),
+    );
+    let own: Vec<_> = [(6, &toy), (7, &maps[0]), (8, &maps[1]), (9, &maps[2])]
+        .map(|(slot, map)| (slot, wgpu::BindingResource::TextureView(map)))
+        .into();
+    let source = format!("{source}{PROBE}");
+    let [_, fit] = scene.shared(device);
+    let drawn = [false, true].map(|is_soft| {
+        let globals = if is_soft {
+            sharp.clone().with_spread(spread())
+        } else {
+            sharp.clone()
+        };
+        let shared = [device.uniform(&globals), fit.clone()];
+        let draw = Draw::of(&source, "fs_unmixed", BOX.size_px);
+        device.draw(draw, [&buffers(0, &shared), &own])
+    });
+    let pairs = texels_of(BOX.size_px).flat_map(|at| {
+        let [sharp, soft] = [0, 1].map(|k: usize| drawn[k].at(at).truncate());
+        let expected = unmixed_factor(&model, root(), at);
+        channels(sharp, DVec3::ONE).chain(channels(soft, expected))
+    });
+    Errors::between(pairs.collect::<Vec<_>>())
+}
+
+#[test]
+fn one_surface_of_a_mixture() {
+    errors(&source(PASS)).check("factors", ALLOWED, ALLOWED_ANYWHERE);
+}
+
+#[test]
+fn a_fault_in_the_factor_is_found() {
+    let faults = [
+        ("UNMIXED_ROW_STEP: u32 = 19u", "UNMIXED_ROW_STEP: u32 = 1u"),
+        ("N_UNMIXED: u32 = 64u", "N_UNMIXED: u32 = 8u"),
+        (
+            "if !is_soft() || textureLoad(gbuffer_depth",
+            "if textureLoad(gbuffer_depth",
+        ),
+        (
+            "textureLoad(gbuffer_depth, tap, 0) > 0.0",
+            "textureLoad(gbuffer_depth, tap, 0) >= 0.0",
+        ),
+        ("(expected_at(texel) + DARKEST_USABLE)", "expected_at(texel)"),
+        ("spread_position_px(lattice) + beside_px(k)", "beside_px(k)"),
+    ];
+    check_faults(PASS, &faults, ALLOWED_ANYWHERE, errors);
+}
