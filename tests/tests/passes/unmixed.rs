@@ -89,15 +89,14 @@ fn a_fault_in_the_factor_is_found() {
         ("UNMIXED_ROW_STEP: u32 = 19u", "UNMIXED_ROW_STEP: u32 = 1u"),
         ("N_UNMIXED: u32 = 64u", "N_UNMIXED: u32 = 8u"),
         (
-            "if !is_soft() || textureLoad(gbuffer_depth",
-            "if textureLoad(gbuffer_depth",
-        ),
-        (
             "textureLoad(gbuffer_depth, tap, 0) > 0.0",
             "textureLoad(gbuffer_depth, tap, 0) >= 0.0",
         ),
         ("(expected_at(texel) + DARKEST_USABLE)", "expected_at(texel)"),
-        ("spread_position_px(lattice) + beside_px(k)", "beside_px(k)"),
+        (
+            "0.5 + spread_position_px(lattice) + beside_px(k)",
+            "0.5 + beside_px(k)",
+        ),
     ];
     check_faults(PASS, &faults, ALLOWED_ANYWHERE, errors);
 }

@@ -127,7 +127,9 @@ fn sides(level: &Level, grown: Option<&Grown>, top: &SeenReceiver, others: &[See
     let Some(height_m) = others.first().and_then(|table| height_m(top, table)) else {
         return Vec::new();
     };
-    let sides = OUTWARD.into_iter().map(|outward| (outward, side(top, outward, height_m)));
+    let sides = OUTWARD
+        .into_iter()
+        .map(|outward| (outward, side(top, outward, height_m)));
     let sides = sides.filter(|(_, (plane, _))| !others.iter().any(|other| is_along(plane, other)));
     let seen = sides.filter_map(|(outward, (plane, half_m))| {
         let all: Vec<SeenReceiver> = [&plane, top].into_iter().chain(others).cloned().collect();
