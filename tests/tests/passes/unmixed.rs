@@ -62,9 +62,9 @@ fn errors(source: &str) -> Errors {
     let [_, fit] = scene.shared(device);
     let drawn = [false, true].map(|is_soft| {
         let globals = if is_soft {
-            sharp.clone().with_spread(spread())
+            sharp.with_spread(spread())
         } else {
-            sharp.clone()
+            sharp
         };
         let shared = [device.uniform(&globals), fit.clone()];
         let draw = Draw::of(&source, "fs_unmixed", BOX.size_px);
