@@ -5,18 +5,15 @@
 // The part is counted over positions with the picture's spread of a point. In a sharp picture only
 // pixels inside the outline are used, which are not mixed.
 //
-// The toy's own colour in turn mixes its surfaces; it is unmixed by a factor (`common/unmixed`).
-//
-// Reads: plate, visibility, ambient, residual cells, gbuffer, fit. Writes: in the physical box, the
-// mixed-in colour relative to the gain, with the part of the pixel that shows the toy in alpha; the
-// factor. CPU reference: tests/reference/src/rim.rs, and unmixed.rs for the factor.
+// Reads: plate, visibility, ambient, residual cells, depth of the physical toy. Writes: in the
+// physical box, the mixed-in colour relative to the gain; alpha is the part of the pixel that shows
+// the toy. CPU reference: tests/reference/src/rim.rs.
 // Source: Chuang et al. 2001 (matting: colours are unmixed if the part is known).
 
 //#import common/model
 //#import common/cells
 //#import common/spread
 //#import common/reflection
-//#import common/unmixed
 //#import common/fullscreen
 
 @group(1) @binding(1) var<storage, read> cells: array<vec4f>;
@@ -25,9 +22,6 @@
 @group(1) @binding(4) var ambient: texture_2d<f32>;
 @group(1) @binding(5) var ambient_sampler: sampler;
 @group(1) @binding(6) var gbuffer_depth: texture_depth_2d;
-@group(1) @binding(7) var gbuffer_normal: texture_2d<f32>;
-@group(1) @binding(8) var gbuffer_received: texture_2d<f32>;
-@group(1) @binding(9) var gbuffer_base: texture_2d<f32>;
 
 const N_POSITIONS: u32 = 64u;
 // Column and row step of the lattice from one position to the next.
@@ -39,7 +33,9 @@ fn part_of_toy(at: vec2f) -> f32 {
   var n_toy = 0u;
   for (var k = 0u; k < N_POSITIONS; k++) {
     let lattice = (vec2f(k * POSITION_STEPS % N_POSITIONS) + 0.5) / f32(N_POSITIONS);
-    let texel = vec2i(floor(at + spread_position_px(lattice) + beside_px(k)));
+    // The distance over which the mean over the neighbouring texels would spread it.
+    let beside_px = sqrt(2.0 * globals.soft_side) * (2.0 * vec2f(vec2u(k, k >> 1u) & vec2u(1u)) - 1.0);
+    let texel = vec2i(floor(at + spread_position_px(lattice) + beside_px));
     let is_inside = all(texel >= vec2i(0)) && all(texel < size);
     let depth = textureLoad(gbuffer_depth, clamp(texel, vec2i(0), size - 1), 0);
     n_toy += select(0u, 1u, is_inside && depth > 0.0);
@@ -60,21 +56,11 @@ fn shown_receiver(texel: vec2i) -> vec4f {
   return vec4f(b.rgb * max(model + cell_at(point).rgb, vec3f(0.0)) + reflected(point, v), 1.0);
 }
 
-// The receiver's colour in a pixel around a position in the physical box, and the toy's part of it.
-fn mixed_in(at: vec2f) -> vec4f {
-  let part = part_of_toy(at);
+@fragment
+fn fs_mix(@builtin(position) position: vec4f) -> @location(0) vec4f {
+  let part = part_of_toy(position.xy);
   if part == 0.0 || part == 1.0 { return vec4f(0.0, 0.0, 0.0, part); }
-  let receiver = shown_receiver(region_texel(vec2i(at)));
+  let receiver = shown_receiver(region_texel(vec2i(position.xy)));
   // An unknown colour is not unmixed.
   return vec4f(receiver.rgb, select(1.0, part, receiver.a == 1.0));
-}
-
-struct Mixture {
-  @location(0) mixed: vec4f,
-  @location(1) unmixed: vec4f,
-}
-
-@fragment
-fn fs_mix(@builtin(position) position: vec4f) -> Mixture {
-  return Mixture(mixed_in(position.xy), vec4f(unmixed_factor(vec2i(position.xy)), 1.0));
 }

@@ -1,7 +1,7 @@
 // Paint of the toy as the camera's pixels show it, relit.
 //
 // The importing shader declares `appearance_base`, `appearance_received`, `appearance_source`, `rim`,
-// `unmixed`, `reflected` and IS_GLOSSY.
+// `reflected` and IS_GLOSSY.
 
 //#import common/fit
 //#import common/frame
@@ -69,13 +69,6 @@ fn paint_color(texel: vec2i) -> vec4f {
   if !IS_GLOSSY { return vec4f(color, 1.0); }
   let there = textureLoad(reflected, texel, 0);
   return vec4f(max(color - fit.gain.rgb * there.rgb, LEAST_PAINT * color), there.a);
-}
-
-// The same without other surfaces of the toy that a soft picture mixes into it.
-fn unmixed_paint(texel: vec2i) -> vec4f {
-  let paint = paint_color(texel);
-  if !is_soft() { return paint; }
-  return vec4f(textureLoad(unmixed, texel, 0).rgb, 1.0) * paint;
 }
 
 // Factor for the model's colour at a point of which no camera pixel shows the paint: the camera's

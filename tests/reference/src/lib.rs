@@ -43,7 +43,6 @@ pub mod soften;
 pub mod thing_rim;
 pub mod things;
 pub mod tint;
-pub mod unmixed;
 pub mod validity;
 pub mod visibility;
 pub mod withhold;

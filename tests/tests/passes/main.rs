@@ -60,6 +60,5 @@ mod thing_rim;
 mod things;
 mod tint;
 mod toy;
-mod unmixed;
 mod validity;
 mod withheld;

@@ -10,7 +10,7 @@ use reference::rim::{Learned, part_of_toy, shown_receiver};
 use crate::alone::{Draw, check_faults, source};
 use crate::device::Device;
 use crate::errors::Errors;
-use crate::numbers::{number, numbers};
+use crate::numbers::number;
 use crate::scrambled::{N_CELLS, Scrambled, buffers, views};
 
 /// Relative to colours up to 10.
@@ -23,7 +23,7 @@ const BOX: PixelRect = PixelRect {
     size_px: UVec2::new(83, 71),
 };
 
-pub(crate) fn spread() -> Spread {
+fn spread() -> Spread {
     Spread {
         xx_px2: 2.5,
         xy_px2: -0.8,
@@ -33,7 +33,7 @@ pub(crate) fn spread() -> Spread {
 
 /// The root of the blur and a pixel's own, without that of means over three by three texels; and
 /// the root of the latter. Computed by hand.
-pub(crate) fn root() -> ([f64; 3], f64) {
+fn root() -> ([f64; 3], f64) {
     let narrowest: f64 = 1.8 - 1.13_f64.sqrt();
     let of_means = 0.5 * narrowest.min(1.0);
     let Spread {
@@ -85,10 +85,6 @@ fn errors(source: &str) -> Errors {
     own.extend(views(2, &maps));
     own.push((5, wgpu::BindingResource::Sampler(&linear)));
     own.push((6, wgpu::BindingResource::TextureView(&toy)));
-    // The factors of the other target are tested in `unmixed.rs`.
-    let surfaces = [16, 17, 18].map(|seed| device.map(&numbers(BOX.size_px, seed)));
-    let slots = (7..).zip(&surfaces);
-    own.extend(slots.map(|(slot, map)| (slot, wgpu::BindingResource::TextureView(map))));
     let draw = Draw::of(source, "fs_mix", BOX.size_px);
     let actual = device.draw(draw, [&buffers(0, &shared), &own]);
     let pictures = scene.pictures(0);
@@ -136,14 +132,14 @@ fn a_fault_in_the_mixture_is_found() {
             "globals.spread.y * deviations.x",
             "globals.spread.z * deviations.x",
         ),
-        ("is_inside && depth > 0.0", "is_inside && depth >= 0.0"),
+        ("depth > 0.0", "depth >= 0.0"),
         ("if b.a == 0.0 {", "if b.a < 0.0 {"),
         ("model + cell_at(point).rgb", "model - cell_at(point).rgb"),
         (
             "max(model + cell_at(point).rgb, vec3f(0.0))",
             "(model + cell_at(point).rgb)",
         ),
-        ("region_texel(vec2i(at))", "vec2i(at)"),
+        ("region_texel(vec2i(position.xy))", "vec2i(position.xy)"),
     ];
     check_faults("rim", &faults, ALLOWED, errors);
 }

@@ -68,7 +68,6 @@ const TEXTS: &[(&str, &str)] = texts![
     "toy_radiance",
     "two_receivers",
     "unknown",
-    "unmixed",
 ];
 
 /// The WGSL of a part; `None` if there is no such part.

@@ -391,7 +391,7 @@ impl CapturePath<'_> {
             cells: &self.state.residual.cells,
             plate: &self.captured.plate.view,
             observed: self.observed(),
-            gbuffer: &self.captured.by_pass.gbuffer,
+            gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
         }
     }
 

@@ -131,7 +131,7 @@ impl FramePath<'_> {
             gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
             self_shadow: [&self.drawn.light.self_shadow, &self.captured.light.self_shadow],
             tints: &self.state.tints,
-            rim: &self.captured.by_pass.rim,
+            rim: self.captured.by_pass.rim.mixed.as_ref().map(|mixed| &mixed.view),
             reflected: self.captured.by_pass.gloss.view(),
             specular: &self.region.specular,
         }

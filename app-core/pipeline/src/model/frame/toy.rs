@@ -14,7 +14,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec, Stream, nearest_surface};
 use crate::gpu::recorder::{Attachment, Recorder, discarded, sampled};
 use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::model::capture::{appearance, rim};
+use crate::model::capture::appearance;
 use crate::model::frame::moved_mask::MOVED_FORMAT;
 use crate::model::lighting::self_shadow;
 use crate::model::lighting::self_shadow::{GROUP_SELF_SHADOW, SELF_SHADOW_GROUP};
@@ -39,7 +39,6 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
     Slot::uniform::<Specular>(),
-    Slot::Texture,
 ];
 /// Streams of a draw with materials, followed by the physical pose.
 const STREAMS: &[Stream] = &[
@@ -115,8 +114,8 @@ pub(crate) struct Inputs<'a> {
     /// Self-shadow of the shown pose, and of the physical one.
     pub(crate) self_shadow: [&'a self_shadow::Targets; 2],
     pub(crate) tints: &'a Tints,
-    /// What a soft picture mixes into the toy's colours.
-    pub(crate) rim: &'a rim::Targets,
+    /// Colours that a soft picture mixes into those of the toy.
+    pub(crate) rim: Option<&'a TextureView>,
     /// Radiance that a glossy toy reflected.
     pub(crate) reflected: Option<&'a TextureView>,
     pub(crate) specular: &'a Buffer,
@@ -259,9 +258,7 @@ fn sides(gpu: &Gpu, (format, n_samples): (TextureFormat, u32), is_glossy: bool) 
 }
 
 impl<'a> Inputs<'a> {
-    fn resources(&self) -> [Resource<'a>; 11] {
-        // A sharp picture binds a placeholder that is not read.
-        let of_soft = |drawn: &'a Option<Texture>| &drawn.as_ref().unwrap_or(&self.appearance.base).view;
+    fn resources(&self) -> [Resource<'a>; 10] {
         [
             Resource::PerUse,
             self.gbuffer_depth.into(),
@@ -270,10 +267,10 @@ impl<'a> Inputs<'a> {
             (&self.tints.grid).into(),
             (&self.tints.cells).into(),
             (&self.appearance.source.view).into(),
-            of_soft(&self.rim.mixed).into(),
+            // A sharp picture binds a placeholder that is not read.
+            self.rim.unwrap_or(&self.appearance.base.view).into(),
             self.reflected.unwrap_or(&self.appearance.base.view).into(),
             self.specular.into(),
-            of_soft(&self.rim.unmixed).into(),
         ]
     }
 }
