@@ -98,9 +98,11 @@ pub(super) fn face_contrast(side: &Side, plane_from_camera: &DMat4, level: &Leve
     let (Some(px_m), Some(face_m)) = (seen.px_m(), seen.face_m()) else {
         return 0.0;
     };
-    let at = |step: i32, down_m: f64| seen.contrast((px_m * step_px(step), down_m), BESIDE_PX * px_m);
-    let both = |step: i32| Some(at(step, 0.0)?.min(at(step, face_m)?));
-    (-AS_LISTED..=AS_LISTED).filter_map(both).fold(0.0, f64::max)
+    let smaller = |step: i32| {
+        let [upper, lower] = [0.0, face_m].map(|down_m| seen.line(px_m, step, down_m));
+        upper.min(lower)
+    };
+    (-AS_LISTED..=AS_LISTED).map(smaller).fold(0.0, f64::max)
 }
 
 /// The step of most contrast.
@@ -154,11 +156,14 @@ impl<'a> SeenSide<'a> {
 
     /// Contrast of the edge at a step, with that at the face's foot if there is one.
     fn edge(&self, px_m: f64, step: i32, face_m: Option<f64>) -> f64 {
-        let at = |down_m: f64| {
-            let contrast = self.contrast((px_m * step_px(step), down_m), BESIDE_PX * px_m);
-            contrast.unwrap_or(0.0)
-        };
+        let at = |down_m: f64| self.line(px_m, step, down_m);
         face_m.map_or(at(0.0), |face_m| (at(0.0) * at(face_m)).sqrt())
+    }
+
+    /// Contrast of a line at a step, some distance below the side; 0 if too little of it is visible.
+    fn line(&self, px_m: f64, step: i32, down_m: f64) -> f64 {
+        let contrast = self.contrast((px_m * step_px(step), down_m), BESIDE_PX * px_m);
+        contrast.unwrap_or(0.0)
     }
 
     /// Whether the camera is on the outer side.

@@ -44,6 +44,8 @@ pub(crate) struct Memory {
     marks: (IVec2, Vec<Mark>),
     /// The points of things at these pixels; empty if there are none.
     raised: Vec<RaisedPoint>,
+    /// Marks without and with the place's pattern; `None` if the plate is not wrong.
+    pattern: Option<[Vec<Mark>; 2]>,
 }
 
 impl Memory {
@@ -55,6 +57,7 @@ impl Memory {
             known,
             marks: (IVec2::ZERO, Vec::new()),
             raised: Vec::new(),
+            pattern: None,
         }
     }
 
@@ -140,6 +143,20 @@ impl Memory {
         let (known_px, known) = &self.marks;
         let is_same = *known_px == size_px && known == marks && self.is_of_same_view(now);
         is_same.then_some(&self.raised)
+    }
+
+    /// Marks with the place's pattern, if neither those without it nor light, toy and camera have changed.
+    pub(super) fn completed(&self, now: &Self, marks: &[Mark]) -> Option<&[Mark]> {
+        let [without, with] = self.pattern.as_ref()?;
+        (without == marks && self.is_of_same_view(now)).then_some(with)
+    }
+
+    /// With its picture's marks without and with the place's pattern.
+    pub(super) fn with_pattern(self, without: Vec<Mark>, with: Vec<Mark>) -> Self {
+        Self {
+            pattern: Some([without, with]),
+            ..self
+        }
     }
 
     /// Whether neither light, toy nor camera have changed.

@@ -166,29 +166,40 @@ impl Sight<'_> {
             Colored::Otherwise => marks,
             Colored::Alike => self.marks_of_standing(level, &found, (size_px, marks), &raised),
         };
+        let (marks, memory) = self.with_pattern(marks, memory);
         let sighting = Sighting {
             size_px,
-            marks: self.with_pattern(marks),
+            marks,
             raised,
             planes: found.planes,
         };
         (Some(sighting), memory)
     }
 
-    /// Marks of the largest level, with the place's pattern behind the toy. It depends on the marks and the
-    /// plate alone, so that it stays as long as both do.
-    fn with_pattern(&self, marks: Vec<Mark>) -> Vec<Mark> {
+    /// Marks of the largest level, with the place's pattern behind the toy, and the memory of this picture
+    /// with both. The pattern depends on the marks and the plate alone: it is searched anew only if the
+    /// marks or the view have changed.
+    fn with_pattern(&self, marks: Vec<Mark>, now: Memory) -> (Vec<Mark>, Memory) {
         if !marks.contains(&Mark::WrongPlate) {
-            return marks;
+            return (marks, now);
         }
+        let known = self.memory.and_then(|before| before.completed(&now, &marks));
+        let completed = known.map(<[Mark]>::to_vec);
+        let completed = completed.or_else(|| self.completed(&marks));
+        let completed = completed.unwrap_or_else(|| marks.clone());
+        let memory = now.with_pattern(marks, completed.clone());
+        (completed, memory)
+    }
+
+    fn completed(&self, marks: &[Mark]) -> Option<Vec<Mark>> {
         let level = self.pyramid.level(0);
         let hidden = Hidden {
             level,
             receivers: self.receivers,
             coverage: &Toy::of(self, level).coverage,
-            marks: &marks,
+            marks,
         };
-        hidden.completed().unwrap_or(marks)
+        hidden.completed()
     }
 
     /// The things of a level, in these colours.

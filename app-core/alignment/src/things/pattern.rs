@@ -8,6 +8,7 @@
 
 use glam::{DMat3, DVec2, DVec3, IVec2};
 
+use super::feet::pixel_of;
 use super::shade::logarithm;
 use crate::picture::{Color, Level, Mask, index_in, places, square};
 use crate::raster::Coverage;
@@ -80,15 +81,11 @@ impl Hidden<'_> {
         let around = self.around(&hidden);
         let [searched, checked] = [0, 1].map(|first| spread(&around, first));
         let offsets = self.offsets(middle_px, &searched)?;
-        let smooth = residual(
-            &checked
-                .iter()
-                .map(|one| (one.place_m, one.color))
-                .collect::<Vec<_>>(),
-        )?;
+        let colors: Vec<(DVec2, Color)> = checked.iter().map(|one| (one.place_m, one.color)).collect();
+        let smooth = even_light(&colors)?.differs;
         let best_m = self.offset_m(middle_px, offsets.first()?.px)?;
-        let left = residual(&self.pairs(&checked, best_m))?.differs;
-        if left >= REPEATS * REPEATS * smooth.differs {
+        let left = even_light(&self.pairs(&checked, best_m))?.differs;
+        if left >= REPEATS * REPEATS * smooth {
             return None;
         }
         let mut marks = self.marks.to_vec();
@@ -97,7 +94,7 @@ impl Hidden<'_> {
             let Some(offset_m) = self.offset_m(middle_px, offset.px) else {
                 continue;
             };
-            let Some(light) = residual(&self.pairs(&around, offset_m)) else {
+            let Some(light) = even_light(&self.pairs(&around, offset_m)) else {
                 continue;
             };
             open.retain(|at| match self.light_at(*at, offset_m, &light) {
@@ -133,21 +130,14 @@ impl Hidden<'_> {
         (on == 0).then_some(DVec2::new(point.x, point.z))
     }
 
-    /// Where the picture shows a place in the plane.
-    fn px_of(&self, place_m: DVec2) -> Option<DVec2> {
-        let plane_from_camera = self.receivers.first()?.plane_from_camera;
-        let point = DVec3::new(place_m.x, 0.0, place_m.y);
-        let point = plane_from_camera.inverse().transform_point3(point);
-        self.level.intrinsics.pixel_of(point)
-    }
-
     fn offset_m(&self, middle_px: DVec2, offset_px: DVec2) -> Option<DVec2> {
         Some(self.place_m(middle_px + offset_px)? - self.place_m(middle_px)?)
     }
 
     /// The logarithm of the plate's colour at a place in the plane, if it shows the receiver.
     fn color_at(&self, place_m: DVec2) -> Option<Color> {
-        let px = self.px_of(place_m)?;
+        let point = DVec3::new(place_m.x, 0.0, place_m.y);
+        let px = pixel_of(point, self.receivers.first()?, self.level)?;
         let at = px.floor().as_ivec2();
         let is_clear = square(at, 1).all(|at| self.mark(at) == Some(Mark::None));
         self.place_m(px).filter(|_| is_clear)?;
@@ -285,7 +275,7 @@ impl Light {
 }
 
 /// The even light that explains logarithms of colours best; `None` if their places are too few.
-fn residual(pairs: &[(DVec2, Color)]) -> Option<Light> {
+fn even_light(pairs: &[(DVec2, Color)]) -> Option<Light> {
     let n = pairs.len() as f64;
     let origin_m = pairs.iter().map(|(place_m, _)| *place_m).sum::<DVec2>() / n;
     let mut square = DMat3::ZERO;

@@ -26,7 +26,8 @@ const MOST_PIXELS: usize = 2500;
 /// Least shadowed pixels that a level and a tilted plane need; the same for one that is beyond doubt,
 /// and its largest loss over the smaller one of the known receivers and of no shadow at all.
 /// Where a husky's tail crosses two books, 66 and 78 pixels have 2e-4 and .01 of it; 160 on a llama's ramp
-/// have .01 and .03, and .08 in a light that is a degree off. Four mugs have .75 and more, or no such pixel.
+/// have .01 and .03, and .08 in a light that is a degree off. Mugs have .43 and more, or no
+/// such pixel.
 const LEAST_SHADOWED: [usize; 2] = [90, 250];
 const LEAST_BEYOND_DOUBT: [usize; 2] = [45, 90];
 const BEYOND_DOUBT: [f64; 2] = [0.03, 0.1];
