@@ -12,7 +12,6 @@
 // CPU reference: tests/reference/src/appearance.rs.
 
 //#import common/globals
-//#import common/hemispheres
 //#import common/depth
 //#import common/fullscreen
 //#import common/source
@@ -20,19 +19,12 @@
 
 @group(1) @binding(0) var validity: texture_2d<f32>;
 @group(1) @binding(1) var gbuffer_depth: texture_depth_2d;
-@group(1) @binding(2) var gbuffer_normal: texture_2d<f32>;
-@group(1) @binding(3) var gbuffer_received: texture_2d<f32>;
-@group(1) @binding(4) var gbuffer_base: texture_2d<f32>;
+@group(1) @binding(2) var gbuffer_received: texture_2d<f32>;
+@group(1) @binding(3) var gbuffer_base: texture_2d<f32>;
 
 // Added to the squared distance of a pixel at another depth, which counts only if there is no
 // other.
 const OTHER_SURFACE: i32 = 64;
-// Base colour, and the part of the surface's view that lies above the horizon.
-fn base_at(texel: vec2i) -> vec4f {
-  let normal = textureLoad(gbuffer_normal, texel, 0).xyz;
-  return vec4f(textureLoad(gbuffer_base, texel, 0).rgb, hemispheres(normal).x);
-}
-
 fn is_one_surface(texel: vec2i) -> bool {
   return textureLoad(validity, texel, 0).g > 0.0;
 }
@@ -75,5 +67,5 @@ fn fs_clean(@builtin(position) at: vec4f) -> Appearance {
   let number = nearest_source(texel);
   if number == NO_SOURCE { return Appearance(vec4f(0.0), vec4f(0.0), source_of(number)); }
   let from_texel = source_texel(texel, number);
-  return Appearance(textureLoad(gbuffer_received, from_texel, 0), base_at(from_texel), source_of(number));
+  return Appearance(textureLoad(gbuffer_received, from_texel, 0), textureLoad(gbuffer_base, from_texel, 0), source_of(number));
 }

@@ -1,12 +1,13 @@
 // The toy in its physical pose as the camera sees it: base colour, normal, received light and depth.
 //
 // Reads: physical positions and normals in anchor space, materials, depth maps from the lights. Writes: base colour
-// (linear, alpha 1 on the toy), unit normal in anchor space and the material's index, each light's cosine times its
+// (linear, the part of the surface's view above the horizon in alpha), unit normal in anchor space and the material's index, each light's cosine times its
 // visibility, reversed depth.
 
 //#import common/self_shadow
 //#import common/material
 //#import common/behind
+//#import common/hemispheres
 
 struct Vertex {
   @builtin(instance_index) material: u32,
@@ -46,8 +47,10 @@ fn fs_describe(
   @location(3) in_anchor: vec3f,
   @location(4) @interpolate(flat, either) material: u32,
 ) -> GbufferTexel {
-  let base = vec4f(base_color(material, uv, color), 1.0);
+  let base = base_color(material, uv, color);
   if is_behind_receiver(at.xy + globals.physical_box_origin_px, at.w) { discard; }
   let normal = unit_normal(interpolated_normal);
-  return GbufferTexel(base, vec4f(normal, f32(material)), light_received(true, normal, in_anchor));
+  return GbufferTexel(
+    vec4f(base, hemispheres(normal).x), vec4f(normal, f32(material)), light_received(true, normal, in_anchor)
+  );
 }

@@ -33,9 +33,7 @@ fn part_of_toy(at: vec2f) -> f32 {
   var n_toy = 0u;
   for (var k = 0u; k < N_POSITIONS; k++) {
     let lattice = (vec2f(k * POSITION_STEPS % N_POSITIONS) + 0.5) / f32(N_POSITIONS);
-    // The distance over which the mean over the neighbouring texels would spread it.
-    let beside_px = sqrt(2.0 * globals.soft_side) * (2.0 * vec2f(vec2u(k, k >> 1u) & vec2u(1u)) - 1.0);
-    let texel = vec2i(floor(at + spread_position_px(lattice) + beside_px));
+    let texel = vec2i(floor(at + spread_position_px(lattice) + beside_px(k)));
     let is_inside = all(texel >= vec2i(0)) && all(texel < size);
     let depth = textureLoad(gbuffer_depth, clamp(texel, vec2i(0), size - 1), 0);
     n_toy += select(0u, 1u, is_inside && depth > 0.0);

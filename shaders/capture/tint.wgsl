@@ -2,21 +2,21 @@
 //
 // Each pixel that shows one surface of the toy, and is not clipped, adds its colour, and the one
 // expected from base colour, gain and fitted light, to the cell that contains its point. In a soft
-// picture a pixel that another surface is mixed into counts less. Sums are of integers: their order
-// does not matter.
+// picture the colour is unmixed, and a pixel that another surface is mixed into counts less. Sums are
+// of integers: their order does not matter.
 //
 // Reads: frame, validity, gbuffer, fit, reflection of a glossy toy. Writes: sums of the finest
 // cells. CPU reference: tests/reference/src/tint.rs.
 
 //#import common/fit
 //#import common/frame
-//#import common/toy_radiance
 //#import common/pixel
 //#import common/channels
 //#import common/tint_grid
 //#import common/tint_cells
 //#import common/marks
 //#import common/toy_point
+//#import common/unmixed
 
 // Sampling stride in pixels along each side, chosen so that no sum overflows.
 @group(1) @binding(0) var<uniform> stride_px: u32;
@@ -51,16 +51,14 @@ fn cs_add(@builtin(global_invocation_id) id: vec3u) {
   let in_box = physical_texel(vec2i(texel));
   let one_surface = marks_at(vec2i(texel)).g;
   if !is_in_physical_box(in_box) || one_surface == 0.0 { return; }
-  let surface = textureLoad(gbuffer_normal, in_box, 0);
-  let lit = toy_radiance_over_base(surface.xyz, textureLoad(gbuffer_received, in_box, 0));
-  let expected = fit.gain.rgb * textureLoad(gbuffer_base, in_box, 0).rgb * lit;
+  let expected = fit.gain.rgb * expected_at(in_box);
   let seen = frame_at(vec2i(texel));
   if largest(seen) > BRIGHTEST_USABLE { return; }
   if IS_GLOSSY && textureLoad(reflected, in_box, 0).a < 1.0 { return; }
-  let shown = paint_at(in_box, seen);
+  let shown = unmixed_factor(in_box) * paint_at(in_box, seen);
   let place = tint_place(seen_in_anchor(vec2f(texel) + 0.5, textureLoad(gbuffer_depth, in_box, 0)));
   let cell = vec3u(clamp(place, vec3f(0.0), vec3f(f32(TINT_SIDE - 1u))));
-  let first = N_TINT_SUMS * (TINT_CELLS * tint_grid_of(u32(surface.w)) + tint_index(cell, TINT_SIDE));
+  let first = N_TINT_SUMS * (TINT_CELLS * tint_grid_of(u32(textureLoad(gbuffer_normal, in_box, 0).w)) + tint_index(cell, TINT_SIDE));
   for (var channel = 0u; channel < 3u; channel++) {
     atomicAdd(&sums[first + channel], u32(one_surface * shown[channel] * TINT_UNIT));
     atomicAdd(&sums[first + 3u + channel], u32(one_surface * min(expected[channel], MOST_EXPECTED) * TINT_UNIT));

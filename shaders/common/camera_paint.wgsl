@@ -1,9 +1,10 @@
 // Paint of the toy as the camera's pixels show it, relit.
 //
 // The importing shader declares `appearance_base`, `appearance_received`, `appearance_source`, `rim`,
-// `reflected` and IS_GLOSSY.
+// `unmixed`, `reflected` and IS_GLOSSY.
 
 //#import common/fit
+//#import common/factor_code
 //#import common/frame
 //#import common/source
 //#import common/spread
@@ -69,6 +70,13 @@ fn paint_color(texel: vec2i) -> vec4f {
   if !IS_GLOSSY { return vec4f(color, 1.0); }
   let there = textureLoad(reflected, texel, 0);
   return vec4f(max(color - fit.gain.rgb * there.rgb, LEAST_PAINT * color), there.a);
+}
+
+// The same without other surfaces of the toy that a soft picture mixes into it.
+fn unmixed_paint(texel: vec2i) -> vec4f {
+  let paint = paint_color(texel);
+  if !is_soft() { return paint; }
+  return vec4f(factor_of_code(textureLoad(unmixed, texel, 0).rgb), 1.0) * paint;
 }
 
 // Factor for the model's colour at a point of which no camera pixel shows the paint: the camera's

@@ -51,6 +51,11 @@ fn spread_position_px(lattice: vec2f) -> vec2f {
   return spread_px(normal);
 }
 
+// The distance over which `soft_texel`'s mean would spread the position with this number.
+fn beside_px(k: u32) -> vec2f {
+  return sqrt(2.0 * globals.soft_side) * (2.0 * vec2f(vec2u(k, k >> 1u) & vec2u(1u)) - 1.0);
+}
+
 // Converts standard deviations of the spread to pixels.
 fn spread_px(deviations: vec2f) -> vec2f {
   return vec2f(globals.spread.x * deviations.x, globals.spread.y * deviations.x + globals.spread.z * deviations.y);

@@ -41,6 +41,8 @@
 // Reflected radiance of a glossy toy, relative to the gain; alpha is the visibility of the paint.
 @group(1) @binding(8) var reflected: texture_2d<f32>;
 @group(1) @binding(9) var<uniform> specular: Specular;
+// Factor from a soft picture's mixture of the toy's surfaces to the one at the pixel's centre.
+@group(1) @binding(10) var unmixed: texture_2d<f32>;
 
 // Whether the light of the camera's pixel replaces the point's own in the test for changes.
 override IS_COARSE: bool = false;
@@ -170,7 +172,8 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, expecte
       *is_beside = true;
       continue;
     }
-    let color = paint_color(source_texel(texel, number));
+    let source = source_texel(texel, number);
+    let color = unmixed_paint(source);
     let corner = vec2f(vec2u(k & 1u, k >> 1u));
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let own = bilinear * select(CARRIED_WEIGHT, 1.0, surface > 0.0) * select(1.0, OTHER_PAINT_WEIGHT, is_other);
@@ -283,7 +286,7 @@ fn fs_toy(
     let before = light_before(in_region, place, normal, physical_place, physical_normal, was_received, &after);
     relit_part = light_change(looks(base, after, reflects), looks(base, before, reflects_before));
     if is_seen_still(in_region, physical_px, clip.z / clip.w, base) {
-      let own = paint_color(physical_texel(in_region));
+      let own = unmixed_paint(physical_texel(in_region));
       paint = mix(paint, relit(own.rgb, after, before, model * after), own.a * (1.0 - is_moved));
     }
   }

@@ -54,7 +54,7 @@ pub fn task(name: &str) -> Option<&'static str> {
         "align" | "placement" => 0,
         "masks" | "eligible" | "census" | "gbuffer" | "validity" | "things" | "withhold" | "moved_mask"
         | "coverage" => 1,
-        "toy" | "appearance" | "rim" | "gloss" | "tint" | "tint_fill" | "self_shadow" => 2,
+        "toy" | "appearance" | "rim" | "unmix" | "gloss" | "tint" | "tint_fill" | "self_shadow" => 2,
         "warp" | "occlusion" => 3,
         // Sampling of the real shadow: by a search there, by a fit and a residual here.
         "search" | "lit" | "fit" | "fit_solve" | "residual" | "fill" | "detail" => 4,

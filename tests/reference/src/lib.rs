@@ -43,6 +43,7 @@ pub mod soften;
 pub mod thing_rim;
 pub mod things;
 pub mod tint;
+pub mod unmix;
 pub mod validity;
 pub mod visibility;
 pub mod withhold;

@@ -21,6 +21,8 @@ pub struct SeenPaint {
     /// Index of the toy's material.
     pub material: usize,
     /// The pixel's colour, linear.
+    pub seen: DVec3,
+    /// The colour of its paint, without what a blurred picture mixes into it.
     pub shown: DVec3,
     /// Its expected colour, from base colour, gain and fitted light.
     pub expected: DVec3,
@@ -85,7 +87,7 @@ pub fn tints(grid: &TintGrid, seen: &[SeenPaint]) -> Vec<Volume> {
             let own: Vec<&SeenPaint> = seen
                 .iter()
                 .filter(|paint| paint.material.min(last) == material)
-                .filter(|paint| paint.shown.max_element() <= BRIGHTEST_USABLE)
+                .filter(|paint| paint.seen.max_element() <= BRIGHTEST_USABLE)
                 .collect();
             let cell_of = |paint: &SeenPaint| {
                 let corner = Vec3::from(grid.corner_in_anchor).as_dvec3();

@@ -19,7 +19,6 @@ struct Toy {
     /// g is 1 where a single surface is visible.
     validity: Raster<DVec4>,
     /// Approximate unit length.
-    normal: Raster<DVec4>,
     received: Raster<DVec4>,
     base: Raster<DVec4>,
 }
@@ -43,7 +42,6 @@ fn toy(size: UVec2) -> Toy {
             DVec4::new(0.0, if is_seen { of_surface } else { 0.0 }, 0.0, 1.0)
         }),
         depth,
-        normal: numbers(size, 23).map(|n| (2.0 * n - 1.0).as_vec4().as_dvec4()),
         received: numbers(size, 24),
         base: numbers(size, 25),
     }
@@ -61,7 +59,7 @@ fn errors(source: &str) -> Errors {
         pixel: ToyPixel {
             color: scene.image.at(at).truncate(),
             received: toy.received.at(at),
-            base: toy.base.at(at).truncate().extend(0.5 + 0.5 * toy.normal.at(at).y),
+            base: toy.base.at(at),
         },
         depth: toy.depth.at(at),
         is_one_surface: toy.validity.at(at).y > 0.0,
@@ -78,15 +76,13 @@ fn errors(source: &str) -> Errors {
     );
 
     let shared = scene.shared(device);
-    let [validity, normal, received, base] =
-        [&toy.validity, &toy.normal, &toy.received, &toy.base].map(|map| [device.map(map)]);
+    let [validity, received, base] = [&toy.validity, &toy.received, &toy.base].map(|map| [device.map(map)]);
     let depth = device.depth(&toy.depth);
     let own: Bindings<'_> = [
         views(0, &validity),
         vec![(1, wgpu::BindingResource::TextureView(&depth))],
-        views(2, &normal),
-        views(3, &received),
-        views(4, &base),
+        views(2, &received),
+        views(3, &base),
     ]
     .concat();
     let drawn = |output| {
@@ -146,7 +142,10 @@ fn a_fault_in_the_appearance_is_found() {
         ("number / u32(N", "number % u32(N"),
         ("* N_IN_ROW + offset.x", "* N_IN_ROW - offset.x"),
         ("/ 255.0, 0.0", "/ 250.0, 0.0"),
-        ("0.5 + 0.5 * normal.y", "0.5 - 0.5 * normal.y"),
+        (
+            "textureLoad(gbuffer_base, from_texel",
+            "textureLoad(gbuffer_base, texel",
+        ),
         (
             "textureLoad(gbuffer_received, from_texel",
             "textureLoad(gbuffer_received, texel",

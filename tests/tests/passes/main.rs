@@ -60,5 +60,6 @@ mod thing_rim;
 mod things;
 mod tint;
 mod toy;
+mod unmix;
 mod validity;
 mod withheld;

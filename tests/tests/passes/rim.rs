@@ -23,7 +23,7 @@ const BOX: PixelRect = PixelRect {
     size_px: UVec2::new(83, 71),
 };
 
-fn spread() -> Spread {
+pub(crate) fn spread() -> Spread {
     Spread {
         xx_px2: 2.5,
         xy_px2: -0.8,
@@ -33,7 +33,7 @@ fn spread() -> Spread {
 
 /// The root of the blur and a pixel's own, without that of means over three by three texels; and
 /// the root of the latter. Computed by hand.
-fn root() -> ([f64; 3], f64) {
+pub(crate) fn root() -> ([f64; 3], f64) {
     let narrowest: f64 = 1.8 - 1.13_f64.sqrt();
     let of_means = 0.5 * narrowest.min(1.0);
     let Spread {

@@ -8,8 +8,9 @@ use glam::{DVec2, DVec3, UVec2};
 use reference::fit::toy_radiance;
 use reference::model::centre_px;
 use reference::occlusion::Occluder;
-use reference::raster::texels_of;
+use reference::raster::{Raster, texels_of};
 use reference::tint::{SeenPaint, tints};
+use reference::unmix::unmixed_factor;
 
 use crate::cores::core_on;
 use crate::device::Device;
@@ -25,26 +26,46 @@ const N_TRIANGLES: usize = 12;
 const BODY: usize = 2;
 const HEAD: usize = 3;
 
+/// The root of the tests' blur by a pixel and a pixel's own, without that of means over three by three texels; and
+/// the root of the latter. Computed by hand.
+const ROOT: ([f64; 3], f64) = ([0.763_763, 0.0, 0.763_763], std::f64::consts::FRAC_1_SQRT_2);
+
 /// The toy in a run's frame, by rays.
 fn seen(run: &Run) -> Vec<SeenPaint> {
     let occluder = run.stand.occluder(&run.stand.physical);
+    let hit_at = |texel| {
+        let (origin, direction) = run
+            .stand
+            .camera_ray(run.plan.region.origin_px.as_dvec2() + centre_px(texel));
+        let hit = occluder.nearest(origin, direction)?;
+        Some((hit.triangle, origin + hit.distance * direction))
+    };
+    let model = Raster::from_fn(run.region.size_px, |texel| {
+        let (triangle, _) = hit_at(texel)?;
+        let normal = run.stand.physical.normals[run.stand.toy.indices()[3 * triangle] as usize].as_dvec3();
+        // How far it faces up is kept as a code of 8 bits.
+        let up = (255.0 * (0.5 + 0.5 * normal.y)).round() / 255.0;
+        let as_kept = DVec3::Y * (2.0 * up - 1.0);
+        let light = toy_radiance(&run.solution, as_kept, run.gbuffer_received.at(texel));
+        Some(run.gbuffer_base.at(texel) * light)
+    });
     let taken = texels_of(run.region.size_px).filter(|texel| {
         let is_taken = *texel % run.plan.fit_stride_px == UVec2::ZERO;
         is_taken && run.validity.at(*texel).y > 0.0
     });
     let of_texel = taken.filter_map(|texel| {
-        let (origin, direction) = run
-            .stand
-            .camera_ray(run.plan.region.origin_px.as_dvec2() + centre_px(texel));
-        let hit = occluder.nearest(origin, direction)?;
-        let normal =
-            run.stand.physical.normals[run.stand.toy.indices()[3 * hit.triangle] as usize].as_dvec3();
-        let light = toy_radiance(&run.solution, normal, run.gbuffer_received.at(texel));
+        let (triangle, in_anchor) = hit_at(texel)?;
+        let factor = if run.plan.sharpness.outline_spread == Spread::NONE {
+            DVec3::ONE
+        } else {
+            unmixed_factor(&model, ROOT, texel)
+        };
         Some(SeenPaint {
-            in_anchor: origin + hit.distance * direction,
-            material: hit.triangle / N_TRIANGLES,
-            shown: run.pictures.frame.at(texel),
-            expected: run.solution.gain * run.gbuffer_base.at(texel) * light,
+            in_anchor,
+            material: triangle / N_TRIANGLES,
+            seen: run.pictures.frame.at(texel),
+            shown: factor * run.pictures.frame.at(texel),
+            expected: run.solution.gain * model.at(texel)?,
             weight: run.validity.at(texel).y,
         })
     });

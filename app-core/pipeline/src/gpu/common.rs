@@ -25,6 +25,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "depth",
     "drawn_toy",
     "estimated",
+    "factor_code",
     "fit",
     "fit_step",
     "fit_sums",
@@ -68,6 +69,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "toy_radiance",
     "two_receivers",
     "unknown",
+    "unmixed",
 ];
 
 /// The WGSL of a part; `None` if there is no such part.

@@ -86,7 +86,16 @@ fn problems(name: &str, source: &str) -> Vec<String> {
 
 /// Those that naga cannot say in GLSL, which has no way to load a texel of a depth map. The core runs on Vulkan and Metal
 /// alone: on OpenGL ES these would have to read another kind of texture.
-const NOT_IN_GLSL: [&str; 7] = ["validity", "fit", "rim", "gloss", "tint", "appearance", "toy"];
+const NOT_IN_GLSL: [&str; 8] = [
+    "validity",
+    "fit",
+    "rim",
+    "unmix",
+    "gloss",
+    "tint",
+    "appearance",
+    "toy",
+];
 
 #[test]
 fn every_shader_can_be_said_in_the_languages_of_phones() {

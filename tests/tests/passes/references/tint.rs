@@ -21,6 +21,7 @@ fn seen(cell: UVec3, material: usize, paint: DVec3) -> Vec<SeenPaint> {
     let pixel = SeenPaint {
         in_anchor: corner + 0.01 * (cell.as_dvec3() + 0.5),
         material,
+        seen: paint * EXPECTED,
         shown: paint * EXPECTED,
         expected: EXPECTED,
         weight: 1.0,
@@ -69,6 +70,7 @@ fn what_is_clipped_or_nearly_black_tells_nothing() {
     let clipped = seen(cell, 0, DVec3::ONE / EXPECTED);
     assert_near(tint(&tints(&GRID, &clipped)[0], cell), DVec3::ONE, "clipped");
     let black = SeenPaint {
+        seen: DVec3::splat(1e-5),
         shown: DVec3::splat(1e-5),
         expected: DVec3::splat(2e-4),
         ..seen(cell, 0, PAINT)[0]

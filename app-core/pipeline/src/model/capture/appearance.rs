@@ -19,13 +19,7 @@ use crate::passes::globals::GLOBALS_GROUP;
 /// Codes of the source pixels of colours.
 pub(crate) const SOURCE: Mirrors = mirrors!("common/source", constants: [REACH_PX, N_IN_ROW]);
 pub(crate) const SHADER: Shader = shader!("capture/appearance");
-const SLOTS: &[Slot] = &[
-    Slot::Texture,
-    Slot::Depth,
-    Slot::Texture,
-    Slot::Texture,
-    Slot::Texture,
-];
+const SLOTS: &[Slot] = &[Slot::Texture, Slot::Depth, Slot::Texture, Slot::Texture];
 /// Format of the codes of source pixels.
 const SOURCE_FORMAT: TextureFormat = TextureFormat::R8Unorm;
 
@@ -80,7 +74,6 @@ impl Pass {
         let resources = [
             inputs.validity.into(),
             (&gbuffer.depth.view).into(),
-            (&gbuffer.normal.view).into(),
             (&gbuffer.received.view).into(),
             (&gbuffer.base.view).into(),
         ];

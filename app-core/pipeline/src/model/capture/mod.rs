@@ -22,7 +22,7 @@ use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::{Change, FrameDelta};
 
 passes!(Plan:
-    gbuffer, validity, things, soften, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, rim, gloss, tint, tint_fill,
+    gbuffer, validity, things, soften, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, rim, unmix, gloss, tint, tint_fill,
     appearance,
 );
 
@@ -98,9 +98,10 @@ impl CapturePath<'_> {
         let (passes, of) = (self.passes, &self.captured.by_pass);
         let is_view_new = change >= Change::View;
         // A new picture of a known view updates one of the two means over several pictures, in
-        // turn.
+        // turn; while the focus changes, neither, since that has passes of its own.
         let is_residual_next = self.pictures.n_before.is_multiple_of(2);
-        if is_view_new || is_residual_next {
+        let is_updated = |is_next: bool| is_view_new || (delta.keeps_sharpness && is_next);
+        if is_updated(is_residual_next) {
             let inputs = self.residual_inputs(change >= Change::Scene);
             passes.residual.encode(recorder, &inputs);
             self.fill(recorder, &self.state.residual);
@@ -110,11 +111,14 @@ impl CapturePath<'_> {
         }
         if rim::is_needed(&self.region.plan) {
             passes.rim.encode(recorder, &self.rim_inputs(), &of.rim);
+            if is_view_new || !delta.keeps_sharpness {
+                passes.unmix.encode(recorder, &self.unmix_inputs(), &of.unmix);
+            }
         }
         if gloss::is_needed(&self.region.plan) {
             passes.gloss.encode(recorder, &self.gloss_inputs(), &of.gloss);
         }
-        if is_view_new || !is_residual_next {
+        if is_updated(!is_residual_next) {
             let tints = &self.state.tints;
             passes.tint.encode(recorder, &self.tint_inputs(), tints);
             passes.tint_fill.encode(recorder, tints);
@@ -392,6 +396,14 @@ impl CapturePath<'_> {
             plate: &self.captured.plate.view,
             observed: self.observed(),
             gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
+        }
+    }
+
+    fn unmix_inputs(&self) -> unmix::Inputs<'_> {
+        unmix::Inputs {
+            plan: &self.region.plan,
+            scene: self.scene(),
+            gbuffer: &self.captured.by_pass.gbuffer,
         }
     }
 

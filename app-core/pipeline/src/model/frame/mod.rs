@@ -131,7 +131,8 @@ impl FramePath<'_> {
             gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
             self_shadow: [&self.drawn.light.self_shadow, &self.captured.light.self_shadow],
             tints: &self.state.tints,
-            rim: self.captured.by_pass.rim.mixed.as_ref().map(|mixed| &mixed.view),
+            mixed: self.captured.by_pass.rim.mixed.as_ref(),
+            unmixed: self.captured.by_pass.unmix.factor.as_ref(),
             reflected: self.captured.by_pass.gloss.view(),
             specular: &self.region.specular,
         }

@@ -39,6 +39,7 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::Texture,
     Slot::uniform::<Specular>(),
+    Slot::Texture,
 ];
 /// Streams of a draw with materials, followed by the physical pose.
 const STREAMS: &[Stream] = &[
@@ -114,8 +115,9 @@ pub(crate) struct Inputs<'a> {
     /// Self-shadow of the shown pose, and of the physical one.
     pub(crate) self_shadow: [&'a self_shadow::Targets; 2],
     pub(crate) tints: &'a Tints,
-    /// Colours that a soft picture mixes into those of the toy.
-    pub(crate) rim: Option<&'a TextureView>,
+    /// Colours that a soft picture mixes into those of the toy, and the parts of one surface in these.
+    pub(crate) mixed: Option<&'a Texture>,
+    pub(crate) unmixed: Option<&'a Texture>,
     /// Radiance that a glossy toy reflected.
     pub(crate) reflected: Option<&'a TextureView>,
     pub(crate) specular: &'a Buffer,
@@ -258,7 +260,9 @@ fn sides(gpu: &Gpu, (format, n_samples): (TextureFormat, u32), is_glossy: bool) 
 }
 
 impl<'a> Inputs<'a> {
-    fn resources(&self) -> [Resource<'a>; 10] {
+    fn resources(&self) -> [Resource<'a>; 11] {
+        // A sharp picture binds a placeholder that is not read.
+        let of_soft = |drawn: Option<&'a Texture>| &drawn.unwrap_or(&self.appearance.base).view;
         [
             Resource::PerUse,
             self.gbuffer_depth.into(),
@@ -267,10 +271,10 @@ impl<'a> Inputs<'a> {
             (&self.tints.grid).into(),
             (&self.tints.cells).into(),
             (&self.appearance.source.view).into(),
-            // A sharp picture binds a placeholder that is not read.
-            self.rim.unwrap_or(&self.appearance.base.view).into(),
+            of_soft(self.mixed).into(),
             self.reflected.unwrap_or(&self.appearance.base.view).into(),
             self.specular.into(),
+            of_soft(self.unmixed).into(),
         ]
     }
 }
