@@ -8,7 +8,9 @@ use app_core::frame::FrameInput;
 use app_core::scene::{Image, Scene};
 use app_core::things::{HEIGHT_STEP_M, Mark, Things};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
-use glam::{DVec2, DVec3, UVec2, Vec3Swizzles};
+use glam::{DMat4, DVec2, DVec3, UVec2, Vec3Swizzles};
+use measure::photographer::world::toward;
+use measure::photographer::{Ground, Lamp, Paint, Shot, Shown, World};
 
 use super::bundled::SESSION;
 
@@ -140,6 +142,49 @@ fn a_thing_in_the_toys_shadow_stands_up() {
 fn a_thing_without_the_toys_shadow_has_no_points() {
     let things = found(false).unwrap();
     assert!(!things.has_raised());
+}
+
+/// Below two lamps, a teal board of 5 x 4 cm in both shadows of the toy has its own heights.
+#[test]
+fn a_thing_below_two_lights_stands_up() {
+    let lamps = [(45.0, -70.0, 0.45), (50.0, -105.0, 0.3)];
+    let lamps =
+        lamps.map(|(up_deg, azimuth_deg, radiance)| Lamp::bulb(toward(up_deg, azimuth_deg), 0.01, radiance));
+    let mut world = World::boxes().resized([640, 360]).lit_by(lamps.to_vec());
+    world.shown = Shown::Rest;
+    let facing = DVec3::new(-0.6, 0.0, 0.8);
+    let along = DVec3::Y.cross(facing);
+    let (foot, half_extent_m) = (DVec3::new(0.08, 0.0, 0.0), DVec2::new(0.025, 0.02));
+    world.grounds.push(Ground {
+        world_from_plane: DMat4::from_cols(
+            along.extend(0.0),
+            facing.extend(0.0),
+            along.cross(facing).extend(0.0),
+            (foot + half_extent_m.y * DVec3::Y).extend(1.0),
+        ),
+        half_extent_m,
+        paint: Paint::Even(DVec3::new(0.05, 0.3, 0.33)),
+    });
+    let Shot { mut scene, input, .. } = Shot::of(&world).unwrap();
+    scene.receivers.truncate(1);
+    let things = Observer::default()
+        .observed(&scene, &input)
+        .unwrap()
+        .things
+        .unwrap();
+    let (mut n, mut n_raised, mut off_m) = (0.0, 0.0, 0.0);
+    for (x, y) in (-9..=9).flat_map(|x| (1..=19).map(move |y| (f64::from(x), f64::from(y)))) {
+        let point = foot + 0.1 * half_extent_m.x * x * along + 0.1 * half_extent_m.y * y * DVec3::Y;
+        let at = input.camera.pixel_of(point).unwrap().as_uvec2();
+        let raised = things.raised((at.y * things.size_px().x + at.x) as usize);
+        n += 1.0;
+        if raised.height() > 0 {
+            n_raised += 1.0;
+            off_m += (f64::from(raised.height()) * f64::from(HEIGHT_STEP_M) - point.y).abs();
+        }
+    }
+    let (part, off_mm) = (n_raised / n, 1e3 * off_m / n_raised);
+    assert!(part > 0.8 && off_mm < 1.0, "{part:.2} of it, {off_mm:.2} mm off");
 }
 
 /// The pixels on which the shadow of the post falls.

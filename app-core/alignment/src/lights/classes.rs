@@ -8,6 +8,8 @@
 //! the largest of the others starts the fit, and a mixture of three classes ends it: the receiver,
 //! unchanged surfaces, and anything else.
 
+use std::array;
+
 use glam::{DMat4, DVec2, IVec2};
 
 use super::background::QUADRATIC;
@@ -70,6 +72,8 @@ pub(crate) struct Compared {
     pub(crate) ratio: Color,
     /// The model's value of it.
     pub(crate) model: Color,
+    /// The part of each lamp's light that the toy blocks.
+    pub(crate) blocked: [f32; MAX_LIGHTS],
     /// Index of the receiver that is there.
     pub(crate) on: usize,
     /// Noise of the ratio, as a deviation.
@@ -262,7 +266,7 @@ fn peak(values: impl Iterator<Item = f32>) -> Option<f32> {
 }
 
 fn blurred(bins: &[f32; N_BINS]) -> [f32; N_BINS] {
-    std::array::from_fn(|bin| {
+    array::from_fn(|bin| {
         let weights = bins.iter().enumerate().map(|(other, votes)| {
             let away = (other as f32 - bin as f32) / BLUR_BINS;
             votes * (-0.5 * away * away).exp()
@@ -303,7 +307,7 @@ struct Mixture<'a> {
 
 impl<'a> Mixture<'a> {
     fn new(shadows: &Shadows<'_>, taken: &'a [Vec<f32>], size_px: IVec2) -> Self {
-        let compared = shadows.pixels.iter().map(|pixel| {
+        let compared = shadows.pixels.iter().enumerate().map(|(index, pixel)| {
             let noise = [0, 1, 2].map(|channel| {
                 noise_deviation(pixel.frame[channel]) / pixel.plate[channel].max(f32::MIN_POSITIVE)
             });
@@ -312,6 +316,7 @@ impl<'a> Mixture<'a> {
                 on: pixel.receiver,
                 ratio: [1.0; 3],
                 model: [1.0; 3],
+                blocked: array::from_fn(|lamp| taken.get(lamp).map_or(0.0, |taken| taken[index])),
                 noise: noise.into_iter().fold(0.0, f32::max),
                 receiver: FIRST_PRIOR,
             }

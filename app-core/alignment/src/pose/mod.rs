@@ -150,16 +150,14 @@ impl Found {
         self.model_px < most_model_px(self.spread_px)
     }
 
-    /// Whether the outline is within `most_px` of the picture's, or within twice as much if the
-    /// texture is met: a mug behind the toy, or edges rounder than the model's, disturb the outline
-    /// alone.
+    /// Whether the outline is within `most_px` of the picture's. If the texture is met, it may be
+    /// within twice as much, but no farther than the given one: a mug behind the toy, or edges
+    /// rounder than the model's, disturb the outline alone, and a post before the toy the texture,
+    /// too.
     pub(super) fn is_met(&self, most_px: f64) -> bool {
-        let times = if self.texture_correlation.is_some() {
-            2.0
-        } else {
-            1.0
-        };
-        self.outlines_px[1] <= times * most_px
+        let [given_px, found_px] = self.outlines_px;
+        let is_textured = self.texture_correlation.is_some();
+        found_px <= most_px || (is_textured && found_px <= given_px.min(2.0 * most_px))
     }
 
     /// Whether the picture is sufficiently more likely with it, and not because less of the outline

@@ -38,9 +38,9 @@ const OF_NONE: f32 = 0.6;
 /// Largest loss of a pixel, a squared difference in plates: that of nearly half of the light, so that
 /// a highlight or a wrong pixel counts no more than a wrong shadow.
 const MOST_LOSS: f32 = 0.2;
-/// Part of the largest loss of light from which on a pixel counts to the umbra, whose median loss is
-/// that of a point without the light: half of it is the middle of the penumbra.
-const UMBRA: f32 = 0.5;
+/// Part of a light that is blocked in its own umbra, and at most of any other light there.
+const UMBRA: f32 = 0.9;
+const OPEN: f32 = 0.1;
 
 impl Sight<'_> {
     /// The points of things at the pixels of the largest level, which have these marks; empty if
@@ -51,8 +51,7 @@ impl Sight<'_> {
         found: &Found<'_>,
         (now, size_px, marks): (&Memory, IVec2, &[Mark]),
     ) -> Vec<RaisedPoint> {
-        // Shadows of several lights are at several places of a thing.
-        let ([light], Some(table)) = (self.lights, self.receivers.first()) else {
+        let Some(table) = self.receivers.first() else {
             return Vec::new();
         };
         let known = self.memory.and_then(|memory| memory.raised(now, size_px, marks));
@@ -76,13 +75,18 @@ impl Sight<'_> {
             let color = largest.plate.as_ref().and_then(|plate| plate.get(at));
             color.is_some_and(|color| found.is_own_color(codes_of(color)))
         });
+        let table_from_world = table.plane_from_camera * self.world_from_camera.inverse();
         let upright = Upright {
             bodies: &bodies,
             largest,
             level,
             compared: found.compared,
             table,
-            light: light.moved(&(table.plane_from_camera * self.world_from_camera.inverse())),
+            lights: self
+                .lights
+                .iter()
+                .map(|light| light.moved(&table_from_world))
+                .collect(),
         };
         upright.raised().unwrap_or_default()
     }
@@ -103,8 +107,8 @@ pub(super) struct Upright<'a> {
     pub(super) level: &'a Level,
     pub(super) compared: &'a [Compared],
     pub(super) table: &'a SeenReceiver,
-    /// The light in the space of the receiver.
-    pub(super) light: Light,
+    /// The lights in the space of the receiver.
+    pub(super) lights: Vec<Light>,
 }
 
 /// Exposure of the frame over that of the plate, for each channel.
@@ -177,16 +181,10 @@ impl Upright<'_> {
     /// For each thing, whether the toy's shadow in the picture is where its points have it.
     fn agreeing(&self, points: &[Option<Point>], (n_things, gain): (usize, f32)) -> Vec<bool> {
         let size_px = self.level.frame.size_px;
-        let most = self.compared.iter().map(Compared::taken).fold(0.0, f32::max);
-        let umbra = self
-            .compared
-            .iter()
-            .map(Compared::taken)
-            .filter(|taken| *taken > UMBRA * most);
-        let umbra = median(umbra, f32::total_cmp).unwrap_or(f32::NAN);
-        let hidden = in_level(size_px, self.compared, f32::NAN, |pixel| {
-            (pixel.taken() / umbra).min(1.0)
-        });
+        let shares = self.shares();
+        let hidden: Vec<Vec<f32>> = (0..self.lights.len())
+            .map(|light| in_level(size_px, self.compared, f32::NAN, |pixel| pixel.blocked[light]))
+            .collect();
         let mut losses = vec![[0.0; 2]; n_things];
         let mut n_shadowed = vec![0; n_things];
         for at in places(size_px) {
@@ -198,13 +196,15 @@ impl Upright<'_> {
                 .frame
                 .get(at)
                 .zip(self.level.plate.as_ref().and_then(|plate| plate.get(at)));
-            let below = self
-                .shadow_px(point.at)
-                .and_then(|below| index_in(size_px, below));
-            let (Some((frame, plate)), Some(hidden)) = (colors, below.map(|below| hidden[below])) else {
+            let hidden_from = |light: usize| {
+                let below = index_in(size_px, self.shadow_px(point.at, light)?)?;
+                Some(shares[light] * hidden[light][below])
+            };
+            let lost: Option<f32> = (0..self.lights.len()).map(hidden_from).sum();
+            let (Some((frame, plate)), Some(lost)) = (colors, lost) else {
                 continue;
             };
-            let lost = point.of_lights * hidden;
+            let lost = point.of_lights * lost;
             let ratio = brightness(&frame) / (gain * brightness(&plate));
             if lost.is_finite() && ratio.is_finite() {
                 let loss = |expected: f32| (ratio - expected).powi(2).min(MOST_LOSS);
@@ -227,9 +227,30 @@ impl Upright<'_> {
         is_within.then_some((thing, points[index]?))
     }
 
-    /// The pixel of the level at which the receiver has the shadow that falls on a point.
-    fn shadow_px(&self, point: DVec3) -> Option<IVec2> {
-        let below = shadow_of(point, &self.light)?;
+    /// Each light's share of what all of them give the receiver, as on a point: by the light that is
+    /// lost where it alone is blocked; equal shares if such places are unknown.
+    fn shares(&self) -> Vec<f32> {
+        let of = |light: usize| {
+            let is_alone = |pixel: &&Compared| {
+                let mut others = pixel
+                    .blocked
+                    .iter()
+                    .enumerate()
+                    .filter(|(other, _)| *other != light);
+                pixel.blocked[light] > UMBRA && others.all(|(_, blocked)| *blocked < OPEN)
+            };
+            let alone = self.compared.iter().filter(is_alone).map(Compared::taken);
+            median(alone, f32::total_cmp).map(|lost| lost.max(0.0))
+        };
+        let lost: Option<Vec<f32>> = (0..self.lights.len()).map(of).collect();
+        let lost = lost.unwrap_or_else(|| vec![1.0; self.lights.len()]);
+        let all: f32 = lost.iter().sum();
+        lost.into_iter().map(|lost| lost / all).collect()
+    }
+
+    /// The pixel of the level at which the receiver has the shadow of a light that falls on a point.
+    fn shadow_px(&self, point: DVec3, light: usize) -> Option<IVec2> {
+        let below = shadow_of(point, &self.lights[light])?;
         Some(pixel_of(below, self.table, self.level)?.floor().as_ivec2())
     }
 }
