@@ -89,15 +89,16 @@ fn left_at((scene, input): (&Scene, &FrameInput), point: DVec3) -> f32 {
 }
 
 /// Points of the things in the session with the board in frame and plate, below the toy's shadow or
-/// as bright as in the plate.
-fn found(has_shadow: bool) -> Option<Things> {
+/// as bright as in the plate; not in a hole.
+fn found(has_shadow: bool, is_hole: impl Fn(UVec2) -> bool) -> Option<Things> {
     let (scene, input) = &*SESSION;
     let (mut frame, mut plate) = (
         Image::clone(input.image.rgba()),
         Image::clone(&scene.plates[0].image),
     );
     let [first, end] = BOARD;
-    for at in (first.y..end.y).flat_map(|y| (first.x..end.x).map(move |x| UVec2::new(x, y))) {
+    let all = (first.y..end.y).flat_map(|y| (first.x..end.x).map(move |x| UVec2::new(x, y)));
+    for at in all.filter(|at| !is_hole(*at)) {
         let left = if has_shadow {
             left_at((scene, input), point_at(input, centre(at), f64::from(BOARD[1].y)))
         } else {
@@ -115,7 +116,7 @@ fn found(has_shadow: bool) -> Option<Things> {
 
 #[test]
 fn a_thing_in_the_toys_shadow_stands_up() {
-    let things = found(true).unwrap();
+    let things = found(true, |_| false).unwrap();
     let (mut n_raised, mut off_m, mut shares) = (0, 0.0, Vec::new());
     let [first, end] = BOARD;
     for at in (first.y..end.y).flat_map(|y| (first.x..end.x).map(move |x| UVec2::new(x, y))) {
@@ -138,33 +139,62 @@ fn a_thing_in_the_toys_shadow_stands_up() {
     );
 }
 
+/// Marks are ragged: where they end higher up than beside, the thing does not.
+#[test]
+fn a_ragged_foot_is_straight() {
+    let is_notch = |x: u32| x % 16 < 3;
+    let things = found(true, |at| is_notch(at.x) && at.y >= BOARD[1].y - 6).unwrap();
+    let columns = (BOARD[0].x + 5..BOARD[1].x - 5).filter(|x| is_notch(*x));
+    let above = columns.flat_map(|x| (226..242).map(move |y| UVec2::new(x, y)));
+    let off_mm = above.map(|at| {
+        let point = things.raised((at.y * things.size_px().x + at.x) as usize);
+        let height_m = f64::from(point.height()) * f64::from(HEIGHT_STEP_M);
+        1e3 * (height_m - point_at(&SESSION.1, centre(at), f64::from(BOARD[1].y)).y).abs()
+    });
+    let off_mm: Vec<f64> = off_mm.collect();
+    let off_mm = off_mm.iter().sum::<f64>() / off_mm.len() as f64;
+    assert!(off_mm < 1.0, "{off_mm:.2} mm off");
+}
+
 #[test]
 fn a_thing_without_the_toys_shadow_has_no_points() {
-    let things = found(false).unwrap();
+    let things = found(false, |_| false).unwrap();
     assert!(!things.has_raised());
 }
 
-/// Below two lamps, a teal board of 5 x 4 cm in both shadows of the toy has its own heights.
-#[test]
-fn a_thing_below_two_lights_stands_up() {
-    let lamps = [(45.0, -70.0, 0.45), (50.0, -105.0, 0.3)];
-    let lamps =
-        lamps.map(|(up_deg, azimuth_deg, radiance)| Lamp::bulb(toward(up_deg, azimuth_deg), 0.01, radiance));
-    let mut world = World::boxes().resized([640, 360]).lit_by(lamps.to_vec());
-    world.shown = Shown::Rest;
-    let facing = DVec3::new(-0.6, 0.0, 0.8);
-    let along = DVec3::Y.cross(facing);
-    let (foot, half_extent_m) = (DVec3::new(0.08, 0.0, 0.0), DVec2::new(0.025, 0.02));
-    world.grounds.push(Ground {
+const BOARD_FOOT: DVec3 = DVec3::new(0.08, 0.0, 0.0);
+const BOARD_HALF_M: DVec2 = DVec2::new(0.025, 0.02);
+/// Where the board faces, level.
+const BOARD_FACES: DVec3 = DVec3::new(-0.6, 0.0, 0.8);
+
+/// A teal rectangle with this middle, normal and direction along its x.
+fn teal_face(middle: DVec3, normal: DVec3, along: DVec3, half_extent_m: DVec2) -> Ground {
+    Ground {
         world_from_plane: DMat4::from_cols(
             along.extend(0.0),
-            facing.extend(0.0),
-            along.cross(facing).extend(0.0),
-            (foot + half_extent_m.y * DVec3::Y).extend(1.0),
+            normal.extend(0.0),
+            along.cross(normal).extend(0.0),
+            middle.extend(1.0),
         ),
         half_extent_m,
         paint: Paint::Even(DVec3::new(0.05, 0.3, 0.33)),
-    });
+    }
+}
+
+/// The part of `points` with heights, and their mean error in millimetres, in a picture of the toy in lights
+/// (elevation, azimuth, radiance) whose shadows fall on a board of 5 x 4 cm with these faces behind it.
+fn raised_in(lights: &[(f64, f64, f64)], faces: Vec<Ground>, points: &[DVec3]) -> (f64, f64) {
+    let lamps = lights
+        .iter()
+        .map(|(up_deg, azimuth_deg, radiance)| Lamp::bulb(toward(*up_deg, *azimuth_deg), 0.01, *radiance));
+    let mut world = World::boxes().resized([640, 360]).lit_by(lamps.collect());
+    world.shown = Shown::Rest;
+    let along = DVec3::Y.cross(BOARD_FACES);
+    let middle = BOARD_FOOT + BOARD_HALF_M.y * DVec3::Y;
+    world
+        .grounds
+        .push(teal_face(middle, BOARD_FACES, along, BOARD_HALF_M));
+    world.grounds.extend(faces);
     let Shot { mut scene, input, .. } = Shot::of(&world).unwrap();
     scene.receivers.truncate(1);
     let things = Observer::default()
@@ -172,19 +202,46 @@ fn a_thing_below_two_lights_stands_up() {
         .unwrap()
         .things
         .unwrap();
-    let (mut n, mut n_raised, mut off_m) = (0.0, 0.0, 0.0);
-    for (x, y) in (-9..=9).flat_map(|x| (1..=19).map(move |y| (f64::from(x), f64::from(y)))) {
-        let point = foot + 0.1 * half_extent_m.x * x * along + 0.1 * half_extent_m.y * y * DVec3::Y;
-        let at = input.camera.pixel_of(point).unwrap().as_uvec2();
+    let (mut n_raised, mut off_m) = (0.0, 0.0);
+    for point in points {
+        let at = input.camera.pixel_of(*point).unwrap().as_uvec2();
         let raised = things.raised((at.y * things.size_px().x + at.x) as usize);
-        n += 1.0;
         if raised.height() > 0 {
             n_raised += 1.0;
             off_m += (f64::from(raised.height()) * f64::from(HEIGHT_STEP_M) - point.y).abs();
         }
     }
-    let (part, off_mm) = (n_raised / n, 1e3 * off_m / n_raised);
+    (n_raised / points.len() as f64, 1e3 * off_m / n_raised)
+}
+
+/// Points of a grid over a rectangle, away from its sides.
+fn grid(middle: DVec3, half_sides: [DVec3; 2]) -> Vec<DVec3> {
+    let steps = || (-9..=9).map(|step| 0.1 * f64::from(step));
+    let points = steps().flat_map(|x| steps().map(move |y| (x, y)));
+    points
+        .map(|(x, y)| middle + x * half_sides[0] + y * half_sides[1])
+        .collect()
+}
+
+#[test]
+fn a_thing_below_two_lights_stands_up() {
+    let middle = BOARD_FOOT + BOARD_HALF_M.y * DVec3::Y;
+    let along = BOARD_HALF_M.x * DVec3::Y.cross(BOARD_FACES);
+    let points = grid(middle, [along, BOARD_HALF_M.y * DVec3::Y]);
+    let lights = [(45.0, -70.0, 0.45), (50.0, -105.0, 0.3)];
+    let (part, off_mm) = raised_in(&lights, Vec::new(), &points);
     assert!(part > 0.8 && off_mm < 1.0, "{part:.2} of it, {off_mm:.2} mm off");
+}
+
+/// The level face behind the board's upper edge is as high as that.
+#[test]
+fn a_block_has_a_top() {
+    let along = DVec3::Y.cross(BOARD_FACES);
+    let middle = BOARD_FOOT + 2.0 * BOARD_HALF_M.y * DVec3::Y - BOARD_HALF_M.y * BOARD_FACES;
+    let top = teal_face(middle, DVec3::Y, along, BOARD_HALF_M);
+    let points = grid(middle, [BOARD_HALF_M.x * along, BOARD_HALF_M.y * BOARD_FACES]);
+    let (part, off_mm) = raised_in(&[(45.0, -80.0, 0.75)], vec![top], &points);
+    assert!(part > 0.8 && off_mm < 2.0, "{part:.2} of it, {off_mm:.2} mm off");
 }
 
 /// The pixels on which the shadow of the post falls.

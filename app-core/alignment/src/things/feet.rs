@@ -4,6 +4,7 @@
 
 use glam::{DVec2, DVec3, IVec2, Vec3Swizzles};
 
+use super::foot_line::straightened;
 use super::groups::cross;
 use crate::picture::{Level, index_in, places};
 use crate::receivers::SeenReceiver;
@@ -55,6 +56,34 @@ pub(super) struct Feet<'a> {
     /// The pixel to which upright lines lead downward, times its weight, and the weight: 0 if they are parallel.
     down: DVec3,
     step_px: f64,
+    /// The line on which each thing stands.
+    lines: Vec<Option<FootLine>>,
+}
+
+/// The line on which a thing stands.
+struct FootLine {
+    /// A unit vector down in the picture, at the thing.
+    down: DVec2,
+    /// Number of the first column, across `down`.
+    first: i32,
+    /// How far down the line is in each column, in pixels.
+    places: Vec<Option<f64>>,
+}
+
+impl FootLine {
+    /// The place on the line below or above a foot, in its column: a part that ends higher up has a hole below.
+    fn foot(&self, foot: DVec2) -> DVec2 {
+        let place = usize::try_from(column_of(foot, self.down) - self.first).ok();
+        let place = place.and_then(|column| *self.places.get(column)?);
+        let moved_px = place.map_or(0.0, |place| place - foot.dot(self.down));
+        foot + moved_px * self.down
+    }
+}
+
+/// The column of a place across a direction.
+#[allow(clippy::cast_possible_truncation, reason = "within a picture")]
+fn column_of(px: DVec2, down: DVec2) -> i32 {
+    px.perp_dot(down).floor() as i32
 }
 
 impl<'a> Feet<'a> {
@@ -64,7 +93,7 @@ impl<'a> Feet<'a> {
         let camera_from_plane = plane_from_camera.inverse();
         let k = &level.intrinsics;
         let down = -camera_from_plane.y_axis.truncate();
-        Self {
+        let mut feet = Self {
             bodies,
             level,
             ground: SeenReceiver::of_size(plane_from_camera, DVec2::INFINITY),
@@ -74,7 +103,41 @@ impl<'a> Feet<'a> {
                 -down.z,
             ),
             step_px: f64::from(bodies.size_px.x.max(STEPS_A_WIDTH)) / f64::from(STEPS_A_WIDTH),
+            lines: Vec::new(),
+        };
+        feet.lines = feet.lines();
+        feet
+    }
+
+    /// The line on which each thing stands; `None` if it is seen from right above.
+    fn lines(&self) -> Vec<Option<FootLine>> {
+        let mut feet: Vec<Vec<DVec2>> = Vec::new();
+        for at in places(self.bodies.size_px) {
+            let Some(thing) = self.bodies.of(at).filter(|_| self.is_top(at)) else {
+                continue;
+            };
+            feet.resize_with(feet.len().max(thing + 1), Vec::new);
+            feet[thing].extend(self.foot_below(at));
         }
+        feet.iter().map(|feet| self.line(feet)).collect()
+    }
+
+    fn line(&self, feet: &[DVec2]) -> Option<FootLine> {
+        let middle = feet.iter().sum::<DVec2>() / feet.len() as f64;
+        let down = self.step_down(middle).try_normalize()?;
+        let columns = || feet.iter().map(|foot| column_of(*foot, down));
+        let (first, last) = (columns().min()?, columns().max()?);
+        let mut places = vec![None::<f64>; usize::try_from(last - first).ok()? + 1];
+        for foot in feet {
+            let column = usize::try_from(column_of(*foot, down) - first).ok()?;
+            let place = foot.dot(down);
+            places[column] = Some(places[column].map_or(place, |lowest| lowest.max(place)));
+        }
+        Some(FootLine {
+            down,
+            first,
+            places: straightened(&places),
+        })
     }
 
     /// Whether a pixel of a thing is the highest one above its foot.
@@ -85,6 +148,12 @@ impl<'a> Feet<'a> {
 
     /// The point that a pixel of a thing shows, above the thing's foot, in the space of the receiver.
     pub(super) fn point_above(&self, at: IVec2) -> Option<DVec3> {
+        let line = self.lines.get(self.bodies.of(at)?)?.as_ref()?;
+        self.point_over(at, line.foot(self.foot_below(at)?))
+    }
+
+    /// The place in pixels where the thing that a pixel shows ends below it.
+    fn foot_below(&self, at: IVec2) -> Option<DVec2> {
         let thing = self.thing_at(at.as_dvec2())?;
         let from = at.as_dvec2() + 0.5;
         let step = self.step_down(from);
@@ -105,10 +174,16 @@ impl<'a> Feet<'a> {
                 gap += 1;
             }
         }
+        Some(foot + 0.5 * step).filter(|foot| foot.is_finite())
+    }
+
+    /// The point that a pixel shows above a foot, in the space of the receiver.
+    fn point_over(&self, at: IVec2, foot: DVec2) -> Option<DVec3> {
+        let from = at.as_dvec2() + 0.5;
         let plane_from_camera = self.ground.plane_from_camera;
         let eye = plane_from_camera.w_axis.truncate();
         let ray = |px: DVec2| plane_from_camera.transform_vector3(self.level.intrinsics.ray(px));
-        let to_foot = ray(foot + 0.5 * step);
+        let to_foot = ray(foot);
         if to_foot.y >= 0.0 {
             return None;
         }

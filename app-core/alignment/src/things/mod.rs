@@ -17,6 +17,7 @@ mod edges;
 mod expected_light;
 mod extent;
 mod feet;
+mod foot_line;
 mod found;
 pub(crate) mod groups;
 mod grown;
