@@ -164,7 +164,7 @@ impl Seeds {
         let is_plate_wrong = kinds.iter().any(|(kind, _)| *kind == Seed::WrongPlate);
         for (group, (kind, ratios)) in groups.iter().zip(kinds) {
             // Where both shadows fall, frame and plate are equal, but only the frame as dark as expected.
-            let is_shadow = kind == Seed::Thing && is_plate_wrong && is_of_plate_alone(ratios);
+            let is_shadow = kind == Seed::Thing && is_plate_wrong && is_of_plate_alone(ratios, group.len());
             let seed = if is_shadow { Seed::WrongPlate } else { kind };
             for index in group {
                 self.seeds[*index] = seed;
@@ -347,14 +347,15 @@ fn classified([by_frame, by_plate]: [f32; 2], differs: f32, n_seeds: usize, colo
         Seed::Thing
     } else if !(passes(SIGNIFICANT) || passes(SIGNIFICANT_LARGE)) {
         Seed::None
-    } else if is_of_one && is_of_plate_alone([by_frame, by_plate]) {
+    } else if is_of_one && is_of_plate_alone([by_frame, by_plate], n_seeds) {
         Seed::WrongPlate
     } else {
         Seed::Thing
     }
 }
 
-/// Whether a group's colours are the place's in the frame, or much likelier so than in the plate.
-fn is_of_plate_alone([by_frame, by_plate]: [f32; 2]) -> bool {
-    by_frame < OF_PLACE || by_plate > by_frame + OF_FRAME[1]
+/// Whether a group's colours are the place's in the frame, or, in a large one, much likelier so than in the plate: a
+/// large part of a place may have rare colours. Planks behind a blockman had a ratio of 1.06, and he of 4.4.
+fn is_of_plate_alone([by_frame, by_plate]: [f32; 2], n_seeds: usize) -> bool {
+    by_frame < OF_PLACE || (n_seeds >= SIGNIFICANT_LARGE.1 && by_plate > by_frame + OF_FRAME[1])
 }
