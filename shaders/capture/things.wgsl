@@ -28,6 +28,9 @@ const MIXED_PX: f32 = 2.0;
 // the least part of that direction along an axis: the sine of half of 45 degrees.
 const REACH_PX: i32 = 2;
 const LEAST_PART: f32 = 0.3827;
+// Whether the plate is made soft afterwards, which weighs colours by their alpha: an estimate's is multiplied by
+// its own then.
+override IS_SOFTENED: bool = false;
 // Smallest light in a plate: that of code 1.
 const LEAST_LEFT: f32 = 0.00392;
 
@@ -115,6 +118,9 @@ fn fs_correct_plate(@builtin(position) position: vec4f) -> @location(0) vec4f {
   if code == CODE_HIDDEN_THING { return vec4f(mark.gba, 1.0); }
   if code == CODE_PAINTED_THING { return vec4f(MOST_PAINTED * mark.gba * mark.gba, 1.0); }
   // An estimate counts as such.
-  if code == CODE_COMPLETED_PLATE { return vec4f(MOST_COMPLETED * mark.gba * mark.gba, ESTIMATED); }
+  if code == CODE_COMPLETED_PLATE {
+    let weight = select(1.0, ESTIMATED, IS_SOFTENED);
+    return vec4f(weight * MOST_COMPLETED * mark.gba * mark.gba, ESTIMATED);
+  }
   return vec4f(1.0);
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::Aligner;
 use super::kept_lights::KeptLights;
 use super::photograph::{MOST_OUTLINE_PX, Photograph};
+use super::things::is_of_wrong_plate;
 use super::view::Seen;
 use app_scene::frame::FrameInput;
 use app_scene::scene::Light;
@@ -42,7 +43,9 @@ impl Aligner {
         };
         let as_given = seen.input.clone().with_world_from_object(input.world_from_object);
         // The first look made the plate as soft as the outline seemed.
-        let clear = Photograph::new(&self.scene, &as_given, None).clear_of(&misleading);
+        let clear = Photograph::new(&self.scene, &as_given, None)
+            .clear_of(&misleading.only(|mark| !is_of_wrong_plate(mark)))
+            .with_mended_plate(&self.scene, &as_given, &misleading)?;
         let again = self.posed(clear, input, (as_given, seen.view.camera_report))?;
         if !again.view.is_trusted(MOST_OUTLINE_PX) || (is_trusted && !is_sharp(&again)) {
             return Ok(seen);

@@ -1,8 +1,10 @@
 //! The reflection of the receiver below the toy, once it was searched for: it belongs to the place.
 
 use super::lights::FoundReflection;
+use super::things::is_of_wrong_plate;
 use super::view::Seen;
 use app_scene::scene::{Light, Scene};
+use app_scene::things::Things;
 use app_scene::toy::ToyError;
 
 /// Largest distance of the outlines in pixels at which a reflection is searched for: a worse pose
@@ -29,7 +31,7 @@ impl KeptReflection {
         Ok(true)
     }
 
-    /// Searches a view under other lights.
+    /// Searches a view under other lights: without what the plate alone shows there, if it seems to be reflected.
     pub(super) fn search_again(
         &mut self,
         scene: &Scene,
@@ -37,6 +39,15 @@ impl KeptReflection {
         lights: &[Light],
     ) -> Result<(), ToyError> {
         self.found = seen.photograph.reflection(scene, &seen.input, lights)?;
+        if self.found.is_none() {
+            return Ok(());
+        }
+        let sighted = seen.photograph.things(scene, &seen.input, lights, (None, None))?;
+        let wrong = sighted.things.map(|things| things.only(is_of_wrong_plate));
+        if let Some(wrong) = wrong.filter(Things::has_any) {
+            let clear = seen.photograph.clear_of(&wrong);
+            self.found = clear.reflection(scene, &seen.input, lights)?;
+        }
         Ok(())
     }
 

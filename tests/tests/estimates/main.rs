@@ -12,6 +12,7 @@ mod grain;
 mod lens_found;
 mod model;
 mod moved_lights;
+mod moved_toy;
 mod planes;
 mod plate_taker;
 mod pose_filter;

@@ -76,8 +76,9 @@ pub(crate) struct Compared {
     pub(crate) blocked: [f32; MAX_LIGHTS],
     /// Index of the receiver that is there.
     pub(crate) on: usize,
-    /// Noise of the ratio, as a deviation.
+    /// Noise of the ratio, as a deviation: of the noisiest channel, and of each.
     pub(crate) noise: f32,
+    pub(crate) noises: Color,
     /// Probability of the receiver.
     pub(crate) receiver: f32,
 }
@@ -308,7 +309,7 @@ struct Mixture<'a> {
 impl<'a> Mixture<'a> {
     fn new(shadows: &Shadows<'_>, taken: &'a [Vec<f32>], size_px: IVec2) -> Self {
         let compared = shadows.pixels.iter().enumerate().map(|(index, pixel)| {
-            let noise = [0, 1, 2].map(|channel| {
+            let noises = [0, 1, 2].map(|channel| {
                 noise_deviation(pixel.frame[channel]) / pixel.plate[channel].max(f32::MIN_POSITIVE)
             });
             Compared {
@@ -317,7 +318,8 @@ impl<'a> Mixture<'a> {
                 ratio: [1.0; 3],
                 model: [1.0; 3],
                 blocked: array::from_fn(|lamp| taken.get(lamp).map_or(0.0, |taken| taken[index])),
-                noise: noise.into_iter().fold(0.0, f32::max),
+                noise: noises.into_iter().fold(0.0, f32::max),
+                noises,
                 receiver: FIRST_PRIOR,
             }
         });
@@ -411,18 +413,27 @@ fn box_blurred(values: &[[f32; 2]], size_px: IVec2, axis: IVec2) -> Vec<[f32; 2]
 
 impl Compared {
     /// Largest difference of a channel from the model, in plates.
-    pub(crate) fn away(&self) -> f32 {
+    fn away(&self) -> f32 {
         (0..3)
             .map(|channel| (self.ratio[channel] - self.model[channel]).abs())
             .fold(0.0, f32::max)
     }
 
-    /// Largest change of a channel since the plate, in plates.
-    pub(crate) fn changed(&self) -> f32 {
-        self.ratio
-            .iter()
-            .map(|ratio| (ratio - 1.0).abs())
-            .fold(0.0, f32::max)
+    /// Whether a channel differs from the model by more than a number of plates, and than a multiple of its
+    /// own noise: in a plate that is black in one channel, the others tell as much as in any.
+    pub(crate) fn is_away(&self, least: f32, of_noise: f32) -> bool {
+        self.is_beyond(&self.model, (least, of_noise))
+    }
+
+    /// Whether a channel has changed since the plate by as much.
+    pub(crate) fn has_changed(&self, least: f32, of_noise: f32) -> bool {
+        self.is_beyond(&[1.0; 3], (least, of_noise))
+    }
+
+    fn is_beyond(&self, from: &Color, (least, of_noise): (f32, f32)) -> bool {
+        (0..3).any(|channel| {
+            (self.ratio[channel] - from[channel]).abs() > least.max(of_noise * self.noises[channel])
+        })
     }
 
     /// The share of the light that the model blocks.

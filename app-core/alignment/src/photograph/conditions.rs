@@ -48,6 +48,25 @@ impl Photograph {
         }
     }
 
+    /// With an estimated plate where it is wrong, around a toy in its place.
+    pub(crate) fn with_mended_plate(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        things: &Things,
+    ) -> Result<Self, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let level = self.pyramid.level(0);
+        let coverage = pose::covered(&shape, level);
+        Ok(Self {
+            pyramid: self
+                .pyramid
+                .with_largest(things::with_mended_plate(level, &coverage, things.marks())),
+            receivers: self.receivers.clone(),
+            camera_from_world: self.camera_from_world,
+        })
+    }
+
     /// With unknown pixels at listed planes of things and around them; `None` if none is listed.
     pub(crate) fn without_tops(&self) -> Option<Self> {
         let marks = things::marks_of_listed(&self.receivers, self.pyramid.level(0))?;

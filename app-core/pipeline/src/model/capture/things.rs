@@ -23,7 +23,8 @@ pub(crate) fn is_needed(plan: &Plan) -> bool {
 
 pub(crate) struct Pass {
     mark: Draw,
-    correct_plate: Draw,
+    /// For a plate that stays as sharp, and for one that is made soft.
+    correct_plate: [Draw; 2],
 }
 
 /// Targets of the region's size, if needed.
@@ -49,14 +50,17 @@ impl Pass {
         };
         Self {
             mark: draw("fs_mark", MASK_SLOTS, validity::FORMAT),
-            correct_plate: gpu.draw(&DrawSpec {
-                targets: vec![multiplied(FINE_FORMAT)],
-                ..DrawSpec::fullscreen(
-                    &SHADER,
-                    "fs_correct_plate",
-                    [&[][..], SLOTS, &[], &[]],
-                    &[FINE_FORMAT],
-                )
+            correct_plate: [0, 1].map(|is_softened| {
+                gpu.draw(&DrawSpec {
+                    targets: vec![multiplied(FINE_FORMAT)],
+                    constants: vec![("IS_SOFTENED", is_softened)],
+                    ..DrawSpec::fullscreen(
+                        &SHADER,
+                        "fs_correct_plate",
+                        [&[][..], SLOTS, &[], &[]],
+                        &[FINE_FORMAT],
+                    )
+                })
             }),
         }
     }
@@ -77,14 +81,14 @@ impl Pass {
     }
 
     /// Treats the plate as not photographed where it is wrong, and gives it the right light where
-    /// that alone is wrong.
+    /// that alone is wrong, before it is made soft if it is.
     pub(crate) fn correct_plate(
         &self,
         recorder: &mut Recorder<'_>,
         things: &Things,
-        photographed: &TextureView,
+        (photographed, is_softened): (&TextureView, bool),
     ) {
-        let draw = &self.correct_plate;
+        let draw = &self.correct_plate[usize::from(is_softened)];
         let groups = [recorder.bind(draw, GROUP_PASS, &things.resources())];
         recorder.fullscreen_onto(draw, &groups, &[Some(loaded(photographed))]);
     }

@@ -1,0 +1,125 @@
+//! A plate that shows the toy and its shadow, pushed aside.
+
+use std::sync::{Arc, LazyLock};
+
+use app_core::alignment::{Aligner, Observer};
+use app_core::frame::FrameInput;
+use app_core::scene::{Image, Scene};
+use app_core::things::{Mark, Things};
+use glam::IVec2;
+
+use super::bundled::SESSION;
+
+/// How far the toy is pushed, in pixels: so that it overlaps with itself, and so do its shadows.
+const PUSHED_PX: IVec2 = IVec2::new(-14, 6);
+/// Difference in codes from which on the picture shows the toy or its shadow.
+const SHOWN_CODES: u8 = 8;
+/// Distance of pixels that are judged from the end of what is pushed.
+const CLEAR_PX: i32 = 3;
+
+fn index_of(image: &Image, at: IVec2) -> Option<usize> {
+    let size_px = IVec2::new(image.width_px.cast_signed(), image.height_px.cast_signed());
+    let is_inside = at.cmpge(IVec2::ZERO).all() && at.cmplt(size_px).all();
+    usize::try_from(at.y * size_px.x + at.x)
+        .ok()
+        .filter(|_| is_inside)
+}
+
+fn texel(image: &Image, index: usize) -> [u8; 3] {
+    [0, 1, 2].map(|channel| image.rgba8[4 * index + channel])
+}
+
+/// Whether the picture shows the toy or its shadow at a pixel.
+fn is_shown(frame: &Image, plate: &Image, at: IVec2) -> bool {
+    index_of(frame, at).is_some_and(|index| {
+        let both = texel(frame, index).into_iter().zip(texel(plate, index));
+        both.into_iter().any(|(a, b)| a.abs_diff(b) > SHOWN_CODES)
+    })
+}
+
+fn places(image: &Image) -> impl Iterator<Item = IVec2> + use<> {
+    let [width, height] = [image.width_px.cast_signed(), image.height_px.cast_signed()];
+    (0..height).flat_map(move |y| (0..width).map(move |x| IVec2::new(x, y)))
+}
+
+/// The scene with such a plate, whose colours are changed.
+fn pushed(changed: impl Fn([u8; 3]) -> [u8; 3]) -> (Scene, FrameInput) {
+    let (scene, input) = &*SESSION;
+    let (frame, plate) = (input.image.rgba(), &scene.plates[0].image);
+    let mut wrong = Image::clone(plate);
+    let mut other = Image::clone(frame);
+    for (index, at) in places(plate).enumerate() {
+        let from = at - PUSHED_PX;
+        let color = match index_of(frame, from).filter(|_| is_shown(frame, plate, from)) {
+            Some(from) => texel(frame, from),
+            None => texel(plate, index),
+        };
+        wrong.rgba8[4 * index..4 * index + 3].copy_from_slice(&changed(color));
+        other.rgba8[4 * index..4 * index + 3].copy_from_slice(&changed(texel(frame, index)));
+    }
+    let mut scene = Scene::clone(scene);
+    scene.plates[0].image = Arc::new(wrong);
+    (scene, FrameInput::clone(input).with_image(Arc::new(other)))
+}
+
+/// Of the pixels well within what is pushed, and outside the toy and its own shadow, the part that is marked.
+fn marked(things: &Things) -> f64 {
+    let (scene, input) = &*SESSION;
+    let (frame, plate) = (input.image.rgba(), &scene.plates[0].image);
+    let is_pushed = |at: IVec2| is_shown(frame, plate, at - PUSHED_PX);
+    let (mut n, mut n_marked) = (0.0, 0.0);
+    for (index, at) in places(plate).enumerate() {
+        let reach = -CLEAR_PX..=CLEAR_PX;
+        let mut around = reach
+            .clone()
+            .flat_map(|y| reach.clone().map(move |x| at + IVec2::new(x, y)));
+        if around.all(|at| is_pushed(at) && !is_shown(frame, plate, at)) {
+            n += 1.0;
+            n_marked += f64::from(u8::from(matches!(
+                things.marks()[index],
+                Mark::WrongPlate | Mark::CompletedPlate { .. }
+            )));
+        }
+    }
+    n_marked / n
+}
+
+static PUSHED: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| pushed(|color| color));
+
+#[test]
+fn a_toy_is_seen_beside_itself_in_the_plate() {
+    let (scene, input) = &*PUSHED;
+    let aligned = Aligner::new(scene.clone()).align(input).unwrap();
+    let pose = aligned.report.pose.unwrap();
+    assert!(
+        pose.outline_px < 0.5 && aligned.sharpness.outline_spread.mean_px() < 0.7,
+        "{pose:?}, {:?}",
+        aligned.sharpness
+    );
+}
+
+#[test]
+fn the_toys_shadow_in_the_plate_is_wrong() {
+    let (scene, input) = &*PUSHED;
+    let things = Observer::default()
+        .observed(scene, input)
+        .unwrap()
+        .things
+        .unwrap();
+    let marked = marked(&things);
+    assert!(marked > 0.95, "{marked}");
+}
+
+/// In yellow light, blue tells nothing beside its noise; the other channels do.
+#[test]
+fn a_plate_without_blue_is_seen_to_be_wrong() {
+    let (scene, input) = pushed(|[red, green, blue]| [red, green, blue / 16]);
+    let things = Observer::default()
+        .observed(&scene, &input)
+        .unwrap()
+        .things
+        .unwrap();
+    let marked = marked(&things);
+    // Measured: .88, and .43 with all channels as noisy as the noisiest.
+    assert!(marked > 0.8, "{marked}");
+}
