@@ -60,7 +60,7 @@ const SAME_M: f64 = 0.012;
 pub(super) const GROUND: usize = 0;
 /// A level plane wins if its loss is at most this factor times a tilted plane's, plus a constant. The
 /// first factor is for a tilted plane that is flatter than `FLAT`, the second one for a steeper one.
-/// Shadows on 13 books have slopes of up to .04, with losses of level planes up to 2.4 times as large; nine ramps
+/// Shadows on 14 books have slopes of up to .04, with losses of level planes up to 2.4 times as large; eight ramps
 /// have .17 and more, with losses 2.9 to 1400 times as large.
 const LEVEL_TIMES: [f64; 2] = [3.0, 1.3];
 const LEVEL_MORE: f64 = 1e-4;
