@@ -62,6 +62,13 @@ impl FoundPlanes {
         is_any
     }
 
+    /// The largest loss of the tops that the latest search found; `None` if it found none.
+    pub(super) fn latest_loss(&self) -> Option<f64> {
+        let latest = self.found[self.n_before..].iter().map(|found| &found.report);
+        let tops = latest.filter(|plane| !plane.is_upright());
+        tops.map(|plane| plane.losses[1]).reduce(f64::max)
+    }
+
     /// With as many searches as another count has.
     pub(super) fn count_as(&mut self, other: &Self) {
         self.n_searches = other.n_searches;

@@ -28,6 +28,7 @@ enum Explained {
 }
 
 /// What a search for things has changed.
+#[derive(Clone)]
 struct Searched {
     planes: FoundPlanes,
     scene: Arc<Scene>,
@@ -45,6 +46,7 @@ impl Aligner {
     ) -> Result<Looked, ToyError> {
         let before = self.searched();
         let first = self.look_for_things(lights.in_use(), seen, planes_of)?;
+        let first = self.or_in_listed(given, lights, (seen, planes_of), (first, &before))?;
         if !lights.leave_too_much() {
             return Ok(first);
         }
@@ -66,6 +68,35 @@ impl Aligner {
                 Ok(first)
             }
         }
+    }
+
+    /// What is found in moved lights, or planes that the lights as they are listed explain better: a shadow on
+    /// a thing may have moved them, and planes in them agree with it. `before` is what the search has changed.
+    fn or_in_listed(
+        &mut self,
+        given: &Arc<[Light]>,
+        lights: &KeptLights,
+        (seen, planes_of): (&Seen, Option<Colored>),
+        (first, before): (Looked, &Searched),
+    ) -> Result<Looked, ToyError> {
+        let are_moved = !given.is_empty() && lights.in_use() != &**given;
+        let Some(loss) = self.planes.latest_loss().filter(|_| are_moved) else {
+            return Ok(first);
+        };
+        if !matches!(first, Looked::Planes(_)) {
+            return Ok(first);
+        }
+        let in_moved = self.replaced(before.clone());
+        let listed = self.look_for_things(given, seen, planes_of)?;
+        let is_less = self
+            .planes
+            .latest_loss()
+            .is_some_and(|in_listed| in_listed < loss);
+        if is_less && matches!(listed, Looked::Planes(_)) {
+            return Ok(listed);
+        }
+        self.replaced(in_moved);
+        Ok(first)
     }
 
     /// Planes of things, or lights beside things, that explain a view; `None` if there are none.

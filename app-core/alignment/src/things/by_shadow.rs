@@ -1,5 +1,5 @@
-//! Finds a level plane by the toy's shadow alone, of a thing that does not grow to its edges since its
-//! colours are the place's.
+//! Finds a plane by the toy's shadow alone, of a thing that does not grow to its edges since its colours
+//! are the place's, or beyond them over its own shadow.
 //!
 //! The first plane comes from the few pixels that are certainly of the thing. Where the
 //! shadow on the plane would differ from that on the receiver, the picture shows which of both a pixel
@@ -9,13 +9,13 @@
 use glam::{DVec3, IVec2};
 
 use super::colored_extent::{Evidence, Surroundings};
-use super::extent::Outline;
+use super::extent::{Extent, Outline};
 use super::inner::NOISIEST;
 use super::planes::{Candidate, FoundPlane, SHADOWED, Search};
-use super::seeds::{Colored, EXPLAINED, UNEXPLAINED};
+use super::seeds::{EXPLAINED, UNEXPLAINED};
 use super::shadow_loss::square;
 use crate::lights::{Compared, Comparison};
-use crate::picture::brightness;
+use crate::picture::{Level, brightness};
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
 
@@ -32,9 +32,7 @@ pub(super) fn found(
 ) -> Option<FoundPlane> {
     let raster = &mut Rasterizer::default();
     let mut bounds = None;
-    if !candidate.is_level {
-        return None;
-    }
+    let is_level = candidate.is_level;
     for _ in 0..N_ROUNDS {
         let evidence = search.evidence(raster, &candidate);
         let endless = search.plane(&candidate.heights).plane_from_camera;
@@ -48,17 +46,29 @@ pub(super) fn found(
         let extent = surroundings.extent(&evidence)?;
         search = search.over(&extent.plane(&endless));
         let start = (candidate.loss, candidate.heights);
-        candidate = search.refined(raster, &[start], &[start])?;
-        if !candidate.is_level {
+        let level = (candidate.loss, [candidate.heights[0], 0.0, 0.0]);
+        candidate = search.refined(raster, &[level], &[start])?;
+        if !is_level {
+            // With pixels beside the plane, such as those of a face below it, a descent may have ended
+            // elsewhere: the search begins anew.
+            let anew = search
+                .best_plane(raster)
+                .filter(|anew| anew.loss < candidate.loss);
+            candidate = anew.unwrap_or(candidate);
+        }
+        if candidate.is_level != is_level {
             return None;
         }
         bounds = Some(extent);
     }
-    let losses = search.significant_losses(raster, &candidate, Colored::Alike)?;
+    let losses = search.significant_losses(raster, &candidate, outline.colored)?;
     let endless = search.plane(&candidate.heights).plane_from_camera;
-    let bounds = bounds?;
-    let face_m = bounds.height_m(&endless, search.table);
-    let bounds = bounds.on_near_edges(outline.level, &endless, face_m);
+    let bounds = search.on_edges(raster, &candidate, (&bounds?, outline.level));
+    let bounds = if is_level {
+        bounds
+    } else {
+        bounds.down_to(search.table, &endless)
+    };
     Some(search.reported(&bounds, (&endless, &candidate), outline.level, losses))
 }
 
@@ -89,10 +99,42 @@ impl Search<'_> {
         evidence.collect()
     }
 
+    /// A rectangle with its sides on edges of the plate. A side that moves far has been on the foot of a face
+    /// if the pixels between are not on the plane; otherwise it moves to a line of a pattern, and the
+    /// nearest edge is taken.
+    fn on_edges(
+        &self,
+        raster: &mut Rasterizer,
+        candidate: &Candidate,
+        (bounds, level): (&Extent, &Level),
+    ) -> Extent {
+        let endless = self.plane(&candidate.heights).plane_from_camera;
+        let (above_face, nearest) = bounds.on_near_edges(level, &endless, self.table);
+        let Some(nearest) = nearest else {
+            return above_face;
+        };
+        let [inner, outer] = [&above_face, &nearest].map(|extent| extent.plane(&endless));
+        let between = self.clone().of_certain(|at| {
+            let is_on = |plane: &SeenReceiver| plane.point_at(&self.intrinsics, at).is_some();
+            is_on(&outer) && !is_on(&inner)
+        });
+        if between.is_contradicted(raster, &candidate.heights) {
+            above_face
+        } else {
+            nearest
+        }
+    }
+
     /// The same search, with the pixels of a rectangle.
     fn over(self, plane: &SeenReceiver) -> Self {
+        let intrinsics = self.intrinsics;
+        self.of_certain(|at| plane.point_at(&intrinsics, at).is_some())
+    }
+
+    /// The same search, with some of the pixels with little noise.
+    fn of_certain(self, is_used: impl Fn(IVec2) -> bool) -> Self {
         let mut pixels = certain(self.comparison);
-        pixels.retain(|pixel| plane.point_at(&self.intrinsics, pixel.at).is_some());
+        pixels.retain(|pixel| is_used(pixel.at));
         self.of_pixels(&pixels)
     }
 }

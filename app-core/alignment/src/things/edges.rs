@@ -29,6 +29,14 @@ const LISTED_M: f64 = 0.013;
 const MOST_STEPS: f64 = 100.0;
 const AS_LISTED: i32 = 3;
 const CLEAR: f64 = 0.5;
+/// Least height in metres of an upright face.
+const LEAST_FACE_M: f64 = 0.004;
+/// Standard errors by which a contrast exceeds one that varies along the line, as a pattern's does.
+const SURE: f64 = 2.0;
+/// Least contrast at a step where side and foot have peaks, over the largest one. A book of wood on terrazzo
+/// has .9: its side has a contrast of .07, and the foot one of .6; a line of the terrazzo has .11. A front with
+/// a shadow along its foot has no such step.
+const AT_PEAKS: f64 = 0.7;
 /// Distance of the compared colours from an edge, in pixels.
 const BESIDE_PX: f64 = 1.25;
 /// Number of places along a side, and the part of it that they cover.
@@ -47,19 +55,18 @@ pub(super) struct Side {
     pub(super) middle: DVec2,
     pub(super) outward: DVec2,
     pub(super) half_m: f64,
-    /// Height of the upright face below it; `None` without one.
-    pub(super) face_m: Option<f64>,
+    /// The space of the receiver down to which an upright face reaches; `None` without such a face.
+    pub(super) foot_from_plane: Option<DMat4>,
 }
 
 /// Distance in metres by which a side on a plane moves outward.
 pub(super) fn moved_m(side: &Side, plane_from_camera: &DMat4, level: &Level) -> f64 {
     let seen = SeenSide::of(side, plane_from_camera, level);
     let Some(px_m) = seen.px_m() else { return 0.0 };
-    let face_m = seen.face_m();
-    let contrast = |step: i32| seen.edge(px_m, step, face_m);
-    let step = match face_m {
-        Some(_) => clearest(WITH_FACE, contrast),
-        None => nearest(NEAR, contrast, |_, _| LEAST),
+    let step = if seen.has_face() {
+        seen.above_face(px_m)
+    } else {
+        nearest(NEAR, |step| seen.edge(px_m, step, false), |_, _| LEAST)
     };
     step.map_or(0.0, |step| px_m * step_px(step))
 }
@@ -69,7 +76,7 @@ pub(super) fn moved_m(side: &Side, plane_from_camera: &DMat4, level: &Level) -> 
 pub(super) fn clearer_m(side: &Side, plane_from_camera: &DMat4, level: &Level) -> f64 {
     let seen = SeenSide::of(side, plane_from_camera, level);
     let Some(px_m) = seen.px_m() else { return 0.0 };
-    let face_m = seen.face_m();
+    let has_face = seen.has_face();
     #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
     let most = (STEPS_A_PX * LISTED_M / px_m).min(MOST_STEPS).ceil() as i32;
     // Stripes of a thing are as clear as its edge, which may be any where it is listed.
@@ -80,38 +87,34 @@ pub(super) fn clearer_m(side: &Side, plane_from_camera: &DMat4, level: &Level) -
             LEAST
         }
     };
-    let nearest = nearest(-most..=most, |step| seen.edge(px_m, step, face_m), least);
+    let nearest = nearest(-most..=most, |step| seen.edge(px_m, step, has_face), least);
     let moved = nearest.filter(|step| step.abs() > AS_LISTED);
     moved.map_or(0.0, |step| px_m * step_px(step))
 }
 
-/// Contrast of a side where it is, in logarithms of light; `None` if too little of it is visible.
+/// Contrast of a side where it is, in logarithms of light, with that of its upright face's foot if the
+/// face is seen; `None` if too little of it is visible.
 pub(super) fn contrast(side: &Side, plane_from_camera: &DMat4, level: &Level) -> Option<f64> {
     let seen = SeenSide::of(side, plane_from_camera, level);
-    seen.contrast((0.0, 0.0), BESIDE_PX * seen.px_m()?)
+    let px_m = seen.px_m()?;
+    let own = seen.contrast((0.0, Line::Own), BESIDE_PX * px_m)?;
+    let with_foot = |step: i32| seen.edge(px_m, step, true);
+    let best = || (-AS_LISTED..=AS_LISTED).map(with_foot).fold(0.0, f64::max);
+    Some(if seen.has_face() { best() } else { own })
 }
 
 /// The smaller contrast of a side and of its upright face's foot, where that is largest among the places
 /// that count as where the side is; 0 if the face is not seen.
 pub(super) fn face_contrast(side: &Side, plane_from_camera: &DMat4, level: &Level) -> f64 {
     let seen = SeenSide::of(side, plane_from_camera, level);
-    let (Some(px_m), Some(face_m)) = (seen.px_m(), seen.face_m()) else {
+    let Some(px_m) = seen.px_m().filter(|_| seen.has_face()) else {
         return 0.0;
     };
     let smaller = |step: i32| {
-        let [upper, lower] = [0.0, face_m].map(|down_m| seen.line(px_m, step, down_m));
+        let [upper, lower] = [Line::Own, Line::Foot].map(|line| seen.line(px_m, step, line));
         upper.min(lower)
     };
     (-AS_LISTED..=AS_LISTED).map(smaller).fold(0.0, f64::max)
-}
-
-/// The step of most contrast.
-fn clearest(steps: RangeInclusive<i32>, contrast: impl Fn(i32) -> f64) -> Option<i32> {
-    let all = steps.map(|step| (contrast(step), step));
-    let clearest = all.max_by(|a, b| a.0.total_cmp(&b.0));
-    clearest
-        .filter(|(contrast, _)| *contrast > LEAST)
-        .map(|(_, step)| step)
 }
 
 /// The step of a peak of the contrast that is nearest to 0. `least` is the contrast that a step
@@ -128,6 +131,15 @@ fn nearest(
         around[1] > least(*step, largest) && around[1] >= around[0] && around[1] > around[2]
     });
     peaks.map(|(_, step)| step).min_by_key(|step| step.abs())
+}
+
+/// Whether values have a peak at an index, or next to it.
+fn has_peak(values: &[f64], at: usize) -> bool {
+    let is_peak = |at: usize| {
+        let around = &values[at.saturating_sub(1)..values.len().min(at + 2)];
+        around.iter().all(|value| *value <= values[at])
+    };
+    (at.saturating_sub(1)..values.len().min(at + 2)).any(is_peak)
 }
 
 fn step_px(step: i32) -> f64 {
@@ -149,21 +161,63 @@ impl<'a> SeenSide<'a> {
         }
     }
 
-    /// Height of the upright face below it, if that is turned to the camera.
-    fn face_m(&self) -> Option<f64> {
-        self.side.face_m.filter(|_| self.faces_camera())
+    /// Whether an upright face below it is turned to the camera.
+    fn has_face(&self) -> bool {
+        let height_m = |foot_from_plane: DMat4| {
+            let middle = DVec3::new(self.side.middle.x, 0.0, self.side.middle.y);
+            foot_from_plane.transform_point3(middle).y
+        };
+        let is_high = self
+            .side
+            .foot_from_plane
+            .is_some_and(|foot| height_m(foot) > LEAST_FACE_M);
+        is_high && self.faces_camera()
+    }
+
+    /// The step at which a side and the foot of its upright face have most contrast together. If both
+    /// have a peak there, it is most likely the side's: a side that is taken for its foot, or for the edge of
+    /// the face's own shadow, has a line of a pattern in place of one of them.
+    fn above_face(&self, px_m: f64) -> Option<i32> {
+        let of = |line: Line| {
+            WITH_FACE
+                .map(|step| self.sure(px_m, step, line))
+                .collect::<Vec<f64>>()
+        };
+        let (own, foot) = (of(Line::Own), of(Line::Foot));
+        let both = |at: &usize| (own[*at] * foot[*at]).sqrt();
+        let clearest = |steps: &mut dyn Iterator<Item = usize>| {
+            steps
+                .max_by(|a, b| both(a).total_cmp(&both(b)))
+                .filter(|at| both(at) > LEAST)
+        };
+        let all = clearest(&mut (0..own.len()))?;
+        let at_peaks = clearest(&mut (0..own.len()).filter(|at| has_peak(&own, *at) && has_peak(&foot, *at)));
+        let at = at_peaks
+            .filter(|at| both(at) > AT_PEAKS * both(&all))
+            .unwrap_or(all);
+        WITH_FACE.clone().nth(at)
     }
 
     /// Contrast of the edge at a step, with that at the face's foot if there is one.
-    fn edge(&self, px_m: f64, step: i32, face_m: Option<f64>) -> f64 {
-        let at = |down_m: f64| self.line(px_m, step, down_m);
-        face_m.map_or(at(0.0), |face_m| (at(0.0) * at(face_m)).sqrt())
+    fn edge(&self, px_m: f64, step: i32, has_face: bool) -> f64 {
+        let at = |line: Line| self.sure(px_m, step, line);
+        if has_face {
+            (at(Line::Own) * at(Line::Foot)).sqrt()
+        } else {
+            at(Line::Own)
+        }
     }
 
-    /// Contrast of a line at a step, some distance below the side; 0 if too little of it is visible.
-    fn line(&self, px_m: f64, step: i32, down_m: f64) -> f64 {
-        let contrast = self.contrast((px_m * step_px(step), down_m), BESIDE_PX * px_m);
+    /// Contrast of a line at a step; 0 if too little of it is visible.
+    fn line(&self, px_m: f64, step: i32, line: Line) -> f64 {
+        let contrast = self.contrast((px_m * step_px(step), line), BESIDE_PX * px_m);
         contrast.unwrap_or(0.0)
+    }
+
+    /// The same without what the contrast's own variation along the line explains.
+    fn sure(&self, px_m: f64, step: i32, line: Line) -> f64 {
+        let difference = self.difference((px_m * step_px(step), line), BESIDE_PX * px_m);
+        difference.map_or(0.0, |(mean, error)| (mean - SURE * error).max(0.0))
     }
 
     /// Whether the camera is on the outer side.
@@ -172,9 +226,17 @@ impl<'a> SeenSide<'a> {
         (eye.xz() - self.side.middle).dot(self.side.outward) > 0.0
     }
 
-    /// Pixel of a place on the plane, or below it.
-    fn pixel(&self, at: DVec2, down_m: f64) -> Option<DVec2> {
-        let point = DVec3::new(at.x, -down_m, at.y);
+    /// Pixel of a place on the plane, or straight below it.
+    fn pixel(&self, at: DVec2, line: Line) -> Option<DVec2> {
+        let on_plane = DVec3::new(at.x, 0.0, at.y);
+        let below = |foot_from_plane: &DMat4| {
+            let foot = foot_from_plane.transform_point3(on_plane) * DVec3::new(1.0, 0.0, 1.0);
+            foot_from_plane.inverse().transform_point3(foot)
+        };
+        let point = match line {
+            Line::Own => on_plane,
+            Line::Foot => below(self.side.foot_from_plane.as_ref()?),
+        };
         let in_camera = self.camera_from_plane.transform_point3(point);
         self.level.intrinsics.pixel_of(in_camera)
     }
@@ -183,12 +245,12 @@ impl<'a> SeenSide<'a> {
     fn px_m(&self) -> Option<f64> {
         const APART_M: f64 = 1e-4;
         let [a, b] =
-            [0.0, APART_M].map(|out_m| self.pixel(self.side.middle + out_m * self.side.outward, 0.0));
+            [0.0, APART_M].map(|out_m| self.pixel(self.side.middle + out_m * self.side.outward, Line::Own));
         let (a, b) = a.zip(b)?;
         let along = [-1.0, 1.0].map(|end| {
             self.pixel(
                 self.side.middle + end * self.side.half_m * self.side.outward.perp(),
-                0.0,
+                Line::Own,
             )
         });
         let (from, to) = along[0].zip(along[1])?;
@@ -197,22 +259,40 @@ impl<'a> SeenSide<'a> {
         (moved_px > 0.0).then(|| APART_M / moved_px)
     }
 
-    /// Difference of the mean logarithms of light on both sides of an edge, some distance outside of
-    /// the side and below it; `None` if too little of it is visible.
-    fn contrast(&self, (out_m, down_m): (f64, f64), beside_m: f64) -> Option<f64> {
+    /// Difference of the mean logarithms of light on both sides of a line, some distance outside of
+    /// the side; `None` if too little of it is visible.
+    fn contrast(&self, at: (f64, Line), beside_m: f64) -> Option<f64> {
+        self.difference(at, beside_m).map(|(mean, _)| mean)
+    }
+
+    /// The same with its standard error.
+    fn difference(&self, (out_m, line): (f64, Line), beside_m: f64) -> Option<(f64, f64)> {
         let plate = self.level.plate.as_ref()?;
-        let (mut sum, mut n) = ([0.0; 3], 0_u32);
+        let (mut sum, mut squares, mut n) = ([0.0; 3], 0.0, 0_u32);
         for place in 0..N_PLACES {
             let part = COVERED * (2.0 * f64::from(place) / f64::from(N_PLACES - 1) - 1.0);
             let at = self.side.middle + part * self.side.half_m * self.side.outward.perp();
-            let color = |out_m: f64| plate.sample(self.pixel(at + out_m * self.side.outward, down_m)?);
+            let color = |out_m: f64| plate.sample(self.pixel(at + out_m * self.side.outward, line)?);
             if let Some((inside, outside)) = color(out_m - beside_m).zip(color(out_m + beside_m)) {
                 n += 1;
                 let log = |color: Color, channel: usize| f64::from(color[channel].max(DARKEST).ln());
-                sum = [0, 1, 2].map(|channel| sum[channel] + log(inside, channel) - log(outside, channel));
+                let difference = [0, 1, 2].map(|channel| log(inside, channel) - log(outside, channel));
+                squares += difference.iter().map(|value| value * value).sum::<f64>();
+                sum = [0, 1, 2].map(|channel| sum[channel] + difference[channel]);
             }
         }
-        let square: f64 = sum.iter().map(|sum| sum * sum).sum();
-        (n >= LEAST_PLACES).then(|| square.sqrt() / f64::from(n))
+        let n_places = f64::from(n);
+        let square = sum.iter().map(|sum| sum * sum).sum::<f64>() / (n_places * n_places);
+        let error = ((squares / n_places - square).max(0.0) / n_places).sqrt();
+        (n >= LEAST_PLACES).then_some((square.sqrt(), error))
     }
+}
+
+/// A line along a side.
+#[derive(Clone, Copy)]
+enum Line {
+    /// The side itself.
+    Own,
+    /// The foot of the face below it.
+    Foot,
 }

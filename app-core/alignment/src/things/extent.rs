@@ -146,8 +146,8 @@ impl Extent {
         let shown = || Some(outline.places(plane_from_camera, is_level)).filter(is_enough);
         let places = measured.or_else(shown)?;
         let smallest = Self::smallest(&places)?;
-        let face_m = (is_level && !is_measured).then(|| smallest.height_m(plane_from_camera, outline.table));
-        let on_edges = |extent: &Self| extent.on_edges(outline.level, plane_from_camera, face_m);
+        let foot = (!is_measured).then_some(outline.table);
+        let on_edges = |extent: &Self| extent.on_edges(outline.level, plane_from_camera, foot);
         // The first round corrects the lengths that the second one looks along.
         let smallest = on_edges(&on_edges(&smallest));
         // How far a thing in the place's own colours reaches is not seen.
@@ -199,43 +199,48 @@ impl Extent {
         &self,
         level: &Level,
         plane_from_camera: &DMat4,
-        face_m: Option<f64>,
+        foot: Option<&SeenReceiver>,
     ) -> Option<Self> {
-        let moved = |extent: &Self| extent.moved(face_m, |side| clearer_m(side, plane_from_camera, level));
+        let foot_from_plane = foot.map(|foot| foot.plane_from_camera * plane_from_camera.inverse());
+        let moved =
+            |extent: &Self| extent.moved(foot_from_plane, |side| clearer_m(side, plane_from_camera, level));
         let once = moved(self);
         let is_moved = once.half_m != self.half_m || once.middle != self.middle;
         // The first round corrects the lengths that the second one looks along.
         is_moved.then(|| moved(&once))
     }
 
-    /// The rectangle with its sides on edges of the plate, above upright faces of a height.
-    fn on_edges(&self, level: &Level, plane_from_camera: &DMat4, face_m: Option<f64>) -> Self {
-        self.moved(face_m, |side| moved_m(side, plane_from_camera, level))
+    /// The rectangle with its sides on edges of the plate, above upright faces down to a receiver.
+    fn on_edges(&self, level: &Level, plane_from_camera: &DMat4, foot: Option<&SeenReceiver>) -> Self {
+        let foot_from_plane = foot.map(|foot| foot.plane_from_camera * plane_from_camera.inverse());
+        self.moved(foot_from_plane, |side| moved_m(side, plane_from_camera, level))
     }
 
-    /// The same if no side moves far; if one does, to a line of a pattern, then with each side on the
-    /// nearest edge.
-    pub(super) fn on_near_edges(self, level: &Level, plane_from_camera: &DMat4, face_m: f64) -> Self {
-        let on_edges = |face_m: Option<f64>| self.on_edges(level, plane_from_camera, face_m);
-        let above_face = on_edges(Some(face_m));
+    /// The rectangle with its sides on edges above upright faces, and the one with each side on the nearest
+    /// edge; `None` for the latter if no side moves far, to a line of a pattern.
+    pub(super) fn on_near_edges(
+        &self,
+        level: &Level,
+        plane_from_camera: &DMat4,
+        foot: &SeenReceiver,
+    ) -> (Self, Option<Self>) {
+        let on_edges = |foot: Option<&SeenReceiver>| self.on_edges(level, plane_from_camera, foot);
+        let above_face = on_edges(Some(foot));
         let longer_m = (above_face.half_m - self.half_m).abs().max_element();
         let farthest_m = above_face.middle.distance(self.middle) + longer_m;
-        if farthest_m < PATTERN_M {
-            above_face
-        } else {
-            on_edges(None)
-        }
+        let nearest = (farthest_m >= PATTERN_M).then(|| on_edges(None));
+        (above_face, nearest)
     }
 
     /// The rectangle with its sides moved outward by some metres.
-    fn moved(&self, face_m: Option<f64>, by_m: impl Fn(&Side) -> f64) -> Self {
+    fn moved(&self, foot_from_plane: Option<DMat4>, by_m: impl Fn(&Side) -> f64) -> Self {
         let axis = DVec2::from_angle(self.turn_rad);
         let moved_m = |outward: DVec2, out_m: f64, half_m: f64| {
             let side = Side {
                 middle: self.middle + out_m * outward,
                 outward,
                 half_m,
-                face_m,
+                foot_from_plane,
             };
             by_m(&side).max(-MOST_INWARD * out_m)
         };
@@ -253,8 +258,10 @@ impl Extent {
         }
     }
 
-    /// Mean contrast of its visible sides in the plate, in logarithms of light.
-    pub(super) fn contrast(&self, level: &Level, plane_from_camera: &DMat4) -> f64 {
+    /// Mean contrast of its visible sides in the plate, in logarithms of light, with the feet of the faces
+    /// below them on a receiver.
+    pub(super) fn contrast(&self, level: &Level, plane_from_camera: &DMat4, foot: &SeenReceiver) -> f64 {
+        let foot_from_plane = foot.plane_from_camera * plane_from_camera.inverse();
         let axis = DVec2::from_angle(self.turn_rad);
         let ends = [(axis, self.half_m), (axis.perp(), self.half_m.perp().abs())];
         let sides = ends.into_iter().flat_map(|(axis, half_m)| {
@@ -262,7 +269,7 @@ impl Extent {
                 middle: self.middle + half_m.x * outward,
                 outward,
                 half_m: half_m.y,
-                face_m: None,
+                foot_from_plane: Some(foot_from_plane),
             })
         });
         let contrasts: Vec<f64> = sides
@@ -284,7 +291,7 @@ impl Extent {
     }
 
     /// Extends the low side of a plane to the receiver, if it comes close to it.
-    fn down_to(self, table: &SeenReceiver, plane_from_camera: &DMat4) -> Self {
+    pub(super) fn down_to(self, table: &SeenReceiver, plane_from_camera: &DMat4) -> Self {
         let axis = DVec2::from_angle(self.turn_rad);
         let table_from_plane = table.plane_from_camera * plane_from_camera.inverse();
         let height_m = |at: DVec2| table_from_plane.transform_point3(DVec3::new(at.x, 0.0, at.y)).y;

@@ -95,8 +95,8 @@ fn corrected_plane(
     let as_listed = Extent::of_plane(listed, &plane_from_camera);
     let height_m = as_listed.height_m(&plane_from_camera, table);
     let tilt = (table.plane_from_camera * plane_from_camera.inverse()).y_axis.y;
-    let face_m = (tilt > LEVEL).then_some(height_m);
-    let by_edges = as_listed.clearer(level, &plane_from_camera, face_m);
+    let foot = (tilt > LEVEL).then_some(table);
+    let by_edges = as_listed.clearer(level, &plane_from_camera, foot);
     if by_shadow.is_none() && by_edges.is_none() {
         return None;
     }

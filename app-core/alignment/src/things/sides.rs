@@ -139,7 +139,7 @@ fn sides(level: &Level, grown: Option<&Grown>, top: &SeenReceiver, others: &[See
         let is_thing = |at: &&IVec2| grown.is_some_and(|grown| grown.of_pixel(**at).is_some());
         let n_thing = pixels.iter().filter(is_thing).count();
         let is_filled = n_thing as f64 >= FILLED * pixels.len() as f64;
-        let edge = edge(top, outward, height_m);
+        let edge = edge(top, outward, &others[GROUND]);
         (pixels.len() >= LEAST_PIXELS).then(|| Side {
             is_seen: is_filled || face_contrast(&edge, &top.plane_from_camera, level) > CLEAR,
             plane,
@@ -164,14 +164,14 @@ fn height_m(top: &SeenReceiver, table: &SeenReceiver) -> Option<f64> {
 }
 
 /// The edge of a top above a side, in the top's own plane.
-fn edge(top: &SeenReceiver, outward: DVec3, height_m: f64) -> edges::Side {
+fn edge(top: &SeenReceiver, outward: DVec3, table: &SeenReceiver) -> edges::Side {
     let half_m = top.half_extent_m();
     let outward = outward.xz();
     edges::Side {
         middle: outward * half_m,
         outward,
         half_m: outward.perp().abs().dot(half_m),
-        face_m: Some(height_m),
+        foot_from_plane: Some(table.plane_from_camera * top.plane_from_camera.inverse()),
     }
 }
 

@@ -16,12 +16,6 @@ use app_scene::scene::MAX_RECEIVERS;
 /// Maximum number of things whose planes are searched: more receivers are not moved.
 const MOST_SEARCHED: usize = MAX_RECEIVERS - 1;
 
-/// Contrast of the bounds by the shadow over that of the grown ones from which on the former are right.
-/// Checked books, or books on a table in their colours, have 2.05, 2.2, 4.0 and 7.6. A green book on wood
-/// has 1.76: its face in the shadow looks like its top, and the error is 4.78 codes for 2.00. Both are
-/// about equal for three more books, with 1.02, 1.37 and 1.77.
-const MUCH_CLEARER: f64 = 1.9;
-
 /// Finds the planes of a level's things: their upper sides.
 pub(super) fn find(
     place: &Place<'_>,
@@ -74,17 +68,13 @@ pub(super) fn find(
 }
 
 /// The plane by what the pictures show: within the bounds to which the thing grows, or within those by
-/// the shadow if only they are known or the plate shows them much more clearly. The shadow bounds level
-/// planes only.
+/// the shadow if only they are known or the plate shows them more clearly.
 fn in_pictures(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     let first = search.best_plane(&mut Rasterizer::default())?;
     let grown = found_from(search.clone(), &first, outline);
-    if grown.as_ref().is_some_and(|grown| grown.report.tilt_rad > 0.0) {
-        return grown;
-    }
     let by_shadow = by_shadow::found(search, first, outline);
     match (grown, by_shadow) {
-        (Some(grown), Some(by_shadow)) if by_shadow.contrast < MUCH_CLEARER * grown.contrast => Some(grown),
+        (Some(grown), Some(by_shadow)) if by_shadow.contrast < grown.contrast => Some(grown),
         (grown, by_shadow) => by_shadow.or(grown),
     }
 }
