@@ -139,13 +139,13 @@ fn a_thing_in_the_toys_shadow_stands_up() {
     );
 }
 
-/// Marks are ragged: where they end higher up than beside, the thing does not.
+/// Marks have holes: what is above one stands where the thing ends below it.
 #[test]
-fn a_ragged_foot_is_straight() {
-    let is_notch = |x: u32| x % 16 < 3;
-    let things = found(true, |at| is_notch(at.x) && at.y >= BOARD[1].y - 6).unwrap();
-    let columns = (BOARD[0].x + 5..BOARD[1].x - 5).filter(|x| is_notch(*x));
-    let above = columns.flat_map(|x| (226..242).map(move |y| UVec2::new(x, y)));
+fn a_hole_in_a_thing_is_no_foot() {
+    let hole = [UVec2::new(383, 238), UVec2::new(395, 248)];
+    let is_hole = |at: UVec2| at.cmpge(hole[0]).all() && at.cmplt(hole[1]).all();
+    let things = found(true, is_hole).unwrap();
+    let above = (hole[0].x..hole[1].x).flat_map(|x| (226..234).map(move |y| UVec2::new(x, y)));
     let off_mm = above.map(|at| {
         let point = things.raised((at.y * things.size_px().x + at.x) as usize);
         let height_m = f64::from(point.height()) * f64::from(HEIGHT_STEP_M);
