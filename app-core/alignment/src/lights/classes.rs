@@ -27,6 +27,8 @@ use app_scene::scene::{Light, MAX_LIGHTS};
 const BEYOND: f64 = 0.3;
 /// Hidden fraction of a light from which a pixel votes for the light's share.
 const HIDDEN: f32 = 0.7;
+/// Noise of a ratio from which a channel is black in the plate, if another one is not: that of a code of 10.
+const BLACK: f32 = 0.1;
 /// Hidden fraction of every light up to which a pixel is unshadowed.
 const OPEN: f32 = 0.02;
 /// Bounce of a toy of middle grey, as in `fit_solve`.
@@ -419,21 +421,24 @@ impl Compared {
             .fold(0.0, f32::max)
     }
 
-    /// Whether a channel differs from the model by more than a number of plates, and than a multiple of its
-    /// own noise: in a plate that is black in one channel, the others tell as much as in any.
+    /// Whether a channel differs from the model by more than a number of plates, and than a multiple of the
+    /// noise, without channels that are black in the plate.
     pub(crate) fn is_away(&self, least: f32, of_noise: f32) -> bool {
         self.is_beyond(&self.model, (least, of_noise))
     }
 
-    /// Whether a channel has changed since the plate by as much.
-    pub(crate) fn has_changed(&self, least: f32, of_noise: f32) -> bool {
-        self.is_beyond(&[1.0; 3], (least, of_noise))
+    /// Whether a channel has changed since the plate by more than a number of plates, whatever the noise.
+    pub(crate) fn has_changed(&self, least: f32) -> bool {
+        self.is_beyond(&[1.0; 3], (least, 0.0))
     }
 
     fn is_beyond(&self, from: &Color, (least, of_noise): (f32, f32)) -> bool {
-        (0..3).any(|channel| {
-            (self.ratio[channel] - from[channel]).abs() > least.max(of_noise * self.noises[channel])
-        })
+        let usable = self.noises.into_iter().fold(f32::INFINITY, f32::min).max(BLACK);
+        let is_usable = |noise: &f32| *noise <= usable;
+        let noise = self.noises.into_iter().filter(is_usable).fold(0.0, f32::max);
+        (0..3)
+            .filter(|channel| is_usable(&self.noises[*channel]))
+            .any(|channel| (self.ratio[channel] - from[channel]).abs() > least.max(of_noise * noise))
     }
 
     /// The share of the light that the model blocks.

@@ -103,7 +103,7 @@ impl Seeds {
         }
         let open = compared
             .iter()
-            .filter(|pixel| pixel.taken() < OPEN && !pixel.has_changed(EXPLAINED, 0.5 * OF_NOISE));
+            .filter(|pixel| pixel.taken() < OPEN && !pixel.has_changed(EXPLAINED));
         let open = open.filter_map(|pixel| index_in(size_px, pixel.at));
         let mut found = Self {
             open: open.collect(),
