@@ -221,7 +221,11 @@ impl Upright<'_> {
         let eye = self.table.plane_from_camera.w_axis.truncate();
         let lowered = |(point, thing): (&Option<Point>, &Option<usize>)| {
             let (point, top_m) = ((*point)?, tops_m[(*thing)?]);
-            let times = (eye.y - point.at.y.min(top_m)) / (eye.y - point.at.y);
+            // A ray to a point above the camera does not come down to a top.
+            if point.at.y <= top_m || point.at.y >= eye.y {
+                return Some(point);
+            }
+            let times = (eye.y - top_m) / (eye.y - point.at.y);
             Some(Point {
                 at: eye + times * (point.at - eye),
                 ..point
