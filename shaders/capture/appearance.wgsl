@@ -25,6 +25,7 @@
 // Added to the squared distance of a pixel at another depth, which counts only if there is no
 // other.
 const OTHER_SURFACE: i32 = 64;
+
 fn is_one_surface(texel: vec2i) -> bool {
   return textureLoad(validity, texel, 0).g > 0.0;
 }

@@ -172,8 +172,7 @@ fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, expecte
       *is_beside = true;
       continue;
     }
-    let source = source_texel(texel, number);
-    let color = unmixed_paint(source);
+    let color = unmixed_paint(source_texel(texel, number));
     let corner = vec2f(vec2u(k & 1u, k >> 1u));
     let bilinear = mix(1.0 - t.x, t.x, corner.x) * mix(1.0 - t.y, t.y, corner.y);
     let own = bilinear * select(CARRIED_WEIGHT, 1.0, surface > 0.0) * select(1.0, OTHER_PAINT_WEIGHT, is_other);

@@ -43,6 +43,11 @@ impl SeenReceiver {
         }
     }
 
+    /// From the space of another plane to this one's.
+    pub(super) fn own_from_plane(&self, plane_from_camera: &DMat4) -> DMat4 {
+        self.plane_from_camera * plane_from_camera.inverse()
+    }
+
     /// Half its sides, in metres.
     pub(super) fn half_extent_m(&self) -> DVec2 {
         self.half_extent_m

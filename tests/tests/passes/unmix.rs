@@ -92,10 +92,11 @@ fn errors_of_codes(source: &str) -> Errors {
     let size = UVec2::new(83, 1);
     let drawn = Device::shared().draw(Draw::of(&source, "fs_codes", size), [&[], &[]]);
     let pairs = texels_of(size).flat_map(|at| {
-        let at = (DVec3::splat(f64::from(at.x)), drawn.at(at));
-        let codes = coded_factor(at.0 * (9.0 / 82.0));
-        let factors = factor_of_code(at.0 * (12.0 / 1023.0));
-        [(at.1.x, codes.x), (at.1.y, factors.x)]
+        let place = DVec3::splat(f64::from(at.x));
+        let codes = coded_factor(place * (9.0 / 82.0));
+        let factors = factor_of_code(place * (12.0 / 1023.0));
+        let actual = drawn.at(at);
+        [(actual.x, codes.x), (actual.y, factors.x)]
     });
     Errors::between(pairs.collect::<Vec<_>>())
 }

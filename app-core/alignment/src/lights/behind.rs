@@ -22,7 +22,7 @@ impl<'a> Behind<'a> {
     /// `middles` are the lamp's centre in the space of each receiver.
     pub(super) fn new(receivers: &'a [SeenReceiver], lamp: &Lamp, middles: Vec<DVec4>) -> Self {
         let up = |below: &SeenReceiver, top: &SeenReceiver| {
-            let top_from_below = top.plane_from_camera * below.plane_from_camera.inverse();
+            let top_from_below = top.own_from_plane(&below.plane_from_camera);
             is_top(&top_from_below.inverse()).then(|| top_from_below.y_axis.truncate())
         };
         let tops = (0..receivers.len()).map(|below| {

@@ -78,8 +78,7 @@ pub(crate) struct Compared {
     pub(crate) blocked: [f32; MAX_LIGHTS],
     /// Index of the receiver that is there.
     pub(crate) on: usize,
-    /// Noise of the ratio, as a deviation: of the noisiest channel, and of each.
-    pub(crate) noise: f32,
+    /// Noise of the ratio in each channel, as a deviation.
     pub(crate) noises: Color,
     /// Probability of the receiver.
     pub(crate) receiver: f32,
@@ -320,7 +319,6 @@ impl<'a> Mixture<'a> {
                 ratio: [1.0; 3],
                 model: [1.0; 3],
                 blocked: array::from_fn(|lamp| taken.get(lamp).map_or(0.0, |taken| taken[index])),
-                noise: noises.into_iter().fold(0.0, f32::max),
                 noises,
                 receiver: FIRST_PRIOR,
             }
@@ -414,6 +412,11 @@ fn box_blurred(values: &[[f32; 2]], size_px: IVec2, axis: IVec2) -> Vec<[f32; 2]
 }
 
 impl Compared {
+    /// Noise of the ratio, as a deviation: that of the noisiest channel.
+    pub(crate) fn noise(&self) -> f32 {
+        self.noises.into_iter().fold(0.0, f32::max)
+    }
+
     /// Largest difference of a channel from the model, in plates.
     fn away(&self) -> f32 {
         (0..3)
@@ -461,10 +464,10 @@ impl Compared {
             // The three channels are correlated, so that they count as one.
             (-0.5 * squares / 3.0).exp() / deviation
         };
-        let deviation = deviation.hypot(self.noise);
+        let deviation = deviation.hypot(self.noise());
         let receiver = receiver * density(&self.model, deviation);
         let unchanged = if self.is_changed() {
-            unchanged * density(&[1.0; 3], UNCHANGED.hypot(self.noise))
+            unchanged * density(&[1.0; 3], UNCHANGED.hypot(self.noise()))
         } else {
             0.0
         };

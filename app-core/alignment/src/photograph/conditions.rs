@@ -6,6 +6,7 @@ use super::{MOST_OUTLINE_PX, Photograph, base};
 use crate::found_planes::FoundReceiver;
 use crate::lights::FoundReflection;
 use crate::measured_points::MeasuredPoints;
+use crate::picture::Pyramid;
 use crate::things::Colored;
 use crate::{gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
@@ -41,8 +42,13 @@ impl Photograph {
     }
 
     fn with_unknown(&self, marks: &[Mark]) -> Self {
+        self.with_pictures(self.pyramid.clear_of(marks))
+    }
+
+    /// The same place and camera with other pictures.
+    fn with_pictures(&self, pyramid: Pyramid) -> Self {
         Self {
-            pyramid: self.pyramid.clear_of(marks),
+            pyramid,
             receivers: self.receivers.clone(),
             camera_from_world: self.camera_from_world,
         }
@@ -58,13 +64,8 @@ impl Photograph {
         let shape = self.shape(scene, &input.world_from_object)?;
         let level = self.pyramid.level(0);
         let coverage = pose::covered(&shape, level);
-        Ok(Self {
-            pyramid: self
-                .pyramid
-                .with_largest(things::with_mended_plate(level, &coverage, things.marks())),
-            receivers: self.receivers.clone(),
-            camera_from_world: self.camera_from_world,
-        })
+        let mended = things::with_mended_plate(level, &coverage, things.marks());
+        Ok(self.with_pictures(self.pyramid.with_largest(mended)))
     }
 
     /// With unknown pixels at listed planes of things and around them; `None` if none is listed.
@@ -123,11 +124,7 @@ impl Photograph {
                 plate.add(at, [0, 1, 2].map(|channel| light(channel, 0.0, 1.0)));
             }
         }
-        Ok(Self {
-            pyramid: self.pyramid.with_largest(level),
-            receivers: self.receivers.clone(),
-            camera_from_world: self.camera_from_world,
-        })
+        Ok(self.with_pictures(self.pyramid.with_largest(level)))
     }
 
     /// Other things beside the toy in its place, under given lights; `None` if they cannot be

@@ -83,7 +83,7 @@ impl Search<'_> {
         let ratios = self.on_plane.ratios(raster, &plane, &places);
         let evidence = pixels.iter().zip(ratios).filter_map(|(pixel, of_plane)| {
             let of_plane = of_plane?;
-            let seen = (pixel.ratio, pixel.noise);
+            let seen = (pixel.ratio, pixel.noise());
             let [known, new] = [(pixel.model, 1.0), (of_plane, depth)]
                 .map(|(expected, depth)| square(&seen, expected, depth));
             // What is surely explained, and what is surely not, is as for the seeds of things.
@@ -142,5 +142,5 @@ impl Search<'_> {
 /// Pixels with little noise.
 fn certain(comparison: &Comparison) -> Vec<&Compared> {
     let pixels = comparison.pixels.iter();
-    pixels.filter(|pixel| pixel.noise < NOISIEST).collect()
+    pixels.filter(|pixel| pixel.noise() < NOISIEST).collect()
 }

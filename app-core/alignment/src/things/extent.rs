@@ -201,7 +201,7 @@ impl Extent {
         plane_from_camera: &DMat4,
         foot: Option<&SeenReceiver>,
     ) -> Option<Self> {
-        let foot_from_plane = foot.map(|foot| foot.plane_from_camera * plane_from_camera.inverse());
+        let foot_from_plane = foot.map(|foot| foot.own_from_plane(plane_from_camera));
         let moved =
             |extent: &Self| extent.moved(foot_from_plane, |side| clearer_m(side, plane_from_camera, level));
         let once = moved(self);
@@ -212,7 +212,7 @@ impl Extent {
 
     /// The rectangle with its sides on edges of the plate, above upright faces down to a receiver.
     fn on_edges(&self, level: &Level, plane_from_camera: &DMat4, foot: Option<&SeenReceiver>) -> Self {
-        let foot_from_plane = foot.map(|foot| foot.plane_from_camera * plane_from_camera.inverse());
+        let foot_from_plane = foot.map(|foot| foot.own_from_plane(plane_from_camera));
         self.moved(foot_from_plane, |side| moved_m(side, plane_from_camera, level))
     }
 
@@ -261,7 +261,7 @@ impl Extent {
     /// Mean contrast of its visible sides in the plate, in logarithms of light, with the feet of the faces
     /// below them on a receiver.
     pub(super) fn contrast(&self, level: &Level, plane_from_camera: &DMat4, foot: &SeenReceiver) -> f64 {
-        let foot_from_plane = foot.plane_from_camera * plane_from_camera.inverse();
+        let foot_from_plane = foot.own_from_plane(plane_from_camera);
         let axis = DVec2::from_angle(self.turn_rad);
         let ends = [(axis, self.half_m), (axis.perp(), self.half_m.perp().abs())];
         let sides = ends.into_iter().flat_map(|(axis, half_m)| {
@@ -293,7 +293,7 @@ impl Extent {
     /// Extends the low side of a plane to the receiver, if it comes close to it.
     pub(super) fn down_to(self, table: &SeenReceiver, plane_from_camera: &DMat4) -> Self {
         let axis = DVec2::from_angle(self.turn_rad);
-        let table_from_plane = table.plane_from_camera * plane_from_camera.inverse();
+        let table_from_plane = table.own_from_plane(plane_from_camera);
         let height_m = |at: DVec2| table_from_plane.transform_point3(DVec3::new(at.x, 0.0, at.y)).y;
         let sides = [
             (axis, self.half_m.x),

@@ -16,7 +16,7 @@ pub(super) const NOISIEST: f32 = 0.2;
 pub(super) fn pixels<'a>(comparison: &'a Comparison, grown: &Grown, thing: usize) -> Vec<&'a Compared> {
     let is_within = |at: IVec2| cross(at, 1).all(|at| grown.of_pixel(at) == Some(thing));
     let all = comparison.pixels.iter();
-    all.filter(|pixel| pixel.noise < NOISIEST && is_within(pixel.at))
+    all.filter(|pixel| pixel.noise() < NOISIEST && is_within(pixel.at))
         .collect()
 }
 

@@ -69,7 +69,7 @@ fn slices(top: &SeenReceiver, height_m: f64) -> impl Iterator<Item = SeenReceive
 
 /// Height of a listed plane's centre above the table; `None` if it is no top of a thing.
 fn height_m(listed: &SeenReceiver, table: &SeenReceiver) -> Option<f64> {
-    let table_from_listed = table.plane_from_camera * listed.plane_from_camera.inverse();
+    let table_from_listed = table.own_from_plane(&listed.plane_from_camera);
     let height_m = table_from_listed.w_axis.y;
     (table_from_listed.y_axis.y >= LEAST_COSINE && height_m >= LEAST_M).then_some(height_m)
 }
@@ -94,7 +94,7 @@ fn corrected_plane(
         .map_or(listed.plane_from_camera, |nearer| nearer.plane_from_camera);
     let as_listed = Extent::of_plane(listed, &plane_from_camera);
     let height_m = as_listed.height_m(&plane_from_camera, table);
-    let tilt = (table.plane_from_camera * plane_from_camera.inverse()).y_axis.y;
+    let tilt = table.own_from_plane(&plane_from_camera).y_axis.y;
     let foot = (tilt > LEVEL).then_some(table);
     let by_edges = as_listed.clearer(level, &plane_from_camera, foot);
     if by_shadow.is_none() && by_edges.is_none() {
@@ -125,7 +125,7 @@ fn by_shadow(
     let pixels: Vec<&Compared> = comparison
         .pixels
         .iter()
-        .filter(|pixel| pixel.noise < NOISIEST && inner.point_at(&level.intrinsics, pixel.at).is_some())
+        .filter(|pixel| pixel.noise() < NOISIEST && inner.point_at(&level.intrinsics, pixel.at).is_some())
         .collect();
     if pixels.len() < LEAST_PIXELS {
         return None;

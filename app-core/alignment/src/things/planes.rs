@@ -196,7 +196,7 @@ impl<'a> Search<'a> {
         Self {
             apart,
             pixels: looked_at().map(|pixel| pixel.at).collect(),
-            seen: looked_at().map(|pixel| (pixel.ratio, pixel.noise)).collect(),
+            seen: looked_at().map(|pixel| (pixel.ratio, pixel.noise())).collect(),
             expected: looked_at().map(|pixel| Some(pixel.model)).collect(),
             ..self
         }
@@ -208,7 +208,7 @@ impl<'a> Search<'a> {
         if of_others <= LEAST_LISTED {
             return None;
         }
-        let table_from_plane = self.table.plane_from_camera * listed.plane_from_camera.inverse();
+        let table_from_plane = self.table.own_from_plane(&listed.plane_from_camera);
         let (normal, origin) = (
             table_from_plane.y_axis.truncate(),
             table_from_plane.w_axis.truncate(),

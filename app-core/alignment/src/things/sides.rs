@@ -111,7 +111,7 @@ fn losses(
 ) -> Option<[f64; 2]> {
     let shown: HashSet<IVec2> = side.pixels.iter().copied().collect();
     let pixels = comparison.pixels.iter();
-    let pixels = pixels.filter(|pixel| pixel.noise < NOISIEST && shown.contains(&pixel.at));
+    let pixels = pixels.filter(|pixel| pixel.noise() < NOISIEST && shown.contains(&pixel.at));
     let pixels: Vec<&Compared> = pixels.collect();
     match Search::new((place.shape, place.receivers), level, comparison, &pixels) {
         Some(search) if pixels.len() >= LEAST_COMPARED => {
@@ -152,13 +152,13 @@ fn sides(level: &Level, grown: Option<&Grown>, top: &SeenReceiver, others: &[See
 
 /// Whether a side lies along a receiver, such as a wall.
 fn is_along(side: &SeenReceiver, receiver: &SeenReceiver) -> bool {
-    let receiver_from_side = receiver.plane_from_camera * side.plane_from_camera.inverse();
+    let receiver_from_side = receiver.own_from_plane(&side.plane_from_camera);
     receiver_from_side.y_axis.y > LEVEL && receiver_from_side.w_axis.y.abs() < ALONG_M
 }
 
 /// Height of a level top above a receiver; `None` if it is tilted, or hardly above it.
 fn height_m(top: &SeenReceiver, table: &SeenReceiver) -> Option<f64> {
-    let table_from_top = table.plane_from_camera * top.plane_from_camera.inverse();
+    let table_from_top = table.own_from_plane(&top.plane_from_camera);
     let height_m = table_from_top.w_axis.y;
     (table_from_top.y_axis.y > LEVEL && height_m > LEAST_M).then_some(height_m)
 }
@@ -171,7 +171,7 @@ fn edge(top: &SeenReceiver, outward: DVec3, table: &SeenReceiver) -> edges::Side
         middle: outward * half_m,
         outward,
         half_m: outward.perp().abs().dot(half_m),
-        foot_from_plane: Some(table.plane_from_camera * top.plane_from_camera.inverse()),
+        foot_from_plane: Some(table.own_from_plane(&top.plane_from_camera)),
     }
 }
 

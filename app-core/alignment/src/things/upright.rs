@@ -119,6 +119,15 @@ pub(super) struct Upright<'a> {
     pub(super) lights: Vec<Light>,
 }
 
+/// What is known before the points are.
+struct Known {
+    n_things: usize,
+    /// Exposure of the frame over that of the plate.
+    gain: f32,
+    /// For each light and pixel of the level, the part of the receiver's light that the toy takes from it.
+    taken: Vec<Vec<f32>>,
+}
+
 /// Exposure of the frame over that of the plate, for each channel.
 pub(super) fn gains(level: &Level, compared: &[Compared]) -> Option<Color> {
     let of = |channel: usize| gain(level, compared, |color| color[channel]);
@@ -153,8 +162,13 @@ impl Upright<'_> {
                 })
             })
             .collect();
-        let points = self.topped(&points, (n_things, gain));
-        let agrees = self.agreeing(&points, (n_things, gain));
+        let known = Known {
+            n_things,
+            gain,
+            taken: self.taken(),
+        };
+        let points = self.topped(&points, &known);
+        let agrees = self.agreeing(&points, &known);
         let raised = points.iter().zip(&self.bodies.thing).map(|(point, thing)| {
             let point = point.filter(|_| thing.is_some_and(|thing| agrees[thing]));
             point.map_or(RaisedPoint::default(), |point| {
@@ -189,8 +203,8 @@ impl Upright<'_> {
 
     /// The points with those above a thing's top on it, if the toy's shadow shows that it has one: the
     /// level face of a block, say, which the camera sees above its sides.
-    fn topped(&self, points: &[Option<Point>], of: (usize, f32)) -> Vec<Option<Point>> {
-        let mut tops_m = vec![0.0_f64; of.0];
+    fn topped(&self, points: &[Option<Point>], known: &Known) -> Vec<Option<Point>> {
+        let mut tops_m = vec![0.0_f64; known.n_things];
         for (point, thing) in points.iter().zip(&self.bodies.thing) {
             if let (Some(point), Some(thing)) = (point, thing) {
                 tops_m[*thing] = tops_m[*thing].max(point.at.y);
@@ -198,16 +212,21 @@ impl Upright<'_> {
         }
         let tallest_m = tops_m.clone();
         let mut best: Vec<f32> = self
-            .gained(points, of)
+            .gained(points, known)
             .iter()
             .map(|gained| OF_TOP * gained)
             .collect();
         let has_shadow: Vec<bool> = best.iter().map(|gained| *gained > 0.0).collect();
-        for step in FIRST_TOP..N_TOPS {
+        let tried = if has_shadow.contains(&true) {
+            FIRST_TOP..N_TOPS
+        } else {
+            0..0
+        };
+        for step in tried {
             let part = f64::from(step) / f64::from(N_TOPS);
             let tried_m: Vec<f64> = tallest_m.iter().map(|tallest_m| part * tallest_m).collect();
-            let gained = self.gained(&self.lowered(points, &tried_m), of);
-            for thing in 0..of.0 {
+            let gained = self.gained(&self.lowered(points, &tried_m), known);
+            for thing in 0..known.n_things {
                 if has_shadow[thing] && gained[thing] > best[thing] {
                     (tops_m[thing], best[thing]) = (tried_m[thing], gained[thing]);
                 }
@@ -236,28 +255,24 @@ impl Upright<'_> {
 
     /// For each thing, how much less the picture differs from its points in the toy's shadow than from
     /// none in it.
-    fn gained(&self, points: &[Option<Point>], of: (usize, f32)) -> Vec<f32> {
-        let losses = self.losses(points, of).into_iter();
+    fn gained(&self, points: &[Option<Point>], known: &Known) -> Vec<f32> {
+        let losses = self.losses(points, known).into_iter();
         losses.map(|([with, without], _)| without - with).collect()
     }
 
     /// For each thing, whether the toy's shadow in the picture is where its points have it.
-    fn agreeing(&self, points: &[Option<Point>], of: (usize, f32)) -> Vec<bool> {
-        let agrees = self.losses(points, of).into_iter();
+    fn agreeing(&self, points: &[Option<Point>], known: &Known) -> Vec<bool> {
+        let agrees = self.losses(points, known).into_iter();
         let agrees = agrees.map(|([with, without], n)| n >= LEAST_SHADOWED && with < OF_NONE * without);
         agrees.collect()
     }
 
     /// For each thing, the squared difference of the picture from its points in the toy's shadow, and
     /// from none in it, and the number of pixels in it.
-    fn losses(&self, points: &[Option<Point>], (n_things, gain): (usize, f32)) -> Vec<([f32; 2], usize)> {
+    fn losses(&self, points: &[Option<Point>], known: &Known) -> Vec<([f32; 2], usize)> {
         let size_px = self.level.frame.size_px;
-        let shares = self.shares();
-        let hidden: Vec<Vec<f32>> = (0..self.lights.len())
-            .map(|light| in_level(size_px, self.compared, f32::NAN, |pixel| pixel.blocked[light]))
-            .collect();
-        let mut losses = vec![[0.0; 2]; n_things];
-        let mut n_shadowed = vec![0; n_things];
+        let mut losses = vec![[0.0; 2]; known.n_things];
+        let mut n_shadowed = vec![0; known.n_things];
         for at in places(size_px) {
             let Some((thing, point)) = self.shown(at, points) else {
                 continue;
@@ -267,16 +282,15 @@ impl Upright<'_> {
                 .frame
                 .get(at)
                 .zip(self.level.plate.as_ref().and_then(|plate| plate.get(at)));
-            let hidden_from = |light: usize| {
-                let below = index_in(size_px, self.shadow_px(point.at, light)?)?;
-                Some(shares[light] * hidden[light][below])
+            let taken_from = |(light, taken): (&Light, &Vec<f32>)| {
+                Some(taken[index_in(size_px, self.shadow_px(point.at, light)?)?])
             };
-            let lost: Option<f32> = (0..self.lights.len()).map(hidden_from).sum();
+            let lost: Option<f32> = self.lights.iter().zip(&known.taken).map(taken_from).sum();
             let (Some((frame, plate)), Some(lost)) = (colors, lost) else {
                 continue;
             };
             let lost = point.of_lights * lost;
-            let ratio = brightness(&frame) / (gain * brightness(&plate));
+            let ratio = brightness(&frame) / (known.gain * brightness(&plate));
             if lost.is_finite() && ratio.is_finite() {
                 let loss = |expected: f32| (ratio - expected).powi(2).min(MOST_LOSS);
                 losses[thing][0] += loss(1.0 - lost);
@@ -294,6 +308,17 @@ impl Upright<'_> {
         let thing = self.bodies.thing[index]?;
         let is_within = cross(there, WITHIN_PX).all(|at| self.bodies.of(at) == Some(thing));
         is_within.then_some((thing, points[index]?))
+    }
+
+    /// For each light and pixel of the level, the part of the receiver's light that the toy takes from it;
+    /// not a number where nothing was compared, or if no light is lost anywhere.
+    fn taken(&self) -> Vec<Vec<f32>> {
+        let of = |(light, share): (usize, f32)| {
+            in_level(self.level.frame.size_px, self.compared, f32::NAN, |pixel| {
+                share * pixel.blocked[light]
+            })
+        };
+        self.shares().into_iter().enumerate().map(of).collect()
     }
 
     /// Each light's share of what all of them give the receiver, as on a point: by the light that is
@@ -318,8 +343,8 @@ impl Upright<'_> {
     }
 
     /// The pixel of the level at which the receiver has the shadow of a light that falls on a point.
-    fn shadow_px(&self, point: DVec3, light: usize) -> Option<IVec2> {
-        let below = shadow_of(point, &self.lights[light])?;
+    fn shadow_px(&self, point: DVec3, light: &Light) -> Option<IVec2> {
+        let below = shadow_of(point, light)?;
         Some(pixel_of(below, self.table, self.level)?.floor().as_ivec2())
     }
 }
