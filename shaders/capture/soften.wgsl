@@ -1,4 +1,4 @@
-// The plate, made as soft as the picture: a Gaussian spread, with taps on a grid along its axes.
+// The plate, made as soft as the picture: a Gaussian spread or a line's, with taps on a grid along its axes.
 //
 // Linear light is spread, not codes. Places that were not photographed do not contribute. Taps are
 // bilinear, so that distances of a little more than a pixel leave no gaps.
@@ -11,10 +11,9 @@ struct Taps {
   // Distance between taps along each axis, in pixels.
   first_px: vec2f,
   second_px: vec2f,
-  // The distance in standard deviations.
-  spacing: f32,
-  _pad_0: f32,
-  _pad_1: vec2f,
+  // The distances in standard deviations, for the taps' weights; 0 for equal weights.
+  spacing: vec2f,
+  _pad_0: vec2f,
 }
 
 @group(1) @binding(0) var<uniform> taps: Taps;

@@ -46,8 +46,8 @@ struct Globals {
   // The same for the part that the physical toy's maps cover.
   physical_box_origin_px: vec2f,
   physical_box_size_px: vec2f,
-  // Spread of a point in a softer picture, including the pixel itself: the lower triangle of the
-  // root of its covariance, (xx, yx, yy), in pixels; and its reach. 0 for a sharp picture.
+  // Spread of a point in a softer picture, including the pixel itself: its principal axes, the wider
+  // first, each as long as the standard deviation along it, in pixels. 0 for a sharp picture.
   spread: vec4f,
   n_receivers: u32,
   // Bit k is 1 if receiver k is seen from behind.
@@ -57,6 +57,11 @@ struct Globals {
   // Weight of the neighbours on either side, along each axis, in means over spread positions;
   // `spread` does not include their spread.
   soft_side: f32,
+  // Largest distance of a position of the spread from the pixel's centre; 0 for a sharp picture.
+  soft_reach_px: f32,
+  // 1 if the spread is uniform along its wider axis, as by a motion, and not normal.
+  is_line: u32,
+  _pad_0: vec2f,
   // 1 in the channel of the visibilities with the unhidden part of the first receiver's reflection;
   // 0 if the receiver is matt.
   reflection_channel: vec4f,

@@ -7,17 +7,19 @@
 
 // Whether the picture is softer than its pixels.
 fn is_soft() -> bool {
-  return globals.spread.x > 0.0;
+  return globals.soft_reach_px > 0.0;
 }
 
 // Largest distance of a position from the pixel's centre, over which the picture spreads its
 // content.
 fn soft_reach_px() -> f32 {
-  return globals.spread.w;
+  return globals.soft_reach_px;
 }
 
 const PI: f32 = 3.14159265;
 const WINITZKI: f32 = 0.147;
+// Half a line's length over its standard deviation.
+const ROOT_3: f32 = 1.7320508;
 
 // The mean over a texel and its neighbours, which were drawn with spread positions: it has nine
 // times as many positions.
@@ -47,8 +49,8 @@ fn normal_quantile(part: f32) -> f32 {
 // Offset of a position from a pixel's centre, in pixels, for a position of an even lattice over the
 // open square from 0 to 1.
 fn spread_position_px(lattice: vec2f) -> vec2f {
-  let normal = vec2f(normal_quantile(lattice.x), normal_quantile(lattice.y));
-  return spread_px(normal);
+  let along = select(normal_quantile(lattice.x), ROOT_3 * (2.0 * lattice.x - 1.0), globals.is_line == 1u);
+  return spread_px(vec2f(along, normal_quantile(lattice.y)));
 }
 
 // The distance over which `soft_texel`'s mean would spread the position with this number.
@@ -58,7 +60,7 @@ fn beside_px(k: u32) -> vec2f {
 
 // Converts standard deviations of the spread to pixels.
 fn spread_px(deviations: vec2f) -> vec2f {
-  return vec2f(globals.spread.x * deviations.x, globals.spread.y * deviations.x + globals.spread.z * deviations.y);
+  return globals.spread.xy * deviations.x + globals.spread.zw * deviations.y;
 }
 
 // Positions on a ring around a pixel.

@@ -6,11 +6,13 @@ use crate::scene::{FieldError, InputError};
 
 /// Largest variance of a blur, along any direction, in square pixels.
 const MOST_PX2: f64 = 1e4;
+/// Variance of a line and of the blur beside it, over the latter.
+const LINE_TO_ROUND: f64 = 4.0;
 /// Rounding tolerance of a covariance, over its trace.
 const ROUNDING: f64 = 1e-9;
 
-/// The point spread function of a picture: a Gaussian, by its covariance in square pixels, x to the
-/// right and y down.
+/// The point spread function of a picture, by its covariance in square pixels, x to the right and y
+/// down: a uniform line if it is much longer than wide, else a Gaussian.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
     /// Variance along the rows.
@@ -100,6 +102,14 @@ impl Spread {
         // Half the angle of the vector of both differences; 0 for a zero vector.
         let along = DVec2::from_angle(0.5 * (2.0 * self.xy_px2).atan2(apart));
         [wide * along, narrow * along.perp()]
+    }
+
+    /// Whether it is a line's: that of a uniform motion, with at least three times the variance of
+    /// anything else.
+    #[must_use]
+    pub fn is_line(self) -> bool {
+        let [wide, narrow] = self.variances_px2();
+        wide > 0.0 && wide >= LINE_TO_ROUND * narrow
     }
 
     fn check(self, field: &str) -> Result<(), InputError> {

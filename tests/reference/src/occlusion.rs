@@ -16,13 +16,26 @@ pub fn sample_position(i: usize, n_points: usize) -> DVec2 {
     (DVec2::new(column, row) + 0.5) / n_points as f64
 }
 
-/// The same in a blurred picture, given the lower triangle (xx, yx, yy) of a root of the blur's
-/// covariance, the pixel's own included: the lattice's rows and columns become quantiles of a
-/// normal distribution.
+/// The spread of a point in a blurred picture, the pixel's own included.
+#[derive(Clone, Copy, Debug)]
+pub struct PointSpread {
+    /// Its principal axes, as long as its standard deviations.
+    pub axes_px: [DVec2; 2],
+    /// Whether it is uniform along the first, and not normal.
+    pub is_line: bool,
+}
+
+/// The same in a blurred picture: the lattice's rows and columns become quantiles of the spread.
 #[must_use]
-pub fn spread_position(lattice: DVec2, [xx, yx, yy]: [f64; 3]) -> DVec2 {
-    let [across, down] = lattice.to_array().map(normal_quantile);
-    0.5 + DVec2::new(xx * across, yx * across + yy * down)
+pub fn spread_position(lattice: DVec2, spread: PointSpread) -> DVec2 {
+    let [first, second] = spread.axes_px;
+    let along = if spread.is_line {
+        // A uniform distribution from -1 to 1 has a deviation of the root of a third.
+        (2.0 * lattice.x - 1.0) / (1.0_f64 / 3.0).sqrt()
+    } else {
+        normal_quantile(lattice.x)
+    };
+    0.5 + along * first + normal_quantile(lattice.y) * second
 }
 
 /// Quantile of the normal distribution. Source: Winitzki 2008, whose one constant is .147.

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3, UVec2};
 
 use super::grid::PlaneGrid;
 use super::model::{Pictures, Region, Solution, centre_px, coarse_at};
-use super::occlusion::spread_position;
+use super::occlusion::{PointSpread, spread_position};
 use super::raster::Raster;
 
 /// Number of sampled places, in equal numbers of rows and columns.
@@ -12,14 +12,14 @@ const N_PLACES: u32 = 64;
 /// Rows and columns from one place to the next.
 const STEPS: [u32; 2] = [47, 53];
 
-/// The toy's share of a texel, where depth 0 means no toy; `root` is that of the picture's blur,
+/// The toy's share of a texel, where depth 0 means no toy; `spread` is that of the picture's blur,
 /// and places are shifted by `beside_px` to all four sides in turn.
 #[must_use]
-pub fn part_of_toy(depth: &Raster<f64>, (root, beside_px): ([f64; 3], f64), texel: UVec2) -> f64 {
+pub fn part_of_toy(depth: &Raster<f64>, (spread, beside_px): (PointSpread, f64), texel: UVec2) -> f64 {
     let places = (0..N_PLACES).map(|k| {
         let lattice = STEPS.map(|step| (f64::from(k * step % N_PLACES) + 0.5) / f64::from(N_PLACES));
         let side = [k, k / 2].map(|k| if k % 2 == 0 { -beside_px } else { beside_px });
-        texel.as_dvec2() + spread_position(DVec2::from(lattice), root) + DVec2::from(side)
+        texel.as_dvec2() + spread_position(DVec2::from(lattice), spread) + DVec2::from(side)
     });
     let shows_toy = |place: &DVec2| {
         let is_inside = place.cmpge(DVec2::ZERO).all() && place.cmplt(depth.size().as_dvec2()).all();

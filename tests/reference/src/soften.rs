@@ -10,13 +10,13 @@ use super::raster::Raster;
 pub struct Taps {
     /// Steps between taps along each axis, in pixels.
     pub steps_px: [DVec2; 2],
-    /// The same in standard deviations.
-    pub spacing: f64,
+    /// The same in standard deviations, for their weights; 0 for equal weights.
+    pub spacing: DVec2,
     /// Number of taps on either side of the centre.
     pub n_beside: u32,
 }
 
-/// Colour and alpha of a texel: the mean of its surroundings, with Gaussian weights. Colours are
+/// Colour and alpha of a texel: the mean of its surroundings, with Gaussian or equal weights. Colours are
 /// weighted by their alpha, and texels without alpha do not take part.
 #[must_use]
 pub fn soften(plate: &Raster<DVec4>, taps: &Taps, texel: UVec2) -> DVec4 {

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, UVec2};
 
 use super::model::DARKEST_USABLE;
-use super::occlusion::spread_position;
+use super::occlusion::{PointSpread, spread_position};
 use super::raster::Raster;
 
 /// The code of a factor of 1, and the greatest one.
@@ -13,12 +13,12 @@ const CODES: [f64; 2] = [512.0, 1023.0];
 const N_PLACES: u32 = 64;
 const ROW_STEP: u32 = 19;
 
-/// The model's colour of a texel over its mean over the blur; the model has none beside the toy. `root` is that of
+/// The model's colour of a texel over its mean over the blur; the model has none beside the toy. `spread` is that of
 /// the picture's blur, and places are shifted by `beside_px` to all four sides in turn.
 #[must_use]
 pub fn unmixed_factor(
     model: &Raster<Option<DVec3>>,
-    (root, beside_px): ([f64; 3], f64),
+    (spread, beside_px): (PointSpread, f64),
     texel: UVec2,
 ) -> DVec3 {
     let Some(own) = model.at(texel) else {
@@ -27,7 +27,7 @@ pub fn unmixed_factor(
     let places = (0..N_PLACES).map(|k| {
         let lattice = DVec2::new(f64::from(k), f64::from(k * ROW_STEP % N_PLACES)) + 0.5;
         let side = [k, k / 2].map(|k| if k % 2 == 0 { -beside_px } else { beside_px });
-        texel.as_dvec2() + spread_position(lattice / f64::from(N_PLACES), root) + DVec2::from(side)
+        texel.as_dvec2() + spread_position(lattice / f64::from(N_PLACES), spread) + DVec2::from(side)
     });
     let inside =
         places.filter(|place| place.cmpge(DVec2::ZERO).all() && place.cmplt(model.size().as_dvec2()).all());

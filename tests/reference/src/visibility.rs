@@ -7,7 +7,8 @@ use glam::{DVec2, DVec3, UVec2};
 
 use super::model::Region;
 use super::occlusion::{
-    Caster, Occluder, hidden_share, hidden_share_from, sample_position, spread_position, taken_from,
+    Caster, Occluder, PointSpread, hidden_share, hidden_share_from, sample_position, spread_position,
+    taken_from,
 };
 use super::raster::Raster;
 use super::real::{Real, Vector};
@@ -46,15 +47,15 @@ pub fn ambient_map<R: Real>(
     })
 }
 
-/// Visibility as by [`visibility_map`] for a blurred picture, given a root of the blur's covariance.
+/// Visibility as by [`visibility_map`] for a blurred picture, given the spread of a point.
 #[must_use]
 pub fn soft_visibility_map<R: Real>(
     casters: &[Caster<R>],
     region: &Region,
     map_px: UVec2,
-    root: [f64; 3],
+    spread: PointSpread,
 ) -> Raster<f64> {
-    let place = |i, n_points| spread_position(sample_position(i, n_points), root);
+    let place = |i, n_points| spread_position(sample_position(i, n_points), spread);
     let hidden = |texel| hidden_share_from(casters, region, (map_px, texel), place);
     Raster::from_fn(map_px, |texel| 1.0 - hidden(texel).unwrap_or(0.0))
 }

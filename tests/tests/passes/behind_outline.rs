@@ -7,8 +7,9 @@ use app_core::scene::Image;
 use app_core::sharpness::{Sharpness, Spread};
 use app_pipeline::geometry::rect::PixelRect;
 use app_scene::geometry::color::{code_of_linear, linear_from_srgb};
-use glam::{DVec3, DVec4, IVec2, UVec2};
+use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
 use reference::behind_outline::plate_change;
+use reference::occlusion::PointSpread;
 use reference::raster::{Raster, texels_of};
 
 use crate::alone::{Draw, check_faults, source};
@@ -84,10 +85,14 @@ fn errors(source: &str) -> Errors {
     let source = format!("{source}{PROBE}");
     let draw = Draw::of(&source, "fs_probe", BOX.size_px);
     let actual = device.draw(draw, [&buffers(0, &shared), &views(20, &maps)]);
-    let root = [0, 1, 2].map(|k| f64::from(globals.spread[k]));
+    let [a, b, c, d] = globals.spread.map(f64::from);
+    let spread = PointSpread {
+        axes_px: [DVec2::new(a, b), DVec2::new(c, d)],
+        is_line: false,
+    };
     let mut n_other = 0;
     let pairs = texels_of(BOX.size_px).flat_map(|at| {
-        let given = (root, scene.solution.gain);
+        let given = (spread, scene.solution.gain);
         let expected = plate_change(&plate, &covered, given, [BOX.origin_px + at, at]);
         n_other += u32::from(expected != DVec3::ZERO);
         channels(actual.at(at).truncate(), expected)

@@ -5,7 +5,7 @@ use app_core::preset::Preset;
 use app_core::sharpness::{Sharpness, Spread};
 use glam::DVec2;
 use reference::model::centre_px;
-use reference::occlusion::spread_position;
+use reference::occlusion::{PointSpread, spread_position};
 use reference::raster::Raster;
 
 use crate::device::Device;
@@ -115,7 +115,10 @@ fn part_of_each_pixel_in_a_soft_picture() {
     // Standard deviation of a pixel and of the mean over three by three pixels with which it is
     // read.
     let deviation = (1.5_f64 * 1.5 + 1.0 / 12.0 - 0.5).sqrt();
-    let root = [deviation, 0.0, deviation];
-    let expected = expected(&run, |place| spread_position(place, root) - 0.5);
+    let spread = PointSpread {
+        axes_px: [deviation * DVec2::X, deviation * DVec2::Y],
+        is_line: false,
+    };
+    let expected = expected(&run, |place| spread_position(place, spread) - 0.5);
     compare_with(&run, &expected, (MISSED_IN_SOFT, SLIVERS_IN_SOFT));
 }

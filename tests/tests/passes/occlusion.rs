@@ -23,6 +23,7 @@ use crate::cores::any_core;
 use crate::device::Device;
 use crate::errors::Errors;
 use crate::photo::photograph;
+use crate::rim::of_point;
 use crate::run::{Run, input, raster, runs, scene};
 use crate::setups::{FOUR_LIGHTS, SETUPS, SIDE, Setup, WALL};
 use crate::stand::Stand;
@@ -351,20 +352,12 @@ fn the_captured_light_of_a_side_is_as_soft_as_the_picture() {
     assert_eq!(captured(&[&soft, &softer]), at_once);
 }
 
-/// A blur that is wider along one axis, and the root of its covariance, with that of a pixel and
-/// without that of the mean over three by three texels with which it is read, computed by hand.
+/// A blur that is wider along one axis.
 const SOFT: Spread = Spread {
     xx_px2: 3.2,
     xy_px2: 0.9,
     yy_px2: 1.4,
 };
-
-fn root() -> [f64; 3] {
-    let own = 1.0 / 12.0 - 0.5;
-    let xx = (SOFT.xx_px2 + own).sqrt();
-    let yx = SOFT.xy_px2 / xx;
-    [xx, yx, (SOFT.yy_px2 + own - yx * yx).sqrt()]
-}
 
 #[test]
 fn visibility_in_a_soft_picture() {
@@ -385,7 +378,7 @@ fn visibility_in_a_soft_picture() {
             .stand
             .light_casters(&run.stand.shown, i, run.plan.n_light_points[i]);
         let actual = run.shown_visibility.map(|texel| texel[i]);
-        let expected = soft_visibility_map(&casters, &run.region, actual.size(), root());
+        let expected = soft_visibility_map(&casters, &run.region, actual.size(), of_point(SOFT).0);
         let told = ("soft light", MAX_LIGHT_SHARE, LIGHTS_STORED);
         compare_with(&run, &casters, (&actual, &expected), told);
         let sharp = visibility_map(&casters, &run.region, actual.size());

@@ -3,7 +3,8 @@
 use app_core::sharpness::Spread;
 use app_core::wgpu;
 use app_pipeline::geometry::rect::PixelRect;
-use glam::{DVec3, UVec2};
+use glam::{DVec2, DVec3, UVec2};
+use reference::occlusion::PointSpread;
 use reference::raster::{Raster, texels_of};
 use reference::rim::{Learned, part_of_toy, shown_receiver};
 
@@ -31,20 +32,27 @@ pub(crate) fn spread() -> Spread {
     }
 }
 
-/// The root of the blur and a pixel's own, without that of means over three by three texels; and
-/// the root of the latter. Computed by hand.
-pub(crate) fn root() -> ([f64; 3], f64) {
-    let narrowest: f64 = 1.8 - 1.13_f64.sqrt();
-    let of_means = 0.5 * narrowest.min(1.0);
-    let Spread {
-        xx_px2,
-        xy_px2,
-        yy_px2,
-    } = spread();
+/// A motion's, of 6 px to the right and 3 down.
+pub(crate) fn line() -> Spread {
+    Spread::of_motion(DVec2::new(6.0, 3.0))
+}
+
+/// The spread of a point and of its pixel, without that of means over three by three texels; and the
+/// deviation of the latter. Computed by hand.
+pub(crate) fn of_point(spread: Spread) -> (PointSpread, f64) {
+    let middle = 0.5 * (spread.xx_px2 + spread.yy_px2);
+    let apart = 0.5 * (spread.xx_px2 - spread.yy_px2);
+    let from_middle = apart.hypot(spread.xy_px2);
+    let narrowest = middle - from_middle;
+    let of_means = 0.5 * narrowest.clamp(0.0, 1.0);
     let own = 1.0 / 12.0 - of_means;
-    let xx = (xx_px2 + own).sqrt();
-    let yx = xy_px2 / xx;
-    ([xx, yx, (yy_px2 + own - yx * yx).sqrt()], of_means.sqrt())
+    let along = DVec2::from_angle(0.5 * spread.xy_px2.atan2(apart));
+    let axes_px = [
+        (middle + from_middle + own).sqrt() * along,
+        (narrowest + own).sqrt() * along.perp(),
+    ];
+    let is_line = middle + from_middle >= 4.0 * narrowest;
+    (PointSpread { axes_px, is_line }, of_means.sqrt())
 }
 
 fn depth() -> Raster<f64> {
@@ -54,7 +62,13 @@ fn depth() -> Raster<f64> {
     })
 }
 
+/// In a blurred picture and in one of a motion.
 fn errors(source: &str) -> Errors {
+    let pairs = [spread(), line()].map(|spread| pairs_of_spread(source, spread));
+    Errors::between(pairs.concat())
+}
+
+fn pairs_of_spread(source: &str, spread: Spread) -> Vec<(f64, f64)> {
     let (device, scene, depth) = (Device::shared(), Scrambled::new(), depth());
     let residuals = scene.plane_grids().map(|grid| {
         let values = Raster::from_fn(grid.size, |at| {
@@ -68,7 +82,7 @@ fn errors(source: &str) -> Errors {
         slots.for_each(|(slot, value)| *slot = value.extend(1.0).as_vec4().to_array());
     }
     let globals = scene.stand.globals(&scene.rect);
-    let globals = globals.with_boxes(&BOX, &BOX).with_spread(spread());
+    let globals = globals.with_boxes(&BOX, &BOX).with_spread(spread);
     let [_, fit] = scene.shared(device);
     let shared = [device.uniform(&globals), fit];
     let place = [
@@ -96,7 +110,7 @@ fn errors(source: &str) -> Errors {
     for texel in texels_of(BOX.size_px) {
         let actual = actual.at(texel);
         let in_region = BOX.origin_px + texel;
-        let part = part_of_toy(&depth, root(), texel);
+        let part = part_of_toy(&depth, of_point(spread), texel);
         let is_mixed = part > 0.0 && part < 1.0;
         let is_known = scene.plate.at(in_region).w > 0.0;
         let part = if is_mixed && !is_known { 1.0 } else { part };
@@ -111,7 +125,7 @@ fn errors(source: &str) -> Errors {
         }
     }
     assert!(n_mixed > 1000, "{n_mixed} are mixed");
-    Errors::between(pairs)
+    pairs
 }
 
 #[test]
@@ -128,9 +142,11 @@ fn a_fault_in_the_mixture_is_found() {
             "POSITION_STEPS = vec2u(47u, 47u)",
         ),
         ("2.0 * part - 1.0", "1.4 * part - 0.7"),
+        ("globals.is_line == 1u", "globals.is_line == 2u"),
+        ("2.0 * lattice.x - 1.0", "lattice.x - 0.5"),
         (
-            "globals.spread.y * deviations.x",
-            "globals.spread.z * deviations.x",
+            "globals.spread.xy * deviations.x",
+            "globals.spread.yx * deviations.x",
         ),
         ("depth > 0.0", "depth >= 0.0"),
         ("if b.a == 0.0 {", "if b.a < 0.0 {"),

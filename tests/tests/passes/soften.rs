@@ -21,22 +21,22 @@ const ALLOWED: f64 = 4e-3;
 struct OnDevice {
     first_px: [f32; 2],
     second_px: [f32; 2],
-    spacing: f32,
-    pad: [f32; 3],
+    spacing: [f32; 2],
+    pad: [f32; 2],
 }
 
-/// A round blur, an oblique one, a motion blur, and none.
+/// A round blur, an oblique one, motions, and none.
 fn grids() -> [Taps; 4] {
-    let taps = |first: [f64; 2], second: [f64; 2], spacing: f64, n_beside: u32| Taps {
+    let taps = |first: [f64; 2], second: [f64; 2], spacing: [f64; 2], n_beside: u32| Taps {
         steps_px: [first.into(), second.into()],
-        spacing,
+        spacing: spacing.into(),
         n_beside,
     };
     [
-        taps([1.5, 0.0], [0.0, 1.5], 0.75, 3),
-        taps([0.9, -1.2], [0.4, 0.3], 0.4, 6),
-        taps([0.0, 1.1], [0.0, 0.0], 0.75, 3),
-        taps([0.0, 0.0], [0.0, 0.0], 0.75, 3),
+        taps([1.5, 0.0], [0.0, 1.5], [0.75, 0.75], 3),
+        taps([0.9, -1.2], [0.4, 0.3], [0.4, 0.4], 6),
+        taps([0.3, 1.1], [0.5, -0.1], [0.0, 0.75], 3),
+        taps([0.0, 0.0], [0.0, 0.0], [0.75, 0.75], 3),
     ]
 }
 
@@ -62,8 +62,8 @@ fn errors(source: &str) -> Errors {
         let on_device = device.uniform(&OnDevice {
             first_px: taps.steps_px[0].as_vec2().to_array(),
             second_px: taps.steps_px[1].as_vec2().to_array(),
-            spacing: taps.spacing as f32,
-            pad: [0.0; 3],
+            spacing: taps.spacing.as_vec2().to_array(),
+            pad: [0.0; 2],
         });
         let own: Bindings<'_> = vec![
             (0, on_device.as_entire_binding()),
@@ -92,6 +92,7 @@ fn a_fault_in_the_spread_is_found() {
     let faults = [
         ("exp(-0.5 *", "exp(-0.6 *"),
         ("own.a == 0.0", "own.a < 0.0"),
+        ("taps.spacing * vec2f", "taps.spacing.y * vec2f"),
         ("i <= N_BESIDE", "i < N_BESIDE"),
         ("f32(j) * taps.second_px", "f32(i) * taps.second_px"),
         ("/ sum.a", "/ own.a"),

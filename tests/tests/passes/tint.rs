@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3, UVec2};
 use reference::fit::toy_radiance;
 use reference::model::centre_px;
 use reference::occlusion::Occluder;
+use reference::occlusion::PointSpread;
 use reference::raster::{Raster, texels_of};
 use reference::tint::{SeenPaint, tints};
 use reference::unmix::unmixed_factor;
@@ -26,9 +27,15 @@ const N_TRIANGLES: usize = 12;
 const BODY: usize = 2;
 const HEAD: usize = 3;
 
-/// The root of the tests' blur by a pixel and a pixel's own, without that of means over three by three texels; and
-/// the root of the latter. Computed by hand.
-const ROOT: ([f64; 3], f64) = ([0.763_763, 0.0, 0.763_763], std::f64::consts::FRAC_1_SQRT_2);
+/// The tests' blur by a pixel and a pixel's own, without that of means over three by three texels; and the
+/// deviation of the latter. Computed by hand.
+const OF_POINT: (PointSpread, f64) = (
+    PointSpread {
+        axes_px: [DVec2::new(0.763_763, 0.0), DVec2::new(0.0, 0.763_763)],
+        is_line: false,
+    },
+    std::f64::consts::FRAC_1_SQRT_2,
+);
 
 /// The toy in a run's frame, by rays.
 fn seen(run: &Run) -> Vec<SeenPaint> {
@@ -58,7 +65,7 @@ fn seen(run: &Run) -> Vec<SeenPaint> {
         let factor = if run.plan.sharpness.outline_spread == Spread::NONE {
             DVec3::ONE
         } else {
-            unmixed_factor(&model, ROOT, texel)
+            unmixed_factor(&model, OF_POINT, texel)
         };
         Some(SeenPaint {
             in_anchor,

@@ -11,7 +11,7 @@ use crate::alone::{Draw, check_faults, source};
 use crate::device::Device;
 use crate::errors::{Errors, channels};
 use crate::numbers::{number, numbers};
-use crate::rim::{root, spread};
+use crate::rim::{of_point, spread};
 use crate::scrambled::{Scrambled, buffers};
 
 const PASS: &str = "unmix";
@@ -76,7 +76,7 @@ fn errors(source: &str) -> Errors {
     });
     let pairs = texels_of(BOX.size_px).flat_map(|at| {
         let [sharp, soft] = [0, 1].map(|k: usize| drawn[k].at(at).truncate());
-        let expected = unmixed_factor(&model, root(), at);
+        let expected = unmixed_factor(&model, of_point(spread()), at);
         channels(sharp, DVec3::ONE).chain(channels(soft, expected))
     });
     Errors::between(pairs.collect::<Vec<_>>())

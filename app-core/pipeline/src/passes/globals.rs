@@ -59,6 +59,9 @@ shared_struct! {
         pub seen_from_behind: u32,
         pub near_m: f32,
         pub soft_side: f32,
+        pub soft_reach_px: f32,
+        pub is_line: u32,
+        pub _pad_0: [f32; 2],
         pub reflection_channel: [f32; 4],
         pub reflected_surroundings: [f32; 4],
         pub reflected_toy: [f32; 4],
@@ -95,17 +98,12 @@ impl Globals {
 
     /// Maximum distance of a pixel's sample positions from its centre.
     fn around_px(&self) -> f32 {
-        AROUND_PX.max(self.soft_reach_px())
+        AROUND_PX.max(self.soft_reach_px)
     }
 
     /// Whether the picture is softer than the plate and the toy's colours.
     pub(crate) fn is_soft(&self) -> bool {
-        self.spread[0] > 0.0
-    }
-
-    /// Distance over which a soft picture spreads a point; 0 for a sharp picture.
-    pub(crate) fn soft_reach_px(&self) -> f32 {
-        self.spread[3]
+        self.soft_reach_px > 0.0
     }
 
     /// Number of a light's points, from the first on, for which the whole shadow of a toy on a
@@ -186,6 +184,9 @@ pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globa
         seen_from_behind: seen_from_behind(view, layout.receivers),
         near_m: narrowed(NEAR_OVER_DISTANCE * camera_in_anchor.distance(layout.toy_in_anchor)),
         soft_side: 0.0,
+        soft_reach_px: 0.0,
+        is_line: 0,
+        _pad_0: [0.0; 2],
         reflection_channel: [0.0; 4],
         reflected_surroundings: [0.0; 4],
         reflected_toy: [0.0; 4],
@@ -230,11 +231,34 @@ impl Globals {
     /// pixels.
     #[must_use]
     pub fn with_spread(self, spread: Spread) -> Self {
+        if spread == Spread::NONE {
+            return Self {
+                spread: [0.0; 4],
+                soft_side: 0.0,
+                soft_reach_px: 0.0,
+                is_line: 0,
+                ..self
+            };
+        }
         // A mean over three has twice the variance of one side's weight.
         let side = 0.25 * spread.variances_px2()[1].clamp(0.0, 1.0);
+        let own = Spread {
+            xx_px2: PIXEL_PX2 - 2.0 * side,
+            xy_px2: 0.0,
+            yy_px2: PIXEL_PX2 - 2.0 * side,
+        };
+        let [wide, narrow] = spread.and(own).axes_px();
+        let outermost = if spread.is_line() {
+            OUTERMOST_OF_LINE
+        } else {
+            OUTERMOST
+        };
+        let reach_px = (outermost * wide.abs() + OUTERMOST * narrow.abs()).max_element();
         Self {
-            spread: spread_factor(spread, 2.0 * side),
+            spread: [wide.x, wide.y, narrow.x, narrow.y].map(narrowed),
             soft_side: narrowed(side),
+            soft_reach_px: narrowed(reach_px + if side > 0.0 { 1.0 } else { 0.0 }),
+            is_line: u32::from(spread.is_line()),
             ..self
         }
     }
@@ -245,21 +269,8 @@ const PIXEL_PX2: f64 = 1.0 / 12.0;
 /// Distance of the outermost of 64 positions from the centre, in standard deviations, with a margin
 /// for rounding.
 const OUTERMOST: f64 = 2.44;
-
-/// The root of a spread's covariance, including the pixel's own and excluding the variance of means
-/// over texels, followed by its reach.
-fn spread_factor(spread: Spread, of_means_px2: f64) -> [f32; 4] {
-    if spread == Spread::NONE {
-        return [0.0; 4];
-    }
-    // Source: Cholesky's factor of 2 x 2.
-    let own_px2 = PIXEL_PX2 - of_means_px2;
-    let across = (spread.xx_px2 + own_px2).sqrt();
-    let sheared = spread.xy_px2 / across;
-    let down = (spread.yy_px2 + own_px2 - sheared * sheared).max(0.0).sqrt();
-    let reach_px = OUTERMOST * across.max(sheared.abs() + down) + if of_means_px2 > 0.0 { 1.0 } else { 0.0 };
-    [across, sheared, down, reach_px].map(narrowed)
-}
+/// The same along a line.
+const OUTERMOST_OF_LINE: f64 = 1.74;
 
 fn receiver_plane(
     view: &View,

@@ -351,7 +351,7 @@ impl CapturePath<'_> {
         validity::Inputs {
             plan: &self.region.plan,
             gbuffer_depth: &self.captured.by_pass.gbuffer.depth.view,
-            soft_reach_px: self.region.uniform.soft_reach_px(),
+            soft_reach_px: self.region.uniform.soft_reach_px,
         }
     }
 

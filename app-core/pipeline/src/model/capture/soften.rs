@@ -22,11 +22,19 @@ const SLOTS: &[Slot] = &[Slot::per_use::<Taps>(), Slot::Filtered, Slot::Sampler]
 struct TapGrid {
     /// Number of taps on either side of the centre, along each axis.
     n_beside: u32,
-    /// Distance between taps, in standard deviations, for their weights.
+    /// Distance between taps, in standard deviations, for their Gaussian weights.
     spacing: f64,
     /// Variance that taps at this distance produce, relative to that of a Gaussian that is not cut
     /// off.
     variance: f64,
+}
+
+impl TapGrid {
+    /// Distance in standard deviations between evenly spaced taps with the same weight.
+    fn of_line(&self) -> f64 {
+        let n = f64::from(2 * self.n_beside + 1);
+        (12.0 / (n * n - 1.0)).sqrt()
+    }
 }
 
 /// Grids for most blurs, and for wide ones, for which taps of the first grid would leave gaps.
@@ -54,25 +62,33 @@ shared_struct! {
     pub(crate) struct Taps {
         pub first_px: [f32; 2],
         pub second_px: [f32; 2],
-        pub spacing: f32,
-        pub _pad_0: f32,
-        pub _pad_1: [f32; 2],
+        pub spacing: [f32; 2],
+        pub _pad_0: [f32; 2],
     }
 }
 
 impl Taps {
     fn new(spread: Spread, grid: &TapGrid) -> Self {
-        let [first, second] = spread.axes_px().map(|axis_px| {
-            let step_px = grid.spacing / grid.variance.sqrt() * own_px(axis_px.length());
+        let along = |axis_px: DVec2, deviations: f64| {
+            let step_px = deviations * own_px(axis_px.length());
             (step_px * axis_px.normalize_or(DVec2::ZERO)).as_vec2()
-        });
+        };
+        let [first_px, second_px] = spread.axes_px();
+        let deviations = grid.spacing / grid.variance.sqrt();
+        let [first_deviations, first_spacing] = if spread.is_line() {
+            // All taps of a line have the same weight.
+            [grid.of_line(), 0.0]
+        } else {
+            [deviations, grid.spacing]
+        };
+        let first = along(first_px, first_deviations);
+        let second = along(second_px, deviations);
         #[allow(clippy::cast_possible_truncation, reason = "a handful of digits")]
         Self {
             first_px: first.to_array(),
             second_px: second.to_array(),
-            spacing: grid.spacing as f32,
-            _pad_0: 0.0,
-            _pad_1: [0.0; 2],
+            spacing: [first_spacing as f32, grid.spacing as f32],
+            _pad_0: [0.0; 2],
         }
     }
 }

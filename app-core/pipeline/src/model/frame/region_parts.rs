@@ -43,7 +43,7 @@ impl Marks {
                 origin_px: Vec2::ZERO,
                 ..globals.uniform.by_camera()
             };
-            let around_px = AROUND_TOY_PX + globals.uniform.soft_reach_px();
+            let around_px = AROUND_TOY_PX + globals.uniform.soft_reach_px;
             toy.mark_seen(&mut near, pose, CasterLod::Own, &camera, around_px);
         }
         if detail::is_needed(&region.plan) || region.plan.n_lights == 0 {

@@ -151,7 +151,7 @@ impl Lighting {
                 let Some(onto) = posed.globals.uniform.onto_receiver(receiver, points) else {
                     return tiles.mark_all();
                 };
-                let around_px = AROUND_SHADOW_PX + posed.globals.uniform.soft_reach_px();
+                let around_px = AROUND_SHADOW_PX + posed.globals.uniform.soft_reach_px;
                 posed
                     .toy
                     .mark_seen(tiles, posed.pose, self.casters.light, &onto, around_px);
