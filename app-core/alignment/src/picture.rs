@@ -121,7 +121,7 @@ impl Picture {
     /// Spread along one axis, then along the other; what is near to the border, or to what is
     /// unknown, is unknown.
     pub(super) fn softened(&self, spread: Spread) -> Self {
-        let [first, second] = spread.axes_px().map(taps_along);
+        let [first, second] = taps_of(spread);
         self.taking(&first).taking(&second)
     }
 
@@ -191,9 +191,42 @@ pub(super) fn gaussian(deviation_px: f64) -> Vec<(i32, f32)> {
     weights.collect()
 }
 
+/// Taps along each axis of a blur: a line's, or a Gaussian's.
+pub(super) fn taps_of(spread: Spread) -> [Vec<(IVec2, f32)>; 2] {
+    let [wide, narrow] = spread.axes_px();
+    let first = if spread.is_line() {
+        line(12.0_f64.sqrt() * wide)
+    } else {
+        taps_along(wide)
+    };
+    [first, taps_along(narrow)]
+}
+
+/// Taps of a uniform blur along a line around the centre, two a pixel and bilinear between pixels.
+pub(super) fn line(by_px: DVec2) -> Vec<(IVec2, f32)> {
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "some pixels"
+    )]
+    let n = (2.0 * by_px.length()).ceil().max(1.0) as usize;
+    let mut taps: Vec<(IVec2, f32)> = Vec::new();
+    for k in 0..n {
+        let at = ((k as f64 + 0.5) / n as f64 - 0.5) * by_px;
+        for (offset, part) in bilinear(at) {
+            let weight = part / n as f32;
+            match taps.iter_mut().find(|(other, _)| *other == offset) {
+                Some((_, sum)) => *sum += weight,
+                None => taps.push((offset, weight)),
+            }
+        }
+    }
+    taps
+}
+
 /// Taps of a Gaussian along an axis as long as its deviation, one pixel apart and bilinear between
 /// pixels.
-pub(super) fn taps_along(axis_px: DVec2) -> Vec<(IVec2, f32)> {
+fn taps_along(axis_px: DVec2) -> Vec<(IVec2, f32)> {
     const LEAST_PX: f64 = 0.01;
     let deviation_px = axis_px.length();
     if deviation_px < LEAST_PX {

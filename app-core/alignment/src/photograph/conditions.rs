@@ -252,11 +252,13 @@ impl Photograph {
         let (level, picture_px) = (self.pyramid.level(0), self.pyramid.picture_px());
         let outline_px = outline_px.map(|px| px / picture_px);
         // A scene whose toy has no start has failed above.
-        let directed = || {
-            let start = self.start(scene, *world_from_object).ok()?;
-            pose::directed_spread(start.subject(), &self.pyramid)
+        let start = || self.start(scene, *world_from_object).ok();
+        let outline = softness::Outline {
+            px: outline_px,
+            directed: &|| pose::directed_spread(start()?.subject(), &self.pyramid),
+            beyond_px: &|known| Some(pose::beyond_px(start()?.subject(), &self.pyramid, known)),
         };
-        let in_level = softness::sharpness(level, &pose::covered(&shape, level), (outline_px, &directed));
+        let in_level = softness::sharpness(level, &pose::covered(&shape, level), &outline);
         let in_picture = |spread: Spread| spread.times(picture_px * picture_px);
         Ok(Sharpness {
             plate_spread: in_picture(in_level.plate_spread),

@@ -9,11 +9,10 @@ use super::placement::{Information, Placement, SIZE};
 use super::settle::{Balance, Known, LEAST_EVIDENCE, Misfit, smoothed_px};
 use super::standing::{Ground, Plane, Standing};
 use super::texture::{LAST_SPREAD, Likeness, Texture};
-use super::{FINE, Fit, Found, Search, Subject, WIDE, enough};
+use super::{Beside, Element, FINE, Fit, Found, Search, Subject, WIDE, enough};
 use crate::picture::Level;
 use crate::report::{PoseDeviation, most_model_px};
 use crate::rigid_motion::RigidMotion;
-use app_scene::sharpness::Spread;
 
 /// Evidence, half of the decisive amount, for which a toy of another size is found on its plane, or for which a toy that
 /// is given on one of its feet is put on three.
@@ -283,15 +282,19 @@ impl Search<'_> {
         self.optics(placement, lit).spread_px
     }
 
-    /// The same by direction; `None` if too few directions tell.
-    pub(super) fn directed_spread(&mut self, paint: &Paint, placement: &Placement) -> Option<Spread> {
+    /// A measurement of the pixels beside the outline.
+    pub(super) fn of_outline<T>(
+        &mut self,
+        (paint, placement): (&Paint, &Placement),
+        measure: impl Fn(&Beside<'_>, &[Element]) -> T,
+    ) -> T {
         let light = self.light(paint, placement);
         let lit = light.as_ref().map(|light| Lit { paint, light });
         self.optics(placement, lit);
         let posed = self.posed(placement, lit);
         let softened = self.softened.as_ref().map(|(level, _)| level);
         let level = softened.unwrap_or_else(|| self.pyramid.level(0));
-        edge::directed(&posed.beside(level), &posed.elements)
+        measure(&posed.beside(level), &posed.elements)
     }
 
     pub(super) fn light(&mut self, paint: &Paint, placement: &Placement) -> Option<Light> {

@@ -6,13 +6,12 @@
 //! camera make a toy neither fat nor thin.
 
 use glam::{DVec2, IVec2};
-use nalgebra::{Matrix3, Vector3};
 
 use super::contour::Element;
 use super::motion::Measured;
 use super::owners::Owners;
 use super::sides::{Beside, Sides};
-use crate::picture::{Color, NOISE_CODES, gaussian, index_in, places};
+use crate::picture::{Color, NOISE_CODES, index_in, places, taps_of};
 use crate::raster::Coverage;
 use crate::robust;
 use app_scene::geometry::color::{linear_per_srgb, srgb_from_linear};
@@ -32,22 +31,18 @@ const SHARPENED_PX: f64 = 1.2;
 /// Variance of a point's place within a pixel, along any direction, in square pixels.
 const PIXEL_PX2: f64 = 1.0 / 12.0;
 /// A smaller blur is invisible beside the shape of the pixel.
-const LEAST_SPREAD_PX: f64 = 0.3;
+pub(super) const LEAST_SPREAD_PX: f64 = 0.3;
 /// Largest blur of a lens.
-const MOST_SPREAD_PX: f64 = 4.0;
+pub(super) const MOST_SPREAD_PX: f64 = 4.0;
 /// Half the band in which blurs are compared, the same for all, in pixels.
-const COMPARED_PX: f64 = 4.0;
+pub(super) const COMPARED_PX: f64 = 4.0;
 /// Blur above which overshoot and less blur are ambiguous.
 const SPREAD_WITHOUT_OVERSHOOT_PX: f64 = 1.0;
 const MOST_OVERSHOOT: f64 = 1.5;
 /// Fraction of the pieces that count: the worst ones are something else.
 const FITTING: f64 = 0.7;
 /// An unknown of the camera is included if the misfit falls to less than this fraction.
-const GAIN: f64 = 0.98;
-/// Number of directions in which the blur of the outline is compared, and of pieces that one needs.
-const N_CLASSES: usize = 4;
-const LEAST_PIECES: usize = 16;
-
+pub(super) const GAIN: f64 = 0.98;
 /// A camera's edge response, the same all around the toy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Optics {
@@ -93,74 +88,9 @@ impl Optics {
     }
 }
 
-/// The lens's blur along the normals of the outline, as a covariance; `None` if too few directions
-/// tell. An edge shows no blur along itself, so that pieces of four directions are taken apart.
-pub(super) fn directed(beside: &Beside<'_>, elements: &[Element]) -> Option<Covariance> {
-    let edges = Edges::new(beside, elements, COMPARED_PX);
-    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
-    let mut n_told = 0;
-    for class in 0..N_CLASSES {
-        let is_used: Vec<bool> = elements.iter().map(|one| class_of(one.normal) == class).collect();
-        let n = edges
-            .are_known
-            .iter()
-            .zip(&is_used)
-            .filter(|(known, used)| **known && **used)
-            .count();
-        if n < LEAST_PIECES {
-            continue;
-        }
-        let misfit = |spread_px| {
-            let optics = Optics {
-                spread_px,
-                overshoot: 0.0,
-            };
-            edges.misfit_of(optics, &is_used)
-        };
-        let (found_px, of_soft) = least((LEAST_SPREAD_PX, MOST_SPREAD_PX), misfit);
-        let spread_px = if of_soft < GAIN * misfit(0.0) {
-            found_px
-        } else {
-            0.0
-        };
-        let rows = elements.iter().zip(&is_used).filter(|(_, used)| **used);
-        let row = rows.map(|(one, _)| {
-            let DVec2 { x, y } = one.normal;
-            Vector3::new(x * x, 2.0 * x * y, y * y)
-        });
-        let row = row.sum::<Vector3<f64>>();
-        let row = row / is_used.iter().filter(|used| **used).count() as f64;
-        normal += row * row.transpose();
-        right += row * (spread_px * spread_px);
-        n_told += 1;
-    }
-    // A covariance has three numbers.
-    if n_told < 3 {
-        return None;
-    }
-    let found = normal.cholesky()?.solve(&right);
-    Some(Covariance {
-        xx_px2: found.x,
-        xy_px2: found.y,
-        yy_px2: found.z,
-    })
-}
-
-/// The class of a normal's direction, either way round.
-fn class_of(normal: DVec2) -> usize {
-    let turn = normal.to_angle() / std::f64::consts::PI * N_CLASSES as f64;
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "from 0 to the number of classes"
-    )]
-    let class = turn.round().rem_euclid(N_CLASSES as f64) as usize;
-    class % N_CLASSES
-}
-
 /// The minimum of a unimodal function between two bounds, and its value. Source: golden-section
 /// search, Kiefer 1953.
-fn least((mut low, mut high): (f64, f64), of: impl Fn(f64) -> f64) -> (f64, f64) {
+pub(super) fn least((mut low, mut high): (f64, f64), of: impl Fn(f64) -> f64) -> (f64, f64) {
     const GOLDEN: f64 = 0.618_033_988_749_895;
     const N_CUTS: usize = 7;
     let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
@@ -220,11 +150,11 @@ fn measured_by(
 }
 
 /// The pixels beside an outline, each with its colours of toy and background alone.
-struct Edges<'a> {
+pub(super) struct Edges<'a> {
     coverage: &'a Coverage,
     pixels: Vec<EdgePixel>,
     /// For each piece, whether all of its pixels and both its sides are known.
-    are_known: Vec<bool>,
+    pub(super) are_known: Vec<bool>,
 }
 
 struct EdgePixel {
@@ -241,7 +171,7 @@ struct EdgePixel {
 }
 
 impl<'a> Edges<'a> {
-    fn new(beside: &Beside<'a>, elements: &[Element], half_px: f64) -> Self {
+    pub(super) fn new(beside: &Beside<'a>, elements: &[Element], half_px: f64) -> Self {
         let sides: Vec<Option<Sides>> = elements
             .iter()
             .map(|element| Sides::new(beside, element, half_px))
@@ -284,8 +214,18 @@ impl<'a> Edges<'a> {
     }
 
     /// The same for some of the pieces.
-    fn misfit_of(&self, optics: Optics, are_used: &[bool]) -> f64 {
-        let pieces = self.pieces(optics);
+    pub(super) fn misfit_of(&self, optics: Optics, are_used: &[bool]) -> f64 {
+        self.left(&self.pieces(optics), are_used)
+    }
+
+    /// The same for a lens with this blur.
+    pub(super) fn misfit_by(&self, spread: Covariance) -> f64 {
+        let pieces = self.pieces_by(&Spread::new(self.coverage, spread), None, 0.0);
+        self.left(&pieces, &vec![true; pieces.len()])
+    }
+
+    /// Mean square of what is left of the pieces that fit.
+    fn left(&self, pieces: &[Piece], are_used: &[bool]) -> f64 {
         let used = pieces.iter().zip(are_used).filter(|(_, is_used)| **is_used);
         let mut left: Vec<f64> = used.filter_map(|(piece, _)| piece.left()).collect();
         left.sort_by(f64::total_cmp);
@@ -300,9 +240,12 @@ impl<'a> Edges<'a> {
     }
 
     fn pieces(&self, optics: Optics) -> Vec<Piece> {
-        let spread = Spread::new(self.coverage, optics.spread_px);
-        let wider = (optics.overshoot > 0.0)
-            .then(|| Spread::new(self.coverage, optics.spread_px.hypot(SHARPENED_PX)));
+        let of = |spread_px| Spread::new(self.coverage, Covariance::round(spread_px));
+        let wider = (optics.overshoot > 0.0).then(|| of(optics.spread_px.hypot(SHARPENED_PX)));
+        self.pieces_by(&of(optics.spread_px), wider.as_ref(), optics.overshoot)
+    }
+
+    fn pieces_by(&self, spread: &Spread, wider: Option<&Spread>, overshoot: f64) -> Vec<Piece> {
         let mut pieces: Vec<Piece> = self
             .are_known
             .iter()
@@ -314,14 +257,14 @@ impl<'a> Edges<'a> {
         for pixel in &self.pixels {
             let of = |spread: &Spread| Mixed {
                 covered: spread.at(pixel.at),
-                density: density(pixel.from_px, pixel.normal, spread.deviation_px),
+                density: density(pixel.from_px, pixel.normal, spread.along_px(pixel.normal)),
             };
-            let lens = of(&spread);
-            let beyond = wider.as_ref().map_or(Mixed::default(), |wider| {
+            let lens = of(spread);
+            let beyond = wider.map_or(Mixed::default(), |wider| {
                 let wider = of(wider);
                 Mixed {
-                    covered: optics.overshoot * (lens.covered - wider.covered),
-                    density: optics.overshoot * (lens.density - wider.density),
+                    covered: overshoot * (lens.covered - wider.covered),
+                    density: overshoot * (lens.density - wider.density),
                 }
             });
             pieces[pixel.owner].add(pixel, lens, beyond);
@@ -451,21 +394,24 @@ struct Spread {
     origin_px: IVec2,
     size_px: IVec2,
     values: Vec<f32>,
-    deviation_px: f64,
+    covariance: Covariance,
 }
 
 impl Spread {
-    fn new(coverage: &Coverage, deviation_px: f64) -> Self {
-        if deviation_px < LEAST_SPREAD_PX {
-            return Self::of(coverage, 0, 0.0);
+    fn new(coverage: &Coverage, covariance: Covariance) -> Self {
+        if covariance.widest_px() < LEAST_SPREAD_PX {
+            return Self::of(coverage, IVec2::ZERO, Covariance::NONE);
         }
-        let weights = gaussian(deviation_px);
-        let reach_px = weights.last().map_or(0, |(step, _)| *step);
-        let mut spread = Self::of(coverage, reach_px, deviation_px);
-        for axis in [IVec2::X, IVec2::Y] {
+        let axes = taps_of(covariance);
+        let reach = |taps: &[(IVec2, f32)]| {
+            let offsets = taps.iter().map(|(offset, _)| offset.abs());
+            offsets.fold(IVec2::ZERO, IVec2::max)
+        };
+        let mut spread = Self::of(coverage, reach(&axes[0]) + reach(&axes[1]), covariance);
+        for taps in &axes {
             let along = |place: IVec2| {
-                let taps = weights.iter();
-                taps.map(|(step, weight)| weight * spread.place(place + *step * axis))
+                taps.iter()
+                    .map(|(offset, weight)| weight * spread.place(place + *offset))
                     .sum()
             };
             spread.values = places(spread.size_px).map(along).collect();
@@ -474,7 +420,7 @@ impl Spread {
     }
 
     /// The unblurred coverage, with a margin around it.
-    fn of(coverage: &Coverage, margin_px: i32, deviation_px: f64) -> Self {
+    fn of(coverage: &Coverage, margin_px: IVec2, covariance: Covariance) -> Self {
         let (origin_px, size_px) = (coverage.origin_px - margin_px, coverage.size_px + 2 * margin_px);
         Self {
             origin_px,
@@ -482,8 +428,20 @@ impl Spread {
             values: places(size_px)
                 .map(|place| coverage.at(origin_px + place))
                 .collect(),
-            deviation_px,
+            covariance,
         }
+    }
+
+    /// Standard deviation along a direction.
+    fn along_px(&self, DVec2 { x, y }: DVec2) -> f64 {
+        let Covariance {
+            xx_px2,
+            xy_px2,
+            yy_px2,
+        } = self.covariance;
+        (xx_px2 * x * x + 2.0 * xy_px2 * x * y + yy_px2 * y * y)
+            .max(0.0)
+            .sqrt()
     }
 
     fn place(&self, place: IVec2) -> f32 {

@@ -14,6 +14,7 @@ pub(super) mod adapt;
 mod contour;
 mod contour_segments;
 mod decide;
+mod directed;
 mod edge;
 mod field;
 mod lines;
@@ -231,13 +232,29 @@ pub(super) fn spread_px(subject: Subject<'_>, pyramid: &Pyramid, most_px: f64) -
     (fit.outline_px() <= most_px).then(|| search.spread_px(subject.paint, &placement))
 }
 
-/// The camera's blur of the outline by direction, as [`spread_px`]; `None` also if too few directions
-/// tell.
-pub(super) fn directed_spread(subject: Subject<'_>, pyramid: &Pyramid) -> Option<Spread> {
+/// The camera's blur of the outline by direction, as [`spread_px`]: `None` within if no blur explains
+/// it, and at all if too few directions tell.
+pub(super) fn directed_spread(subject: Subject<'_>, pyramid: &Pyramid) -> Option<Option<Spread>> {
+    of_outline(subject, pyramid, directed::directed)
+}
+
+/// Standard deviation of a round blur of the outline beside a known one, in pixels of the largest
+/// level.
+pub(super) fn beyond_px(subject: Subject<'_>, pyramid: &Pyramid, known: Spread) -> f64 {
+    of_outline(subject, pyramid, |beside, elements| {
+        directed::beyond(beside, elements, known)
+    })
+}
+
+fn of_outline<T>(
+    subject: Subject<'_>,
+    pyramid: &Pyramid,
+    measure: impl Fn(&Beside<'_>, &[Element]) -> T,
+) -> T {
     let shape = subject.shape;
     let mut search = Search::new(shape, pyramid, &PoseUncertainty::default());
     let placement = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
-    search.directed_spread(subject.paint, &placement)
+    search.of_outline((subject.paint, &placement), measure)
 }
 
 /// The pixels of a level that a shape covers.
