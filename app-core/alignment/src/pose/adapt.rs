@@ -7,14 +7,16 @@
 
 use glam::DVec3;
 
+use super::blur;
 use super::contour_segments::{ContourSegment, cell_px};
 use super::decide::COMPARED_PX;
 use super::edge::{self, Optics};
 use super::field::{Camera, Field, Skin};
 use super::motion::Measured;
-use super::paint::{Light, Lit, Paint};
+use super::paint::{Lit, Paint};
 use super::placement::Placement;
 use super::settle::{LEAST_EVIDENCE, Misfit};
+use super::shading::Light;
 use super::{Search, enough};
 use crate::picture::Pyramid;
 use crate::report::{PoseAlignment, most_model_px};
@@ -112,7 +114,7 @@ impl<'a> Viewpoint<'a> {
     fn new(surface: &Surface, pyramid: &'a Pyramid) -> Self {
         let sharp = Self::sharp(surface, pyramid);
         let posed = sharp.posed(surface, |posed| {
-            Optics::found(&posed.beside(pyramid.level(0)), &posed.elements)
+            blur::optics(&posed.beside(pyramid.level(0)), &posed.elements)
         });
         let (optics, _) = posed;
         Self { optics, ..sharp }

@@ -1,12 +1,14 @@
 //! The last rounds: a pose estimated from the codes beside the outline, freely and on its plane,
 //! and the choice between them.
 
+use super::blur;
 use super::edge::{self, Optics};
 use super::matte::Band;
 use super::motion::Measured;
-use super::paint::{Light, Lit, Paint};
+use super::paint::{Lit, Paint};
 use super::placement::{Information, Placement, SIZE};
 use super::settle::{Balance, Known, LEAST_EVIDENCE, Misfit, smoothed_px};
+use super::shading::Light;
 use super::standing::{Ground, Plane, Standing};
 use super::texture::{LAST_SPREAD, Likeness, Texture};
 use super::{FINE, Fit, Found, Search, Subject, WIDE, enough};
@@ -21,9 +23,6 @@ use app_scene::sharpness::Spread;
 /// Measured: a heron that is given on one foot, another .7 mm above the plane, is as likely on three feet by .3, and
 /// then .6 mm off.
 const UNDOUBTED: f64 = 0.5 * LEAST_EVIDENCE;
-/// Blur of a photograph, in pixels, above which an equally blurred plate is tried. A picture of a
-/// sharp lens, compressed or not, has .6 at most.
-const SOFT_PX: f64 = 0.7;
 /// Largest number of rounds of one search; each leaves about half of the residual.
 const N_ROUNDS: usize = 8;
 /// Size of the last step, over the toy's radius: a thousandth of a pixel.
@@ -49,6 +48,11 @@ const UPRIGHT_RAD: f64 = 0.05;
 /// 2 px.
 const MET_PX2: f64 = 0.06;
 const MET_OF_SPREAD: f64 = 0.04;
+/// The same of an outline whose pieces scatter about the picture's: the toy may be hardly brighter than the table.
+///
+/// Measured: up to .107 for a pale llama on dark wood, and .2 and more, or .2 px and more along some centimetres, for
+/// outlines of wrong poses.
+const ROUGH_PX2: f64 = 0.12;
 /// Largest logarithm of a size difference; beyond, it is another toy; also the largest error of a
 /// world's scale.
 const MOST_SIZE: f64 = 0.03;
@@ -130,6 +134,7 @@ impl Search<'_> {
         let seen = self.seen(&start, light.as_ref().map(|light| Lit { paint, light }));
         // The effects of camera and light on the outline are measured best near a match.
         let start = self.settled(seen, &start, None)?.placement;
+        let start = self.explaining(paint, start);
         let light = self.light(paint, &start);
         let seen = self.seen(&start, light.as_ref().map(|light| Lit { paint, light }));
         let texture = seen.lit.and_then(|lit| self.texture(lit, &start));
@@ -291,7 +296,7 @@ impl Search<'_> {
         let posed = self.posed(placement, lit);
         let softened = self.softened.as_ref().map(|(level, _)| level);
         let level = softened.unwrap_or_else(|| self.pyramid.level(0));
-        edge::directed(&posed.beside(level), &posed.elements)
+        blur::directed(&posed.beside(level), &posed.elements)
     }
 
     pub(super) fn light(&mut self, paint: &Paint, placement: &Placement) -> Option<Light> {
@@ -342,25 +347,47 @@ impl Search<'_> {
         seen.texture.and_then(|texture| texture.likeness(placement, k))
     }
 
+    /// A placement found by rounds that know little of the toy's colours, or the given one if the
+    /// codes beside its outline are explained better: where the toy is as bright as the table, such
+    /// rounds slide off a given pose that is right.
+    fn explaining(&mut self, paint: &Paint, found: Placement) -> Placement {
+        let given = Placement::of(RigidMotion::none(self.shape.centre, self.shape.radius_m));
+        let mut misfit = |placement: &Placement| {
+            let light = self.light(paint, placement);
+            let lit = light.as_ref().map(|light| Lit { paint, light });
+            self.explained(placement, lit).1
+        };
+        if misfit(&given) < misfit(&found) {
+            given
+        } else {
+            found
+        }
+    }
+
     /// The camera's edge response; if it is soft, with a blurred or the original plate, whichever
     /// explains more.
     fn optics(&mut self, placement: &Placement, lit: Option<Lit<'_>>) -> Optics {
+        self.explained(placement, lit).0
+    }
+
+    /// The same with what it leaves unexplained.
+    fn explained(&mut self, placement: &Placement, lit: Option<Lit<'_>>) -> (Optics, f64) {
         let posed = self.posed(placement, lit);
         let sharp = self.pyramid.level(0);
-        let found = |level: &Level| Optics::found(&posed.beside(level), &posed.elements);
+        let found = |level: &Level| blur::optics(&posed.beside(level), &posed.elements);
         self.softened = None;
         let (optics, misfit) = found(sharp);
-        let is_soft = optics.spread_px >= SOFT_PX;
+        let is_soft = optics.spread_px >= blur::SOFT_PX;
         let softened = is_soft.then(|| sharp.with_plate_spread(optics.spread_px));
         let Some(softened) = softened.flatten() else {
-            return optics;
+            return (optics, misfit);
         };
         let (of_softened, its_misfit) = found(&softened);
         if its_misfit < misfit {
             self.softened = Some((softened, optics.spread_px));
-            of_softened
+            (of_softened, its_misfit)
         } else {
-            optics
+            (optics, misfit)
         }
     }
 
@@ -462,7 +489,7 @@ fn met_px2(optics: Optics) -> f64 {
 /// this outline, since noise and sharpening do not bias them, and else by area.
 fn outline_px(fit: &Fit, measured: &[Measured], optics: Optics) -> f64 {
     let loss_px2 = Misfit::of(measured, Misfit::ROBUST_PX).loss_px2;
-    let is_near = loss_px2 < met_px2(optics);
+    let is_near = loss_px2 < ROUGH_PX2 + MET_OF_SPREAD * optics.spread_px;
     if is_near && smoothed_px(measured) < most_model_px(optics.spread_px) {
         fit.outline_px().min(loss_px2.sqrt())
     } else {

@@ -6,7 +6,6 @@
 //! camera make a toy neither fat nor thin.
 
 use glam::{DVec2, IVec2};
-use nalgebra::{Matrix3, Vector3};
 
 use super::contour::Element;
 use super::motion::Measured;
@@ -16,7 +15,6 @@ use crate::picture::{Color, NOISE_CODES, gaussian, index_in, places};
 use crate::raster::Coverage;
 use crate::robust;
 use app_scene::geometry::color::{linear_per_srgb, srgb_from_linear};
-use app_scene::sharpness::Spread as Covariance;
 
 /// Error of the prediction of a piece, in pixels, independent of its number of pixels.
 const CARRIED_PX: f64 = 0.05;
@@ -32,22 +30,7 @@ const SHARPENED_PX: f64 = 1.2;
 /// Variance of a point's place within a pixel, along any direction, in square pixels.
 const PIXEL_PX2: f64 = 1.0 / 12.0;
 /// A smaller blur is invisible beside the shape of the pixel.
-const LEAST_SPREAD_PX: f64 = 0.3;
-/// Largest blur of a lens.
-const MOST_SPREAD_PX: f64 = 4.0;
-/// Half the band in which blurs are compared, the same for all, in pixels.
-const COMPARED_PX: f64 = 4.0;
-/// Blur above which overshoot and less blur are ambiguous.
-const SPREAD_WITHOUT_OVERSHOOT_PX: f64 = 1.0;
-const MOST_OVERSHOOT: f64 = 1.5;
-/// Fraction of the pieces that count: the worst ones are something else.
-const FITTING: f64 = 0.7;
-/// An unknown of the camera is included if the misfit falls to less than this fraction.
-const GAIN: f64 = 0.98;
-/// Number of directions in which the blur of the outline is compared, and of pieces that one needs.
-const N_CLASSES: usize = 4;
-const LEAST_PIECES: usize = 16;
-
+pub(super) const LEAST_SPREAD_PX: f64 = 0.3;
 /// A camera's edge response, the same all around the toy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Optics {
@@ -59,124 +42,18 @@ pub(super) struct Optics {
 }
 
 impl Optics {
+    /// Blur alone.
+    pub(super) const fn blurred(spread_px: f64) -> Self {
+        Self {
+            spread_px,
+            overshoot: 0.0,
+        }
+    }
+
     /// Half the width of the band that an edge of this blur needs, in pixels.
     pub(super) fn half_px(&self) -> f64 {
         HALF_PX + HALF_OF_SPREAD * self.spread_px
     }
-
-    /// The optics that explain the pixels of a wide band best, whatever the pose, since each piece
-    /// has a free displacement; and the remaining residual.
-    pub(super) fn found(beside: &Beside<'_>, elements: &[Element]) -> (Self, f64) {
-        let edges = Edges::new(beside, elements, COMPARED_PX);
-        let spread = |spread_px| Self {
-            spread_px,
-            overshoot: 0.0,
-        };
-        let sharp = edges.misfit(Self::default());
-        let (spread_px, of_soft) = least((LEAST_SPREAD_PX, MOST_SPREAD_PX), |spread_px| {
-            edges.misfit(spread(spread_px))
-        });
-        let (mut best, mut of_best) = if of_soft < GAIN * sharp {
-            (spread(spread_px), of_soft)
-        } else {
-            (Self::default(), sharp)
-        };
-        if best.spread_px < SPREAD_WITHOUT_OVERSHOOT_PX {
-            let with = |overshoot| Self { overshoot, ..best };
-            let (overshoot, of_overshoot) =
-                least((0.0, MOST_OVERSHOOT), |overshoot| edges.misfit(with(overshoot)));
-            if of_overshoot < GAIN * of_best {
-                (best.overshoot, of_best) = (overshoot, of_overshoot);
-            }
-        }
-        (best, of_best)
-    }
-}
-
-/// The lens's blur along the normals of the outline, as a covariance; `None` if too few directions
-/// tell. An edge shows no blur along itself, so that pieces of four directions are taken apart.
-pub(super) fn directed(beside: &Beside<'_>, elements: &[Element]) -> Option<Covariance> {
-    let edges = Edges::new(beside, elements, COMPARED_PX);
-    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
-    let mut n_told = 0;
-    for class in 0..N_CLASSES {
-        let is_used: Vec<bool> = elements.iter().map(|one| class_of(one.normal) == class).collect();
-        let n = edges
-            .are_known
-            .iter()
-            .zip(&is_used)
-            .filter(|(known, used)| **known && **used)
-            .count();
-        if n < LEAST_PIECES {
-            continue;
-        }
-        let misfit = |spread_px| {
-            let optics = Optics {
-                spread_px,
-                overshoot: 0.0,
-            };
-            edges.misfit_of(optics, &is_used)
-        };
-        let (found_px, of_soft) = least((LEAST_SPREAD_PX, MOST_SPREAD_PX), misfit);
-        let spread_px = if of_soft < GAIN * misfit(0.0) {
-            found_px
-        } else {
-            0.0
-        };
-        let rows = elements.iter().zip(&is_used).filter(|(_, used)| **used);
-        let row = rows.map(|(one, _)| {
-            let DVec2 { x, y } = one.normal;
-            Vector3::new(x * x, 2.0 * x * y, y * y)
-        });
-        let row = row.sum::<Vector3<f64>>();
-        let row = row / is_used.iter().filter(|used| **used).count() as f64;
-        normal += row * row.transpose();
-        right += row * (spread_px * spread_px);
-        n_told += 1;
-    }
-    // A covariance has three numbers.
-    if n_told < 3 {
-        return None;
-    }
-    let found = normal.cholesky()?.solve(&right);
-    Some(Covariance {
-        xx_px2: found.x,
-        xy_px2: found.y,
-        yy_px2: found.z,
-    })
-}
-
-/// The class of a normal's direction, either way round.
-fn class_of(normal: DVec2) -> usize {
-    let turn = normal.to_angle() / std::f64::consts::PI * N_CLASSES as f64;
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "from 0 to the number of classes"
-    )]
-    let class = turn.round().rem_euclid(N_CLASSES as f64) as usize;
-    class % N_CLASSES
-}
-
-/// The minimum of a unimodal function between two bounds, and its value. Source: golden-section
-/// search, Kiefer 1953.
-fn least((mut low, mut high): (f64, f64), of: impl Fn(f64) -> f64) -> (f64, f64) {
-    const GOLDEN: f64 = 0.618_033_988_749_895;
-    const N_CUTS: usize = 7;
-    let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-    let (mut of_a, mut of_b) = (of(a), of(b));
-    for _ in 0..N_CUTS {
-        if of_a < of_b {
-            (high, b, of_b) = (b, a, of_a);
-            a = high - GOLDEN * (high - low);
-            of_a = of(a);
-        } else {
-            (low, a, of_a) = (a, b, of_b);
-            b = low + GOLDEN * (high - low);
-            of_b = of(b);
-        }
-    }
-    if of_a < of_b { (a, of_a) } else { (b, of_b) }
 }
 
 /// Measures each piece's displacement by the step that explains its pixels best.
@@ -220,11 +97,11 @@ fn measured_by(
 }
 
 /// The pixels beside an outline, each with its colours of toy and background alone.
-struct Edges<'a> {
+pub(super) struct Edges<'a> {
     coverage: &'a Coverage,
     pixels: Vec<EdgePixel>,
     /// For each piece, whether all of its pixels and both its sides are known.
-    are_known: Vec<bool>,
+    pub(super) are_known: Vec<bool>,
 }
 
 struct EdgePixel {
@@ -241,7 +118,7 @@ struct EdgePixel {
 }
 
 impl<'a> Edges<'a> {
-    fn new(beside: &Beside<'a>, elements: &[Element], half_px: f64) -> Self {
+    pub(super) fn new(beside: &Beside<'a>, elements: &[Element], half_px: f64) -> Self {
         let sides: Vec<Option<Sides>> = elements
             .iter()
             .map(|element| Sides::new(beside, element, half_px))
@@ -278,28 +155,8 @@ impl<'a> Edges<'a> {
         }
     }
 
-    /// Mean square of the residual over the contrast, for the pieces that fit.
-    fn misfit(&self, optics: Optics) -> f64 {
-        self.misfit_of(optics, &vec![true; self.are_known.len()])
-    }
-
-    /// The same for some of the pieces.
-    fn misfit_of(&self, optics: Optics, are_used: &[bool]) -> f64 {
-        let pieces = self.pieces(optics);
-        let used = pieces.iter().zip(are_used).filter(|(_, is_used)| **is_used);
-        let mut left: Vec<f64> = used.filter_map(|(piece, _)| piece.left()).collect();
-        left.sort_by(f64::total_cmp);
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a part of a length"
-        )]
-        let n = (FITTING * left.len() as f64) as usize;
-        let sum: f64 = left[..n].iter().sum();
-        if n == 0 { f64::INFINITY } else { sum / n as f64 }
-    }
-
-    fn pieces(&self, optics: Optics) -> Vec<Piece> {
+    /// The statistics of each piece under these optics.
+    pub(super) fn pieces(&self, optics: Optics) -> Vec<Piece> {
         let spread = Spread::new(self.coverage, optics.spread_px);
         let wider = (optics.overshoot > 0.0)
             .then(|| Spread::new(self.coverage, optics.spread_px.hypot(SHARPENED_PX)));
@@ -360,7 +217,7 @@ fn density(from_px: f64, normal: DVec2, spread_px: f64) -> f64 {
 
 /// Statistics of the pixels beside a piece of the outline: weighted sums of squares, in codes.
 #[derive(Clone, Copy, Default)]
-struct Piece {
+pub(super) struct Piece {
     is_known: bool,
     slope2: f64,
     slope_by_residual: f64,
@@ -393,7 +250,7 @@ impl Piece {
     }
 
     /// The residual over the contrast, once the piece is displaced.
-    fn left(&self) -> Option<f64> {
+    pub(super) fn left(&self) -> Option<f64> {
         if !self.is_known || self.slope2 <= 0.0 {
             return None;
         }

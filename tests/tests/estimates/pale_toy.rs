@@ -1,0 +1,121 @@
+//! A pale toy on a table as dark as its own shaded side: its outline has little contrast there.
+
+use std::sync::{Arc, LazyLock};
+
+use app_core::alignment::Aligner;
+use app_core::frame::FrameInput;
+use app_core::scene::{Image, Plate, Scene};
+use app_core::toy::PosedMesh;
+use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
+use glam::{DVec2, IVec2};
+
+use super::bundled::SESSION;
+
+/// Colour of the dark table, over that of the recorded one.
+const DARKER: [f32; 3] = [0.42, 0.37, 0.35];
+/// Samples along each side of a pixel.
+const N_SAMPLES: u32 = 4;
+
+/// The share of each pixel that the toy covers.
+fn coverage(scene: &Scene, input: &FrameInput) -> Vec<f32> {
+    let [width, height] = input.image.size_px();
+    let side = N_SAMPLES as i32;
+    let mut posed = PosedMesh::default();
+    scene
+        .toy
+        .pose(&scene.physical_pose, &input.world_from_object, &mut posed)
+        .unwrap();
+    let pixels: Vec<DVec2> = posed
+        .points()
+        .map(|point| f64::from(N_SAMPLES) * input.camera.pixel_of(point).unwrap())
+        .collect();
+    let [columns, rows] = [width, height].map(|side| (side * N_SAMPLES) as usize);
+    let mut samples = vec![false; columns * rows];
+    for corners in scene.toy.indices().chunks_exact(3) {
+        let [a, b, c] = [0, 1, 2].map(|k| pixels[corners[k] as usize]);
+        let area = (b - a).perp_dot(c - a);
+        let low = a.min(b).min(c).floor().as_ivec2();
+        let high = a.max(b).max(c).ceil().as_ivec2();
+        for (x, y) in (low.y..high.y).flat_map(|y| (low.x..high.x).map(move |x| (x, y))) {
+            let at = IVec2::new(x, y).as_dvec2() + 0.5;
+            let weights = [
+                (b - at).perp_dot(c - at),
+                (c - at).perp_dot(a - at),
+                (a - at).perp_dot(b - at),
+            ];
+            if weights.iter().all(|weight| weight * area >= 0.0) {
+                samples[y as usize * columns + x as usize] = true;
+            }
+        }
+    }
+    let of_pixel = |index: usize| {
+        let (x, y) = (index as i32 % width as i32, index as i32 / width as i32);
+        let inside = (0..side * side).filter(|k| {
+            let (column, row) = (side * x + k % side, side * y + k / side);
+            samples[row as usize * columns + column as usize]
+        });
+        inside.count() as f32 / (side * side) as f32
+    };
+    (0..(width * height) as usize).map(of_pixel).collect()
+}
+
+/// The picture at each code scaled by the table's new colour, as far as it shows the table.
+fn darkened(image: &Image, plate: &Image, coverage: &[f32]) -> Image {
+    let linear = |image: &Image, index: usize| {
+        [0, 1, 2].map(|channel| linear_from_srgb(f32::from(image.rgba8[4 * index + channel]) / 255.0))
+    };
+    let width = image.width_px as usize;
+    let mut darkened = image.clone();
+    for (index, texel) in darkened.rgba8.chunks_exact_mut(4).enumerate() {
+        let (x, y) = (index % width, index / width);
+        // The table's light beside the toy, where the pixel shows both.
+        let around = (0..49).map(|k| (y + k / 7).saturating_sub(3) * width + (x + k % 7).saturating_sub(3));
+        let clear: Vec<usize> = around
+            .filter(|at| coverage.get(*at).is_some_and(|covered| *covered == 0.0))
+            .collect();
+        let (own, own_plate) = (linear(image, index), linear(plate, index));
+        for channel in 0..3 {
+            let sum = |image| clear.iter().map(|at| linear(image, *at)[channel]).sum::<f32>();
+            let light = if clear.is_empty() {
+                1.0
+            } else {
+                sum(image) / sum(plate)
+            };
+            let table = (1.0 - coverage[index]) * light * own_plate[channel];
+            let table = if coverage[index] == 0.0 {
+                own[channel]
+            } else {
+                table
+            };
+            let left = own[channel] - (1.0 - DARKER[channel]) * table;
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
+            let code = (255.0 * srgb_from_linear(left.clamp(0.0, 1.0))).round() as u8;
+            texel[channel] = code;
+        }
+    }
+    darkened
+}
+
+static PALE: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
+    let (scene, mut input) = SESSION.clone();
+    let plate = Arc::clone(&scene.plates[0].image);
+    let covered = coverage(&scene, &input);
+    input.image = Arc::new(darkened(input.image.rgba(), &plate, &covered)).into();
+    let nothing = vec![0.0; covered.len()];
+    let plates = scene.plates.iter().map(|plate| Plate {
+        camera: plate.camera,
+        image: Arc::new(darkened(&plate.image, &plate.image, &nothing)),
+    });
+    let plates = plates.collect();
+    (scene.with_plates(plates), input)
+});
+
+#[test]
+fn a_pale_toy_on_a_dark_table_is_found_and_is_not_soft() {
+    let (scene, input) = &*PALE;
+    let found = Aligner::new(scene.clone()).align(input).unwrap();
+    let pose = found.report.pose.unwrap();
+    assert!(pose.shown_px() < 0.5, "{pose:?}");
+    let soft_px = found.sharpness.outline_spread.mean_px();
+    assert!(soft_px < 0.7, "{soft_px}");
+}
