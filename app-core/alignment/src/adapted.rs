@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3};
 
 use super::photograph::Photograph;
+use super::pose;
 use super::pose::adapt::{Adapted, Surface, adapt};
 use super::report::ModelAlignment;
 use super::shape::Shape;
@@ -36,7 +37,7 @@ impl Photograph {
         let camera_from_object = self.camera_from_object(world_from_object);
         let posed = |scene: &Scene| -> Result<Surface, ToyError> {
             let shape = Shape::new(scene, &camera_from_object)?;
-            Ok((shape, self.paint(scene, world_from_object)?))
+            Ok((shape, pose::Paint::new(scene, &camera_from_object)?))
         };
         let given = posed(scene)?;
         let normals = normals(&scene.toy, &given.0);

@@ -72,12 +72,6 @@ impl Photograph {
         (self.camera_from_world * *world_from_object).as_mat4().as_dmat4()
     }
 
-    /// The toy's paint in a place.
-    pub(super) fn paint(&self, scene: &Scene, world_from_object: &DMat4) -> Result<pose::Paint, ToyError> {
-        let camera_from_object = self.camera_from_object(world_from_object);
-        pose::Paint::new(scene, &camera_from_object, &self.camera_from_world)
-    }
-
     /// The toy's pose, starting from its earlier or from its given one; the start stays if nothing
     /// better is found.
     pub(super) fn pose(
@@ -109,7 +103,7 @@ impl Photograph {
     fn start(&self, scene: &Scene, world_from_object: DMat4) -> Result<PoseStart, ToyError> {
         let shape = self.shape(scene, &world_from_object)?;
         Ok(PoseStart {
-            paint: self.paint(scene, &world_from_object)?,
+            paint: pose::Paint::new(scene, &self.camera_from_object(&world_from_object))?,
             ground: self.ground_under(scene, &shape),
             shape,
             world_from_object,

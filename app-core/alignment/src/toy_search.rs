@@ -15,7 +15,7 @@ use crate::hand::photograph_from_plate;
 use crate::photograph::{MOST_OUTLINE_PX, Photograph};
 use crate::picture::{Level, Picture, Pyramid};
 use crate::placed_receivers::planes_under;
-use crate::pose::{self, Start};
+use crate::pose::{self, Paint, Start};
 use crate::report::PoseDeviation;
 use crate::shape::Shape;
 use app_scene::frame::FrameInput;
@@ -343,7 +343,8 @@ impl Search {
     /// too little of it is visible.
     fn color_difference(&self, world_from_object: &DMat4) -> Result<f64, AlignError> {
         let shape = self.photograph.shape(&self.scene, world_from_object)?;
-        let paint = self.photograph.paint(&self.scene, world_from_object)?;
+        let camera_from_object = self.photograph.camera_from_object(world_from_object);
+        let paint = Paint::new(&self.scene, &camera_from_object)?;
         let level = self
             .photograph
             .pyramid()

@@ -137,7 +137,7 @@ impl Photograph {
         (planes_of, memory): (Option<Colored>, Option<&things::Memory>),
     ) -> Result<Sighted, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
-        let paint = self.paint(scene, &input.world_from_object)?;
+        let paint = pose::Paint::new(scene, &self.camera_from_object(&input.world_from_object))?;
         // They are of use to planes alone.
         let points = match planes_of {
             Some(_) => MeasuredPoints::of(scene, input),
@@ -197,7 +197,7 @@ impl Photograph {
         (lights, things): (&[Light], Option<&Things>),
     ) -> Result<Gloss, ToyError> {
         let shape = self.shape(scene, world_from_object)?;
-        let paint = self.paint(scene, world_from_object)?;
+        let paint = pose::Paint::new(scene, &self.camera_from_object(world_from_object))?;
         // Other marks of the toy's pixels are about what is behind it.
         let shown = things.map(|things| things.only(|mark| mark == Mark::BeforeToy));
         let clear = shown.map(|others| self.pyramid.clear_of(others.marks()));

@@ -5,7 +5,7 @@
 //! pixel beside the outline gives the toy's coverage of it (`matte`), each round being one
 //! Gauss-Newton step of six numbers (`motion`). The last rounds predict the codes of the pixels
 //! beside the outline (`edge`) from the colours on either side of it (`sides`): the plate, and the
-//! model's own colours in the light of the photograph (`paint`, `shading`). They also estimate the offset of
+//! model's own colours in the light of the photograph (`paint`). They also estimate the offset of
 //! the whole outline, and with the feet of the toy on their plane (`standing`) its size (`settle`).
 //! If the model has a texture, the same rounds fit that within the outline (`texture`).
 //! One step selects the most likely of these poses (`decide`).
@@ -27,7 +27,6 @@ mod placement;
 mod regions;
 mod resting;
 mod settle;
-mod shading;
 mod sides;
 mod standing;
 mod texels;

@@ -8,21 +8,42 @@
 use std::sync::Arc;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
+use nalgebra::{SMatrix, SVector};
 
 use super::placement::Placement;
-use super::shading::{Light, Surface};
 use super::texels::{mean_texel, texture_size};
-use crate::picture::{Color, Level, index_in};
+use crate::picture::{Color, Level, index_in, noise_deviation};
 use crate::raster::{Coverage, centres, project};
 use crate::rigid_motion::RigidMotion;
 use app_scene::geometry::color::linear_of_codes;
-use app_scene::scene::{Intrinsics, MAX_LIGHTS, Scene};
+use app_scene::scene::{Intrinsics, Scene};
 use app_scene::toy::{PosedMesh, Toy, ToyError, Wrap};
 
-/// Number of pixels above which more add nothing to the light.
+/// Number of spherical harmonics of the first three orders, which describe the irradiance of a matt
+/// surface.
+///
+/// Source: Ramamoorthi and Hanrahan 2001.
+const N_BASIS: usize = 9;
+/// Weight of the prior on each order beyond the first, over that of the pixels: the visible side of
+/// a toy does not constrain all.
+const PRIOR: f64 = 1e-3;
+/// Rounds of reweighting, and the scale of Cauchy's weights, relative to the light: the error of
+/// shading by facets and contact.
+const N_ROUNDS: usize = 4;
+const ROBUST: f64 = 0.15;
+/// Lower bound of a surface's irradiance, over the mean: darker pixels are in shadow, which the
+/// model does not have.
+const DARKEST: f32 = 0.15;
+/// Number of pixels that an estimate needs, and the number above which more add nothing.
+const LEAST_PIXELS: usize = 100;
 const MOST_PIXELS: usize = 2000;
 /// Distance of the light's pixels from the outline, in pixels.
 const WITHIN_PX: i32 = 2;
+/// Lower bound of paints, since light is divided by them.
+const DARKEST_PAINT: f32 = 0.01;
+
+type Basis = SVector<f64, N_BASIS>;
+
 /// The toy's surface in its given place in camera space, with its paints.
 #[derive(Clone, Debug)]
 pub(crate) struct Paint {
@@ -32,8 +53,6 @@ pub(crate) struct Paint {
     toy: Arc<Toy>,
     /// Linear light of each code.
     linear: [f32; 256],
-    /// Unit vectors towards the known lights, in camera space.
-    to_lights: Vec<DVec3>,
 }
 
 #[derive(Clone, Debug)]
@@ -46,21 +65,15 @@ struct Face {
 
 impl Paint {
     /// The paint of a toy in a scene's physical pose.
-    pub(crate) fn new(
-        scene: &Scene,
-        camera_from_object: &DMat4,
-        camera_from_world: &DMat4,
-    ) -> Result<Self, ToyError> {
+    pub(crate) fn new(scene: &Scene, camera_from_object: &DMat4) -> Result<Self, ToyError> {
         let toy = &scene.toy;
         let mut posed = PosedMesh::default();
         toy.pose(&scene.physical_pose, camera_from_object, &mut posed)?;
-        let positions: Vec<DVec3> = posed.points().collect();
         Ok(Self {
             faces: faces(toy),
             toy: Arc::clone(toy),
             linear: linear_of_codes(),
-            to_lights: to_lights(scene, &positions, camera_from_world),
-            positions,
+            positions: posed.points().collect(),
             normals: posed.normals.iter().map(|normal| normal.as_dvec3()).collect(),
         })
     }
@@ -105,12 +118,11 @@ impl Paint {
     /// The light on the toy, from `level` and the toy's estimated place; `None` if too little of it
     /// is visible.
     pub(super) fn light(&self, placement: &Placement, level: &Level, coverage: &Coverage) -> Option<Light> {
-        let seen = self.seen(placement, &level.intrinsics, coverage);
-        let within = within(coverage);
-        let stride = within.len().div_ceil(MOST_PIXELS).max(1);
-        let pixels = within.into_iter().step_by(stride);
-        let pixels = pixels.filter_map(|at| Some((seen.at(at)?, level.frame.get(at)?)));
-        Light::fitted(&pixels.collect::<Vec<_>>(), &self.to_lights)
+        Light::fitted(
+            &self.seen(placement, &level.intrinsics, coverage),
+            level,
+            coverage,
+        )
     }
 
     /// The face at the centre of each pixel of the coverage.
@@ -188,19 +200,6 @@ impl Paint {
         }
         Surface { color, normal }
     }
-}
-
-/// Unit vectors from the middle of the toy towards its scene's lights, in camera space. They are
-/// rounded to 32 bits, which are mostly the same for any origin of the world.
-fn to_lights(scene: &Scene, positions: &[DVec3], camera_from_world: &DMat4) -> Vec<DVec3> {
-    let middle = positions.iter().sum::<DVec3>() / positions.len().max(1) as f64;
-    let in_world = camera_from_world.inverse().transform_point3(middle);
-    let lights = scene.lights.iter().take(MAX_LIGHTS);
-    let directions = lights.filter_map(|light| light.direction_from(in_world));
-    let in_camera = |direction| camera_from_world.transform_vector3(direction).normalize_or_zero();
-    directions
-        .map(|direction| in_camera(direction).as_vec3().as_dvec3())
-        .collect()
 }
 
 fn faces(toy: &Toy) -> Vec<Face> {
@@ -323,6 +322,100 @@ pub(crate) struct Surfel {
     pub(crate) material: usize,
 }
 
+/// The toy's surface at a pixel.
+#[derive(Clone, Copy, Debug)]
+struct Surface {
+    color: Color,
+    normal: DVec3,
+}
+
+impl Surface {
+    fn basis(&self) -> Basis {
+        let DVec3 { x, y, z } = self.normal;
+        Basis::from([
+            1.0,
+            x,
+            y,
+            z,
+            x * y,
+            y * z,
+            x * z,
+            3.0 * z * z - 1.0,
+            x * x - y * y,
+        ])
+    }
+}
+
+/// The light on the toy: coefficients of each harmonic, for each channel.
+#[derive(Clone, Debug)]
+pub(super) struct Light {
+    factors: [Basis; 3],
+    least: Color,
+}
+
+impl Light {
+    /// Fits the light to the visible surface in a photograph, by iteratively reweighted least
+    /// squares; `None` if too little of it is visible.
+    fn fitted(seen: &Seen<'_>, level: &Level, coverage: &Coverage) -> Option<Self> {
+        let within = within(coverage);
+        let stride = within.len().div_ceil(MOST_PIXELS).max(1);
+        let pixels = within.into_iter().step_by(stride);
+        let pixels: Vec<(Surface, Color)> = pixels
+            .filter_map(|at| Some((seen.at(at)?, level.frame.get(at)?)))
+            .collect();
+        if pixels.len() < LEAST_PIXELS {
+            return None;
+        }
+        let factors = [0, 1, 2].map(|channel| fitted(&pixels, channel));
+        let mut mean = [0.0_f64; 3];
+        for (surface, _) in &pixels {
+            for channel in 0..3 {
+                mean[channel] += surface.basis().dot(&factors[channel]).max(0.0);
+            }
+        }
+        #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
+        let least = mean.map(|sum| DARKEST * (sum / pixels.len() as f64) as f32);
+        Some(Self { factors, least })
+    }
+
+    fn shade(&self, surface: &Surface) -> Color {
+        let basis = surface.basis();
+        [0, 1, 2].map(|channel| {
+            #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
+            let light = basis.dot(&self.factors[channel]) as f32;
+            surface.color[channel].max(DARKEST_PAINT) * light.max(self.least[channel])
+        })
+    }
+}
+
+fn fitted(pixels: &[(Surface, Color)], channel: usize) -> Basis {
+    let mut factors: Option<Basis> = None;
+    for _ in 0..N_ROUNDS {
+        let mut normal = SMatrix::<f64, N_BASIS, N_BASIS>::zeros();
+        let mut side = Basis::zeros();
+        for (surface, shown) in pixels {
+            let paint = f64::from(surface.color[channel].max(DARKEST_PAINT));
+            let shown = f64::from(shown[channel]);
+            let row = paint * surface.basis();
+            // Errors of the model are proportional to the light, those of the picture are noise.
+            #[allow(clippy::cast_possible_truncation, reason = "light, to 7 digits")]
+            let noise = f64::from(noise_deviation(shown as f32));
+            let scale = noise.hypot(ROBUST * shown);
+            let excess = factors.map_or(0.0, |factors| (shown - row.dot(&factors)) / scale);
+            let weight = 1.0 / (scale * scale * (1.0 + excess * excess));
+            normal += weight * row * row.transpose();
+            side += weight * shown * row;
+        }
+        let prior = PRIOR * normal[(0, 0)];
+        for order in 1..N_BASIS {
+            normal[(order, order)] += prior;
+        }
+        let Some(factor) = normal.cholesky() else { break };
+        factors = Some(factor.solve(&side));
+    }
+    factors.unwrap_or_else(Basis::zeros)
+}
+
 /// The light of a toy.
 #[derive(Clone, Copy)]
 pub(super) struct Lit<'a> {
@@ -356,7 +449,7 @@ impl Shaded<'_> {
     pub(super) fn color(&self, at: IVec2) -> Option<Color> {
         self.seen
             .at(at)
-            .map(|surface| [0, 1, 2].map(|channel| surface.paint(channel)))
+            .map(|surface| surface.color.map(|channel| channel.max(DARKEST_PAINT)))
     }
 
     /// The point of the toy that a pixel's centre shows, where the toy was given, in camera space.
