@@ -7,7 +7,7 @@ use app_core::frame::FrameInput;
 use app_core::scene::{Image, Plate, Scene};
 use app_core::toy::PosedMesh;
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
-use glam::{DVec2, IVec2};
+use glam::{DVec2, UVec2};
 
 use super::bundled::SESSION;
 
@@ -18,8 +18,7 @@ const N_SAMPLES: u32 = 4;
 
 /// The share of each pixel that the toy covers.
 fn coverage(scene: &Scene, input: &FrameInput) -> Vec<f32> {
-    let [width, height] = input.image.size_px();
-    let side = N_SAMPLES as i32;
+    let [width, height] = input.image.size_px().map(|side| side as usize);
     let mut posed = PosedMesh::default();
     scene
         .toy
@@ -27,39 +26,35 @@ fn coverage(scene: &Scene, input: &FrameInput) -> Vec<f32> {
         .unwrap();
     let pixels: Vec<DVec2> = posed
         .points()
-        .map(|point| f64::from(N_SAMPLES) * input.camera.pixel_of(point).unwrap())
+        .map(|point| input.camera.pixel_of(point).unwrap())
         .collect();
-    let [columns, rows] = [width, height].map(|side| (side * N_SAMPLES) as usize);
-    let mut samples = vec![false; columns * rows];
+    let n = N_SAMPLES as usize;
+    let mut samples = vec![false; n * width * n * height];
     for corners in scene.toy.indices().chunks_exact(3) {
-        let [a, b, c] = [0, 1, 2].map(|k| pixels[corners[k] as usize]);
+        let [a, b, c] = [0, 1, 2].map(|k| f64::from(N_SAMPLES) * pixels[corners[k] as usize]);
         let area = (b - a).perp_dot(c - a);
-        let low = a.min(b).min(c).floor().as_ivec2();
-        let high = a.max(b).max(c).ceil().as_ivec2();
-        for (x, y) in (low.y..high.y).flat_map(|y| (low.x..high.x).map(move |x| (x, y))) {
-            let at = IVec2::new(x, y).as_dvec2() + 0.5;
+        let (low, high) = (a.min(b).min(c).as_uvec2(), a.max(b).max(c).as_uvec2());
+        for (y, x) in (low.y..=high.y).flat_map(|y| (low.x..=high.x).map(move |x| (y, x))) {
+            let at = UVec2::new(x, y).as_dvec2() + 0.5;
             let weights = [
                 (b - at).perp_dot(c - at),
                 (c - at).perp_dot(a - at),
                 (a - at).perp_dot(b - at),
             ];
             if weights.iter().all(|weight| weight * area >= 0.0) {
-                samples[y as usize * columns + x as usize] = true;
+                samples[y as usize * n * width + x as usize] = true;
             }
         }
     }
     let of_pixel = |index: usize| {
-        let (x, y) = (index as i32 % width as i32, index as i32 / width as i32);
-        let inside = (0..side * side).filter(|k| {
-            let (column, row) = (side * x + k % side, side * y + k / side);
-            samples[row as usize * columns + column as usize]
-        });
-        inside.count() as f32 / (side * side) as f32
+        let (x, y) = (index % width, index / width);
+        let inside = (0..n * n).filter(|k| samples[(n * y + k / n) * n * width + n * x + k % n]);
+        inside.count() as f32 / (n * n) as f32
     };
-    (0..(width * height) as usize).map(of_pixel).collect()
+    (0..width * height).map(of_pixel).collect()
 }
 
-/// The picture at each code scaled by the table's new colour, as far as it shows the table.
+/// A picture on a table of the new colour: each pixel as far as it shows the table.
 fn darkened(image: &Image, plate: &Image, coverage: &[f32]) -> Image {
     let linear = |image: &Image, index: usize| {
         [0, 1, 2].map(|channel| linear_from_srgb(f32::from(image.rgba8[4 * index + channel]) / 255.0))
