@@ -353,23 +353,21 @@ impl Search<'_> {
     }
 
     /// A placement found by rounds that know little of the toy's colours, or the given one if the
-    /// codes beside its outline are explained better: where the toy is as bright as the table, such
-    /// rounds slide off a given pose that is right.
+    /// codes beside its outline are explained better by a sharp picture: where the toy is as bright as
+    /// the table, such rounds slide off a given pose that is right. A blur explains a poor model, too.
     ///
     /// Measured: with the toy pushed aside in the plate, a pale llama on dark wood had 10.0/23.2/29.5
     /// (shadow/toy/edge) without it, and 3.3/5.0/10.1 with it.
     fn explaining(&mut self, paint: &Paint, found: Placement) -> Placement {
         let given = Placement::of(RigidMotion::none(self.shape.centre, self.shape.radius_m));
-        let mut misfit = |placement: &Placement| {
+        let mut explained = |placement: &Placement| {
             let light = self.light(paint, placement);
             let lit = light.as_ref().map(|light| Lit { paint, light });
-            self.explained(placement, lit).1
+            self.explained(placement, lit)
         };
-        if misfit(&given) < misfit(&found) {
-            given
-        } else {
-            found
-        }
+        let (optics, misfit) = explained(&given);
+        let is_given = optics.spread_px < blur::SOFT_PX && misfit < explained(&found).1;
+        if is_given { given } else { found }
     }
 
     /// The same with what it leaves unexplained.
