@@ -1,6 +1,6 @@
 //! A pale toy on a table as dark as its own shaded side: its outline has little contrast there.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 use app_core::alignment::Aligner;
 use app_core::frame::FrameInput;
@@ -54,35 +54,36 @@ fn coverage(scene: &Scene, input: &FrameInput) -> Vec<f32> {
     (0..width * height).map(of_pixel).collect()
 }
 
+/// Linear light of a pixel.
+fn linear(image: &Image, index: usize) -> [f32; 3] {
+    [0, 1, 2].map(|channel| linear_from_srgb(f32::from(image.rgba8[4 * index + channel]) / 255.0))
+}
+
+/// The table's part of a pixel's light; where the toy covers some of it, the plate in the light beside the toy.
+fn of_table((image, plate): (&Image, &Image), coverage: &[f32], index: usize) -> [f32; 3] {
+    if coverage[index] == 0.0 {
+        return linear(image, index);
+    }
+    if coverage[index] == 1.0 {
+        return [0.0; 3];
+    }
+    let width = image.width_px as usize;
+    let (x, y) = (index % width, index / width);
+    let around = (0..49).map(|k| (y + k / 7 - 3) * width + x + k % 7 - 3);
+    let clear: Vec<usize> = around.filter(|at| coverage[*at] == 0.0).collect();
+    let sum = |image, channel: usize| clear.iter().map(|at| linear(image, *at)[channel]).sum::<f32>();
+    let alone = linear(plate, index);
+    [0, 1, 2]
+        .map(|channel| (1.0 - coverage[index]) * sum(image, channel) / sum(plate, channel) * alone[channel])
+}
+
 /// A picture on a table of the new colour: each pixel as far as it shows the table.
 fn darkened(image: &Image, plate: &Image, coverage: &[f32]) -> Image {
-    let linear = |image: &Image, index: usize| {
-        [0, 1, 2].map(|channel| linear_from_srgb(f32::from(image.rgba8[4 * index + channel]) / 255.0))
-    };
-    let width = image.width_px as usize;
     let mut darkened = image.clone();
     for (index, texel) in darkened.rgba8.chunks_exact_mut(4).enumerate() {
-        let (x, y) = (index % width, index / width);
-        // The table's light beside the toy, where the pixel shows both.
-        let around = (0..49).map(|k| (y + k / 7).saturating_sub(3) * width + (x + k % 7).saturating_sub(3));
-        let clear: Vec<usize> = around
-            .filter(|at| coverage.get(*at).is_some_and(|covered| *covered == 0.0))
-            .collect();
-        let (own, own_plate) = (linear(image, index), linear(plate, index));
+        let (own, table) = (linear(image, index), of_table((image, plate), coverage, index));
         for channel in 0..3 {
-            let sum = |image| clear.iter().map(|at| linear(image, *at)[channel]).sum::<f32>();
-            let light = if clear.is_empty() {
-                1.0
-            } else {
-                sum(image) / sum(plate)
-            };
-            let table = (1.0 - coverage[index]) * light * own_plate[channel];
-            let table = if coverage[index] == 0.0 {
-                own[channel]
-            } else {
-                table
-            };
-            let left = own[channel] - (1.0 - DARKER[channel]) * table;
+            let left = own[channel] - (1.0 - DARKER[channel]) * table[channel];
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
             let code = (255.0 * srgb_from_linear(left.clamp(0.0, 1.0))).round() as u8;
             texel[channel] = code;
@@ -91,7 +92,8 @@ fn darkened(image: &Image, plate: &Image, coverage: &[f32]) -> Image {
     darkened
 }
 
-static PALE: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
+/// The bundled session on the dark table.
+fn pale() -> (Scene, FrameInput) {
     let (scene, mut input) = SESSION.clone();
     let plate = Arc::clone(&scene.plates[0].image);
     let covered = coverage(&scene, &input);
@@ -103,12 +105,12 @@ static PALE: LazyLock<(Scene, FrameInput)> = LazyLock::new(|| {
     });
     let plates = plates.collect();
     (scene.with_plates(plates), input)
-});
+}
 
 #[test]
 fn a_pale_toy_on_a_dark_table_is_found_and_is_not_soft() {
-    let (scene, input) = &*PALE;
-    let found = Aligner::new(scene.clone()).align(input).unwrap();
+    let (scene, input) = pale();
+    let found = Aligner::new(scene).align(&input).unwrap();
     let pose = found.report.pose.unwrap();
     assert!(pose.shown_px() < 0.5, "{pose:?}");
     let soft_px = found.sharpness.outline_spread.mean_px();

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::contour::Element;
 use super::edge::{Edges, LEAST_SPREAD_PX, Optics};
 use super::sides::Beside;
+use crate::median::part_of;
 use app_scene::sharpness::Spread;
 
 /// Largest blur of a lens.
@@ -120,12 +121,7 @@ impl Pieces<'_> {
         let pieces = self.edges.pieces(optics);
         let mut left: Vec<f64> = self.used(&pieces).filter_map(|piece| piece.left()).collect();
         left.sort_by(f64::total_cmp);
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a part of a length"
-        )]
-        let n = (FITTING * left.len() as f64) as usize;
+        let n = part_of(left.len(), FITTING);
         let sum: f64 = left[..n].iter().sum();
         if n == 0 { f64::INFINITY } else { sum / n as f64 }
     }
@@ -138,12 +134,10 @@ impl Pieces<'_> {
         }
         let [soft, sharp] = [spread_px, 0.0].map(|px| self.edges.pieces(Optics::blurred(px)));
         let both = self.used(&soft).zip(self.used(&sharp));
-        let (mut n, mut n_better) = (0.0, 0.0);
-        for (soft, sharp) in both.filter_map(|(soft, sharp)| soft.left().zip(sharp.left())) {
-            n += 1.0;
-            n_better += f64::from(u8::from(soft < sharp));
-        }
-        n_better >= BETTER * n
+        let left = both.filter_map(|(soft, sharp)| soft.left().zip(sharp.left()));
+        let are_better: Vec<bool> = left.map(|(soft, sharp)| soft < sharp).collect();
+        let n_better = are_better.iter().filter(|is_better| **is_better).count();
+        n_better as f64 >= BETTER * are_better.len() as f64
     }
 }
 

@@ -70,6 +70,26 @@ struct Seen<'a> {
     texture: Option<&'a Texture>,
 }
 
+/// The light on the toy and the camera's edge response, by the codes beside the outline of a placement.
+struct Explained {
+    /// `None` if too little of the toy is visible.
+    light: Option<Light>,
+    optics: Optics,
+    /// What they leave unexplained.
+    misfit: f64,
+}
+
+impl Explained {
+    fn seen<'a>(&'a self, paint: &'a Paint) -> Seen<'a> {
+        Seen {
+            lit: self.light.as_ref().map(|light| Lit { paint, light }),
+            optics: self.optics,
+            accuracy: Accuracy::Codes,
+            texture: None,
+        }
+    }
+}
+
 /// The way in which the outline is compared.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Accuracy {
@@ -129,13 +149,11 @@ impl Search<'_> {
         let light = self.light(paint, &Placement::of(motion));
         let lit = light.as_ref().map(|light| Lit { paint, light });
         let start = Placement::of(self.fine(motion, lit, wide_bands())?);
-        let light = self.light(paint, &start);
-        let seen = self.seen(&start, light.as_ref().map(|light| Lit { paint, light }));
+        let explained = self.explained(paint, &start);
         // The effects of camera and light on the outline are measured best near a match.
-        let start = self.settled(seen, &start, None)?.placement;
-        let start = self.explaining(paint, start);
-        let light = self.light(paint, &start);
-        let seen = self.seen(&start, light.as_ref().map(|light| Lit { paint, light }));
+        let start = self.settled(explained.seen(paint), &start, None)?.placement;
+        let (start, explained) = self.explaining(paint, start);
+        let seen = explained.seen(paint);
         let texture = seen.lit.and_then(|lit| self.texture(lit, &start));
         let (seen, free) = self.textured(seen, texture.as_ref(), &start)?;
         let standing = ground.and_then(|Ground { plane, .. }| Standing::on(shape, plane));
@@ -282,17 +300,13 @@ impl Search<'_> {
 
     /// The camera's blur of the outline.
     pub(super) fn spread_px(&mut self, paint: &Paint, placement: &Placement) -> f64 {
-        let light = self.light(paint, placement);
-        let lit = light.as_ref().map(|light| Lit { paint, light });
-        self.optics(placement, lit).spread_px
+        self.explained(paint, placement).optics.spread_px
     }
 
     /// The same by direction; `None` if too few directions tell.
     pub(super) fn directed_spread(&mut self, paint: &Paint, placement: &Placement) -> Option<Spread> {
-        let light = self.light(paint, placement);
-        let lit = light.as_ref().map(|light| Lit { paint, light });
-        self.optics(placement, lit);
-        let posed = self.posed(placement, lit);
+        let explained = self.explained(paint, placement);
+        let posed = self.posed(placement, explained.seen(paint).lit);
         let softened = self.softened.as_ref().map(|(level, _)| level);
         let level = softened.unwrap_or_else(|| self.pyramid.level(0));
         blur::directed(&posed.beside(level), &posed.elements)
@@ -301,16 +315,6 @@ impl Search<'_> {
     pub(super) fn light(&mut self, paint: &Paint, placement: &Placement) -> Option<Light> {
         let posed = self.posed(placement, None);
         paint.light(placement, self.pyramid.level(0), &posed.coverage)
-    }
-
-    fn seen<'a>(&mut self, placement: &Placement, lit: Option<Lit<'a>>) -> Seen<'a> {
-        let optics = self.optics(placement, lit);
-        Seen {
-            lit,
-            optics,
-            accuracy: Accuracy::Codes,
-            texture: None,
-        }
     }
 
     /// The model's paint near the toy's pose; `None` if it has no texture there.
@@ -346,48 +350,46 @@ impl Search<'_> {
         seen.texture.and_then(|texture| texture.likeness(placement, k))
     }
 
-    /// The camera's edge response; if it is soft, with a blurred or the original plate, whichever
-    /// explains more.
-    fn optics(&mut self, placement: &Placement, lit: Option<Lit<'_>>) -> Optics {
-        self.explained(placement, lit).0
-    }
-
     /// A placement found by rounds that know little of the toy's colours, or the given one if the
     /// codes beside its outline are explained better by a sharp picture: where the toy is as bright as
     /// the table, such rounds slide off a given pose that is right. A blur explains a poor model, too.
     ///
     /// Measured: with the toy pushed aside in the plate, a pale llama on dark wood had 10.0/23.2/29.5
     /// (shadow/toy/edge) without it, and 3.3/5.0/10.1 with it.
-    fn explaining(&mut self, paint: &Paint, found: Placement) -> Placement {
+    fn explaining(&mut self, paint: &Paint, found: Placement) -> (Placement, Explained) {
         let given = Placement::of(RigidMotion::none(self.shape.centre, self.shape.radius_m));
-        let mut explained = |placement: &Placement| {
-            let light = self.light(paint, placement);
-            let lit = light.as_ref().map(|light| Lit { paint, light });
-            self.explained(placement, lit)
-        };
-        let (optics, misfit) = explained(&given);
-        let is_given = optics.spread_px < blur::SOFT_PX && misfit < explained(&found).1;
-        if is_given { given } else { found }
+        let by_given = self.explained(paint, &given);
+        let softened = self.softened.take();
+        let by_found = self.explained(paint, &found);
+        if by_given.optics.spread_px < blur::SOFT_PX && by_given.misfit < by_found.misfit {
+            self.softened = softened;
+            return (given, by_given);
+        }
+        (found, by_found)
     }
 
-    /// The same with what it leaves unexplained.
-    fn explained(&mut self, placement: &Placement, lit: Option<Lit<'_>>) -> (Optics, f64) {
-        let posed = self.posed(placement, lit);
+    /// Light and camera at a placement; if it is soft, with a blurred or the original plate, whichever
+    /// explains more.
+    fn explained(&mut self, paint: &Paint, placement: &Placement) -> Explained {
+        let light = self.light(paint, placement);
+        let posed = self.posed(placement, light.as_ref().map(|light| Lit { paint, light }));
         let sharp = self.pyramid.level(0);
         let found = |level: &Level| blur::optics(&posed.beside(level), &posed.elements);
         self.softened = None;
-        let (optics, misfit) = found(sharp);
-        let is_soft = optics.spread_px >= blur::SOFT_PX;
-        let softened = is_soft.then(|| sharp.with_plate_spread(optics.spread_px));
-        let Some(softened) = softened.flatten() else {
-            return (optics, misfit);
-        };
-        let (of_softened, its_misfit) = found(&softened);
-        if its_misfit < misfit {
-            self.softened = Some((softened, optics.spread_px));
-            (of_softened, its_misfit)
-        } else {
-            (optics, misfit)
+        let (mut optics, mut misfit) = found(sharp);
+        let spread_px = optics.spread_px;
+        let is_soft = spread_px >= blur::SOFT_PX;
+        if let Some(softened) = is_soft.then(|| sharp.with_plate_spread(spread_px)).flatten() {
+            let (of_softened, its_misfit) = found(&softened);
+            if its_misfit < misfit {
+                self.softened = Some((softened, spread_px));
+                (optics, misfit) = (of_softened, its_misfit);
+            }
+        }
+        Explained {
+            light,
+            optics,
+            misfit,
         }
     }
 

@@ -31,6 +31,7 @@ const SHARPENED_PX: f64 = 1.2;
 const PIXEL_PX2: f64 = 1.0 / 12.0;
 /// A smaller blur is invisible beside the shape of the pixel.
 pub(super) const LEAST_SPREAD_PX: f64 = 0.3;
+
 /// A camera's edge response, the same all around the toy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Optics {

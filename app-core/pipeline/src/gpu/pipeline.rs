@@ -132,11 +132,11 @@ impl PipelineCache {
     pub(crate) fn replace_texts(&self, texts: ShaderTexts) -> ShaderTexts {
         let mut now = locked(&self.texts);
         let before = mem::replace(&mut *now, texts);
-        let stays = |shader: &Shader| shader.source_with(&now) == shader.source_with(&before);
-        locked(&self.modules).retain(|shader, _| stays(shader));
-        locked(&self.draws).retain(|spec, _| stays(spec.shader));
-        locked(&self.computes).retain(|spec, _| stays(spec.shader));
-        drop(now);
+        let mut modules = locked(&self.modules);
+        modules.retain(|shader, _| shader.source_with(&now) == shader.source_with(&before));
+        // Each pipeline was compiled from a module.
+        locked(&self.draws).retain(|spec, _| modules.contains_key(&spec.shader));
+        locked(&self.computes).retain(|spec, _| modules.contains_key(&spec.shader));
         before
     }
 
