@@ -1,4 +1,4 @@
-//! The median.
+//! The median, and ranks.
 
 use std::cmp::Ordering;
 
@@ -14,4 +14,14 @@ pub(crate) fn median<T: Copy>(
     let mut numbers: Vec<T> = numbers.into_iter().collect();
     let middle = numbers.len() / 2;
     (!numbers.is_empty()).then(|| *numbers.select_nth_unstable_by(middle, order).1)
+}
+
+/// A part of a count, rounded down: a rank.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a part of a count"
+)]
+pub(crate) fn part_of(n: usize, part: f64) -> usize {
+    (part * n as f64) as usize
 }

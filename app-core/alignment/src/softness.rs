@@ -15,6 +15,7 @@ mod motion;
 use self::grey::{CORRELATION, Grey, MOST_PX2, RATIO_PX, SMOOTHED_PX, with_variances};
 use super::median::median;
 use super::picture::{Level, Mask, brightness, places};
+use super::pose::{Directed, SOFT_PX};
 use super::raster::Coverage;
 use app_scene::sharpness::{Sharpness, Spread};
 
@@ -46,9 +47,6 @@ const ALIKE_PX: f64 = 0.3;
 const MOST_STEP_PX2: f64 = 1.5;
 const LAST_STEP_PX2: f64 = 0.02;
 const N_STEPS: usize = 10;
-/// A smaller blur of the outline, in pixels, is that of a sharp lens: compression and the like
-/// cause as much.
-const LEAST_OUTLINE_PX: f64 = 0.7;
 /// Difference of an outline's deviations along its axes from which it is blurred by a motion, in
 /// pixels. Measured: up to .34 out of focus, .86 to 1.3 for motions of 5 px.
 const MOTION_PX: f64 = 0.5;
@@ -60,8 +58,8 @@ const DIRECTIONS: [IVec2; 4] = [IVec2::X, IVec2::Y, IVec2::ONE, IVec2::new(1, -1
 pub(super) struct Outline<'a> {
     /// Its standard deviation; `None` if it was not measured.
     pub(super) px: Option<f64>,
-    /// By direction: `None` within if no blur explains it, and at all if too few directions tell.
-    pub(super) directed: &'a dyn Fn() -> Option<Option<Spread>>,
+    /// By direction; `None` if too few directions tell.
+    pub(super) directed: &'a dyn Fn() -> Option<Directed>,
     /// That of a round blur beside a known one.
     pub(super) beyond_px: &'a dyn Fn(Spread) -> Option<f64>,
 }
@@ -75,10 +73,14 @@ pub(super) fn sharpness(level: &Level, coverage: &Coverage, outline: &Outline<'_
     let widest_px = plate_spread.map_or(0.0, Spread::widest_px);
     let is_soft = of_outline.max(widest_px) >= LEAST_PX;
     let told = is_soft.then(outline.directed).flatten();
-    let is_visible = |px: &f64| *px >= LEAST_OUTLINE_PX;
+    let is_visible = |px: &f64| *px >= SOFT_PX;
+    let blurred = match told {
+        Some(Directed::Blurred(blurred)) => Some(blurred),
+        _ => None,
+    };
     let motion = textures
         .filter(|_| is_soft)
-        .and_then(|textures| textures.motion(told.flatten()));
+        .and_then(|textures| textures.motion(blurred));
     if let Some(motion) = motion.filter(is_motion) {
         let of_plate = (outline.beyond_px)(motion).filter(is_visible);
         return Sharpness {
@@ -95,11 +97,10 @@ pub(super) fn sharpness(level: &Level, coverage: &Coverage, outline: &Outline<'_
         0.0
     };
     let of_plate = match told {
-        // Something else is beside the toy.
-        Some(None) => Spread::NONE,
+        Some(Directed::Unexplained) => Spread::NONE,
         // No motion of the camera blurs the toy and not the texture beside it.
-        Some(Some(told)) if is_motion(&told) && motion.is_some() => Spread::NONE,
-        Some(Some(told)) if is_motion(&told) => positive(told.and(plate_spread.times(-1.0))),
+        Some(Directed::Blurred(told)) if is_motion(&told) && motion.is_some() => Spread::NONE,
+        Some(Directed::Blurred(told)) if is_motion(&told) => positive(told.and(plate_spread.times(-1.0))),
         _ => Spread::round(of_plate_px2.max(0.0).sqrt()),
     };
     Sharpness {

@@ -13,6 +13,7 @@ mod lens_found;
 mod model;
 mod moved_lights;
 mod moved_toy;
+mod pale_toy;
 mod planes;
 mod plate_taker;
 mod pose_filter;

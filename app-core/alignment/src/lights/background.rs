@@ -7,7 +7,7 @@
 use glam::{DVec2, DVec3};
 use nalgebra::{SMatrix, SVector};
 
-use crate::median::DEVIATION_OF_MEDIAN;
+use crate::median::{DEVIATION_OF_MEDIAN, part_of};
 use crate::picture::{Color, Level, places};
 use crate::raster::Coverage;
 use crate::receivers::{SeenReceiver, receiver_at};
@@ -163,7 +163,6 @@ fn robust<const N: usize>(values: &[(Terms<N>, f64)]) -> (Terms<N>, f64) {
 }
 
 fn quantile(values: &mut [f64], part: f64) -> f64 {
-    #[allow(clippy::cast_possible_truncation, reason = "an index")]
-    let index = (part * (values.len() - 1) as f64) as usize;
+    let index = part_of(values.len() - 1, part);
     *values.select_nth_unstable_by(index, f64::total_cmp).1
 }

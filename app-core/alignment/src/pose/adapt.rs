@@ -7,6 +7,7 @@
 
 use glam::DVec3;
 
+use super::blur;
 use super::contour_segments::{ContourSegment, cell_px};
 use super::decide::COMPARED_PX;
 use super::edge::{self, Optics};
@@ -112,7 +113,7 @@ impl<'a> Viewpoint<'a> {
     fn new(surface: &Surface, pyramid: &'a Pyramid) -> Self {
         let sharp = Self::sharp(surface, pyramid);
         let posed = sharp.posed(surface, |posed| {
-            Optics::found(&posed.beside(pyramid.level(0)), &posed.elements)
+            blur::optics(&posed.beside(pyramid.level(0)), &posed.elements)
         });
         let (optics, _) = posed;
         Self { optics, ..sharp }

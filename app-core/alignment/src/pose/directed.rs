@@ -3,8 +3,9 @@
 use glam::DVec2;
 use nalgebra::{Matrix3, Vector3};
 
+use super::blur::{COMPARED_PX, GAIN, MOST_SPREAD_PX, Pieces, least};
 use super::contour::Element;
-use super::edge::{COMPARED_PX, Edges, GAIN, LEAST_SPREAD_PX, MOST_SPREAD_PX, Optics, least};
+use super::edge::{Edges, LEAST_SPREAD_PX};
 use super::sides::Beside;
 use app_scene::sharpness::Spread;
 
@@ -18,43 +19,35 @@ const N_REDUCED: usize = 8;
 /// Measured: .003 to .014 for motions of 5 px, .055 for a sharp llama in front of planks of its colour.
 const MOST_LEFT: f64 = 0.03;
 
+/// The blur of an outline by direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Directed {
+    Blurred(Spread),
+    /// No blur explains its pixels: something else is beside the toy.
+    Unexplained,
+}
+
 /// The lens's blur along the normals of the outline, as a covariance; `None` if too few directions
 /// tell. An edge shows no blur along itself, so that pieces of four directions are taken apart.
-pub(super) fn directed(beside: &Beside<'_>, elements: &[Element]) -> Option<Option<Spread>> {
+pub(super) fn directed(beside: &Beside<'_>, elements: &[Element]) -> Option<Directed> {
     let edges = Edges::new(beside, elements, COMPARED_PX);
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
     let mut n_told = 0;
     for class in 0..N_CLASSES {
-        let is_used: Vec<bool> = elements.iter().map(|one| class_of(one.normal) == class).collect();
-        let n = edges
-            .are_known
-            .iter()
-            .zip(&is_used)
-            .filter(|(known, used)| **known && **used)
-            .count();
-        if n < LEAST_PIECES {
+        let pieces = Pieces {
+            edges: &edges,
+            are_used: elements.iter().map(|one| class_of(one.normal) == class).collect(),
+        };
+        let known = pieces.used(&edges.are_known).filter(|is_known| **is_known);
+        if known.count() < LEAST_PIECES {
             continue;
         }
-        let misfit = |spread_px| {
-            let optics = Optics {
-                spread_px,
-                overshoot: 0.0,
-            };
-            edges.misfit_of(optics, &is_used)
-        };
-        let (found_px, of_soft) = least((LEAST_SPREAD_PX, MOST_SPREAD_PX), misfit);
-        let spread_px = if of_soft < GAIN * misfit(0.0) {
-            found_px
-        } else {
-            0.0
-        };
-        let rows = elements.iter().zip(&is_used).filter(|(_, used)| **used);
-        let row = rows.map(|(one, _)| {
+        let (spread_px, _) = pieces.blur();
+        let row = pieces.used(elements).map(|one| {
             let DVec2 { x, y } = one.normal;
             Vector3::new(x * x, 2.0 * x * y, y * y)
         });
-        let row = row.sum::<Vector3<f64>>();
-        let row = row / is_used.iter().filter(|used| **used).count() as f64;
+        let row = row.sum::<Vector3<f64>>() / pieces.used(elements).count() as f64;
         normal += row * row.transpose();
         right += row * (spread_px * spread_px);
         n_told += 1;
@@ -69,12 +62,12 @@ pub(super) fn directed(beside: &Beside<'_>, elements: &[Element]) -> Option<Opti
         xy_px2: found.y,
         yy_px2: found.z,
     };
-    Some(refined(&edges, found))
+    Some(refined(&Pieces::all(&edges), found))
 }
 
 /// A blur near this one that explains the pixels of all directions best, since pieces of one class
-/// do not have one direction; `None` if it does not explain them. Source: pattern search, Hooke and Jeeves 1961.
-fn refined(edges: &Edges<'_>, start: Spread) -> Option<Spread> {
+/// do not have one direction; unexplained if it leaves too much. Source: pattern search, Hooke and Jeeves 1961.
+fn refined(pieces: &Pieces<'_>, start: Spread) -> Directed {
     let along = start.axes_px()[0].normalize_or(DVec2::X).to_angle();
     let [wide, narrow] = start.variances_px2().map(|variance| variance.max(0.0).sqrt());
     let of = |[wide, narrow, along]: [f64; 3]| {
@@ -84,14 +77,14 @@ fn refined(edges: &Edges<'_>, start: Spread) -> Option<Spread> {
         ))
     };
     let mut best = [wide, narrow, along];
-    let mut misfit = edges.misfit_by(of(best));
+    let mut misfit = pieces.misfit_of(of(best));
     let mut steps = FIRST_STEPS;
     for _ in 0..N_REDUCED {
         for k in 0..best.len() {
             for step in [steps[k], -steps[k]] {
                 let mut tried = best;
                 tried[k] += step;
-                let of_tried = edges.misfit_by(of(tried));
+                let of_tried = pieces.misfit_of(of(tried));
                 if of_tried < misfit {
                     (best, misfit) = (tried, of_tried);
                 }
@@ -99,7 +92,11 @@ fn refined(edges: &Edges<'_>, start: Spread) -> Option<Spread> {
         }
         steps = steps.map(|step| 0.7 * step);
     }
-    (misfit <= MOST_LEFT).then(|| of(best))
+    if misfit <= MOST_LEFT {
+        Directed::Blurred(of(best))
+    } else {
+        Directed::Unexplained
+    }
 }
 
 /// The class of a normal's direction, either way round.
@@ -118,10 +115,11 @@ fn class_of(normal: DVec2) -> usize {
 /// more.
 pub(super) fn beyond(beside: &Beside<'_>, elements: &[Element], spread: Spread) -> f64 {
     let edges = Edges::new(beside, elements, COMPARED_PX);
+    let pieces = Pieces::all(&edges);
     let (beyond_px, misfit) = least((LEAST_SPREAD_PX, MOST_SPREAD_PX), |px| {
-        edges.misfit_by(spread.and(Spread::round(px)))
+        pieces.misfit_of(spread.and(Spread::round(px)))
     });
-    if misfit < GAIN * edges.misfit_by(spread) {
+    if misfit < GAIN * pieces.misfit_of(spread) {
         beyond_px
     } else {
         0.0

@@ -32,17 +32,7 @@ const SHARPENED_PX: f64 = 1.2;
 const PIXEL_PX2: f64 = 1.0 / 12.0;
 /// A smaller blur is invisible beside the shape of the pixel.
 pub(super) const LEAST_SPREAD_PX: f64 = 0.3;
-/// Largest blur of a lens.
-pub(super) const MOST_SPREAD_PX: f64 = 4.0;
-/// Half the band in which blurs are compared, the same for all, in pixels.
-pub(super) const COMPARED_PX: f64 = 4.0;
-/// Blur above which overshoot and less blur are ambiguous.
-const SPREAD_WITHOUT_OVERSHOOT_PX: f64 = 1.0;
-const MOST_OVERSHOOT: f64 = 1.5;
-/// Fraction of the pieces that count: the worst ones are something else.
-const FITTING: f64 = 0.7;
-/// An unknown of the camera is included if the misfit falls to less than this fraction.
-pub(super) const GAIN: f64 = 0.98;
+
 /// A camera's edge response, the same all around the toy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Optics {
@@ -54,59 +44,18 @@ pub(super) struct Optics {
 }
 
 impl Optics {
+    /// Blur alone.
+    pub(super) const fn blurred(spread_px: f64) -> Self {
+        Self {
+            spread_px,
+            overshoot: 0.0,
+        }
+    }
+
     /// Half the width of the band that an edge of this blur needs, in pixels.
     pub(super) fn half_px(&self) -> f64 {
         HALF_PX + HALF_OF_SPREAD * self.spread_px
     }
-
-    /// The optics that explain the pixels of a wide band best, whatever the pose, since each piece
-    /// has a free displacement; and the remaining residual.
-    pub(super) fn found(beside: &Beside<'_>, elements: &[Element]) -> (Self, f64) {
-        let edges = Edges::new(beside, elements, COMPARED_PX);
-        let spread = |spread_px| Self {
-            spread_px,
-            overshoot: 0.0,
-        };
-        let sharp = edges.misfit(Self::default());
-        let (spread_px, of_soft) = least((LEAST_SPREAD_PX, MOST_SPREAD_PX), |spread_px| {
-            edges.misfit(spread(spread_px))
-        });
-        let (mut best, mut of_best) = if of_soft < GAIN * sharp {
-            (spread(spread_px), of_soft)
-        } else {
-            (Self::default(), sharp)
-        };
-        if best.spread_px < SPREAD_WITHOUT_OVERSHOOT_PX {
-            let with = |overshoot| Self { overshoot, ..best };
-            let (overshoot, of_overshoot) =
-                least((0.0, MOST_OVERSHOOT), |overshoot| edges.misfit(with(overshoot)));
-            if of_overshoot < GAIN * of_best {
-                (best.overshoot, of_best) = (overshoot, of_overshoot);
-            }
-        }
-        (best, of_best)
-    }
-}
-
-/// The minimum of a unimodal function between two bounds, and its value. Source: golden-section
-/// search, Kiefer 1953.
-pub(super) fn least((mut low, mut high): (f64, f64), of: impl Fn(f64) -> f64) -> (f64, f64) {
-    const GOLDEN: f64 = 0.618_033_988_749_895;
-    const N_CUTS: usize = 7;
-    let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-    let (mut of_a, mut of_b) = (of(a), of(b));
-    for _ in 0..N_CUTS {
-        if of_a < of_b {
-            (high, b, of_b) = (b, a, of_a);
-            a = high - GOLDEN * (high - low);
-            of_a = of(a);
-        } else {
-            (low, a, of_a) = (a, b, of_b);
-            b = low + GOLDEN * (high - low);
-            of_b = of(b);
-        }
-    }
-    if of_a < of_b { (a, of_a) } else { (b, of_b) }
 }
 
 /// Measures each piece's displacement by the step that explains its pixels best.
@@ -208,41 +157,16 @@ impl<'a> Edges<'a> {
         }
     }
 
-    /// Mean square of the residual over the contrast, for the pieces that fit.
-    fn misfit(&self, optics: Optics) -> f64 {
-        self.misfit_of(optics, &vec![true; self.are_known.len()])
-    }
-
-    /// The same for some of the pieces.
-    pub(super) fn misfit_of(&self, optics: Optics, are_used: &[bool]) -> f64 {
-        self.left(&self.pieces(optics), are_used)
-    }
-
-    /// The same for a lens with this blur.
-    pub(super) fn misfit_by(&self, spread: Covariance) -> f64 {
-        let pieces = self.pieces_by(&Spread::new(self.coverage, spread), None, 0.0);
-        self.left(&pieces, &vec![true; pieces.len()])
-    }
-
-    /// Mean square of what is left of the pieces that fit.
-    fn left(&self, pieces: &[Piece], are_used: &[bool]) -> f64 {
-        let used = pieces.iter().zip(are_used).filter(|(_, is_used)| **is_used);
-        let mut left: Vec<f64> = used.filter_map(|(piece, _)| piece.left()).collect();
-        left.sort_by(f64::total_cmp);
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a part of a length"
-        )]
-        let n = (FITTING * left.len() as f64) as usize;
-        let sum: f64 = left[..n].iter().sum();
-        if n == 0 { f64::INFINITY } else { sum / n as f64 }
-    }
-
-    fn pieces(&self, optics: Optics) -> Vec<Piece> {
+    /// The statistics of each piece under these optics.
+    pub(super) fn pieces(&self, optics: Optics) -> Vec<Piece> {
         let of = |spread_px| Spread::new(self.coverage, Covariance::round(spread_px));
         let wider = (optics.overshoot > 0.0).then(|| of(optics.spread_px.hypot(SHARPENED_PX)));
         self.pieces_by(&of(optics.spread_px), wider.as_ref(), optics.overshoot)
+    }
+
+    /// The same for a lens with this blur.
+    pub(super) fn pieces_of(&self, lens: Covariance) -> Vec<Piece> {
+        self.pieces_by(&Spread::new(self.coverage, lens), None, 0.0)
     }
 
     fn pieces_by(&self, spread: &Spread, wider: Option<&Spread>, overshoot: f64) -> Vec<Piece> {
@@ -303,7 +227,7 @@ fn density(from_px: f64, normal: DVec2, spread_px: f64) -> f64 {
 
 /// Statistics of the pixels beside a piece of the outline: weighted sums of squares, in codes.
 #[derive(Clone, Copy, Default)]
-struct Piece {
+pub(super) struct Piece {
     is_known: bool,
     slope2: f64,
     slope_by_residual: f64,
@@ -336,7 +260,7 @@ impl Piece {
     }
 
     /// The residual over the contrast, once the piece is displaced.
-    fn left(&self) -> Option<f64> {
+    pub(super) fn left(&self) -> Option<f64> {
         if !self.is_known || self.slope2 <= 0.0 {
             return None;
         }

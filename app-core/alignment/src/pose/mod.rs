@@ -11,6 +11,7 @@
 //! One step selects the most likely of these poses (`decide`).
 
 pub(super) mod adapt;
+mod blur;
 mod contour;
 mod contour_segments;
 mod decide;
@@ -50,6 +51,8 @@ use placement::Placement;
 use settle::STEP;
 use sides::Beside;
 
+pub(super) use blur::SOFT_PX;
+pub(super) use directed::Directed;
 pub(super) use paint::{Paint, Surfel};
 pub use regions::ViewDirection;
 pub(super) use regions::{Standing, TINY_PIXELS, changed, guesses, standing_guesses};
@@ -229,12 +232,11 @@ pub(super) fn spread_px(subject: Subject<'_>, pyramid: &Pyramid, most_px: f64) -
     let mut search = Search::new(shape, pyramid, &PoseUncertainty::default());
     let placement = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
     let fit = search.fit(&placement)?;
-    (fit.outline_px() <= most_px).then(|| search.spread_px(subject.paint, &placement))
+    (fit.outline_px() <= most_px).then(|| search.explained(subject.paint, &placement).optics.spread_px)
 }
 
-/// The camera's blur of the outline by direction, as [`spread_px`]: `None` within if no blur explains
-/// it, and at all if too few directions tell.
-pub(super) fn directed_spread(subject: Subject<'_>, pyramid: &Pyramid) -> Option<Option<Spread>> {
+/// The camera's blur of the outline by direction, as [`spread_px`]; `None` if too few directions tell.
+pub(super) fn directed_spread(subject: Subject<'_>, pyramid: &Pyramid) -> Option<Directed> {
     of_outline(subject, pyramid, directed::directed)
 }
 

@@ -8,6 +8,7 @@ use super::groups::groups;
 use super::grown::Grown;
 use super::seeds::Colored;
 use crate::measured_points::MeasuredPoints;
+use crate::median::part_of;
 use crate::picture::{Level, index_in, places};
 use crate::receivers::SeenReceiver;
 
@@ -338,12 +339,7 @@ impl Extent {
 /// The least and the largest of some values, without outliers.
 fn ends(mut values: Vec<f64>) -> [f64; 2] {
     values.sort_unstable_by(f64::total_cmp);
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a part of a count"
-    )]
-    let beyond = (BEYOND * values.len() as f64) as usize;
+    let beyond = part_of(values.len(), BEYOND);
     let last = values.len().saturating_sub(1 + beyond);
     [
         values.get(beyond).copied().unwrap_or(0.0),

@@ -9,7 +9,7 @@ use glam::{DMat3, DVec2, DVec3, IVec2, Vec3Swizzles};
 
 use super::extent::Outline;
 use super::groups::cross;
-use crate::median::{DEVIATION_OF_MEDIAN, median};
+use crate::median::{DEVIATION_OF_MEDIAN, median, part_of};
 
 /// Least points on a thing, and on the receiver around it.
 const LEAST_POINTS: usize = 40;
@@ -159,12 +159,7 @@ fn least(deviation_m: Option<f64>) -> [f64; 3] {
 fn fitted(points: &[DVec3], noise_m: f64) -> Option<(DVec3, f64, f64)> {
     let mut heights_m: Vec<f64> = points.iter().map(|point| point.y).collect();
     heights_m.sort_unstable_by(f64::total_cmp);
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a part of a count"
-    )]
-    let height_m = |part: f64| heights_m[(part * (heights_m.len() - 1) as f64) as usize];
+    let height_m = |part: f64| heights_m[part_of(heights_m.len() - 1, part)];
     let sides =
         (0..N_SIDES).map(|side| DVec2::from_angle(std::f64::consts::TAU * side as f64 / N_SIDES as f64));
     let sloped = sides.flat_map(|side| SLOPES.map(|slope| slope * side));

@@ -14,7 +14,7 @@ use super::groups::{cross, in_level};
 use super::memory::Memory;
 use super::sight::Sight;
 use crate::lights::Compared;
-use crate::median::median;
+use crate::median::{median, part_of};
 use crate::picture::{Color, Level, brightness, index_in, places};
 use crate::receivers::SeenReceiver;
 use app_scene::scene::Light;
@@ -190,13 +190,7 @@ impl Upright<'_> {
         }
         let shaded = darker.into_iter().map(|mut darker| {
             darker.sort_unstable_by(f32::total_cmp);
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a part of a count"
-            )]
-            let rank = (SHADED * darker.len() as f64) as usize;
-            darker.get(rank).copied().unwrap_or(0.0)
+            darker.get(part_of(darker.len(), SHADED)).copied().unwrap_or(0.0)
         });
         shaded.collect()
     }

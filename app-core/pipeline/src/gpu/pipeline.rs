@@ -97,7 +97,7 @@ pub(crate) type Compute = Pipeline<wgpu::ComputePipeline>;
 pub(crate) struct PipelineCache {
     /// Source texts of the modules.
     texts: Mutex<ShaderTexts>,
-    modules: Mutex<HashMap<&'static str, wgpu::ShaderModule>>,
+    modules: Mutex<HashMap<&'static Shader, wgpu::ShaderModule>>,
     draws: Mutex<HashMap<DrawSpec, Draw>>,
     computes: Mutex<HashMap<ComputeSpec, Compute>>,
     /// The driver's own cache, which outlives the program.
@@ -127,10 +127,16 @@ impl PipelineCache {
         locked(&self.of_driver).as_ref()?.get_data()
     }
 
-    /// Compiles from other texts from now on, and returns the previous ones.
+    /// Compiles from other texts from now on, and returns the previous ones. What they change
+    /// nothing of is kept.
     pub(crate) fn replace_texts(&self, texts: ShaderTexts) -> ShaderTexts {
-        let before = mem::replace(&mut *locked(&self.texts), texts);
-        self.clear();
+        let mut now = locked(&self.texts);
+        let before = mem::replace(&mut *now, texts);
+        let mut modules = locked(&self.modules);
+        modules.retain(|shader, _| shader.source_with(&now) == shader.source_with(&before));
+        // Each pipeline was compiled from a module.
+        locked(&self.draws).retain(|spec, _| modules.contains_key(&spec.shader));
+        locked(&self.computes).retain(|spec, _| modules.contains_key(&spec.shader));
         before
     }
 
@@ -210,8 +216,8 @@ impl PipelineCache {
         }
     }
 
-    fn module(&self, device: &Device, shader: &Shader) -> wgpu::ShaderModule {
-        cached(&self.modules, &shader.name, || {
+    fn module(&self, device: &Device, shader: &'static Shader) -> wgpu::ShaderModule {
+        cached(&self.modules, &shader, || {
             let source = shader.source_with(&locked(&self.texts));
             device.module(wgpu::ShaderModuleDescriptor {
                 label: Some(shader.name),
