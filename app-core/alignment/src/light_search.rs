@@ -6,12 +6,12 @@ use std::sync::Arc;
 use super::Aligner;
 use super::kept_lights::KeptLights;
 use super::lights::{Counted, Watched};
-use super::photograph::MOST_OUTLINE_PX;
+use super::photograph::{MOST_OUTLINE_PX, Photograph};
 use super::view::Seen;
 use crate::no_light::NoLight;
 use crate::things::{self, Colored};
 use app_scene::scene::{Light, LightUncertainty, MAX_LIGHTS, Scene};
-use app_scene::things::{Mark, Things};
+use app_scene::things::Things;
 use app_scene::toy::ToyError;
 
 /// Largest distance, in pixels, between the outlines of toy and picture for a search of lights.
@@ -289,20 +289,24 @@ impl Aligner {
         seen.photograph.watch(&self.scene, &seen.input, lights)
     }
 
-    /// Whether a thing stands before the toy, such as a hand, and lights explain their own shadows beside it,
-    /// as far as the view shows these: what else it shows may be a part of the thing, or its shadow.
+    /// Whether lights explain their own shadows beside other things, such as a hand, as far as the view
+    /// shows these, or things hide them: what else it shows may be a part of a thing, or its shadow.
     fn explain_own_shadows(
         &self,
         lights: &KeptLights,
         (seen, things): (&Seen, Option<&Things>),
     ) -> Result<bool, ToyError> {
-        let Some(things) = things.filter(|things| things.count(Mark::BeforeToy) > 0) else {
+        let Some(things) = things else {
             return Ok(false);
         };
-        let photograph = seen.photograph.clear_of(things);
-        let lights = (lights.in_use(), Counted::InShadows);
-        let watched = photograph.watch(&self.scene, &seen.input, lights)?;
-        Ok(watched.is_some_and(KeptLights::are_explained))
+        let watch = |photograph: &Photograph| {
+            let lights = (lights.in_use(), Counted::InShadows);
+            photograph.watch(&self.scene, &seen.input, lights)
+        };
+        Ok(match watch(&seen.photograph.clear_of(things))? {
+            Some(watched) => KeptLights::are_explained(watched),
+            None => watch(&seen.photograph)?.is_some(),
+        })
     }
 
     /// Whether pictures can constrain that number of lights; without a plate, only unlisted lights.

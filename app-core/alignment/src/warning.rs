@@ -69,7 +69,7 @@ impl fmt::Display for AlignmentWarning {
             ),
             Self::ListUnexplained { unexplained } => write!(
                 f,
-                "{:.0} % of the toy's shadow is not where the listed lights cast it, and no lights are found that do: check the list, and whether the shadow falls on an object that is not listed as a receiver",
+                "{:.0} % of the toy's shadow is not where the listed lights cast it, and no lights are found that do: check the list, and whether a hand or an object that is not listed as a receiver catches the shadow or casts one",
                 100.0 * unexplained
             ),
             Self::LightsChanged { unexplained } => write!(

@@ -27,6 +27,8 @@ const OVER_LEGS: Rect = [UVec2::new(222, 222), UVec2::new(292, 254)];
 const BESIDE_LEGS: Rect = [UVec2::new(130, 230), UVec2::new(210, 300)];
 /// Over the forelegs, and over most of the shadow.
 const ON_SHADOW: Rect = [UVec2::new(222, 222), UVec2::new(430, 270)];
+/// Beside the toy, over all of the shadow.
+const OVER_SHADOW: Rect = [UVec2::new(262, 206), UVec2::new(500, 320)];
 /// Beside the forelegs, far enough for a thing that is not before the toy.
 const AROUND_LEGS: Rect = [UVec2::new(150, 222), UVec2::new(350, 290)];
 /// Over the hind legs and a part of the back, so that no pose fits the visible outline.
@@ -232,6 +234,16 @@ fn a_list_is_doubted_beside_a_hand_only_if_its_own_shadow_is_not_there() {
     let is_right = matches!(&warnings, [right, wrong]
         if right.is_empty() && matches!(wrong[..], [AlignmentWarning::ListUnexplained { .. }]));
     assert!(is_right, "{warnings:?}");
+}
+
+#[test]
+fn a_list_is_not_doubted_if_a_hand_hides_its_shadow() {
+    let (scene, input) = &*SESSION;
+    let image = shaded(input.image.rgba(), BESIDE_LEGS, 0.5);
+    let image = painted_where(&image, (SKIN, OVER_SHADOW), |_| true);
+    let input = input.clone().with_image(Arc::new(image));
+    let warnings = Aligner::new(scene.clone()).align(&input).unwrap().warnings;
+    assert!(warnings.is_empty(), "{warnings:?}");
 }
 
 #[test]

@@ -154,17 +154,18 @@ impl Seeds {
         let in_frame = Colors::of(seeds(lit).into_iter(), of_place());
         let kinds = groups.iter().map(|group| {
             let ratios = [in_frame.median(lit, group), in_plate.median(plate, group)];
-            let differs = group
-                .iter()
-                .map(|index| from_shaded(frame.pixels[*index], plate.pixels[*index]));
-            let differs = median(differs, f32::total_cmp).unwrap_or(0.0);
-            (classified(ratios, differs, group.len(), colored), ratios)
+            let differs = from_less_light(group, frame, plate);
+            let kind = classified(ratios, differs, group.len(), colored);
+            // Where both shadows fall, frame and plate are equal, but only the frame as dark as expected; where
+            // that in the plate falls alone, the plate shows the frame's colours in less light.
+            let may_be_shadow = is_of_plate_alone(ratios, group.len())
+                || (differs > UNLIKE_CODES && from_less_light(group, plate, frame) < UNLIKE_CODES);
+            (kind, may_be_shadow)
         });
-        let kinds: Vec<(Seed, [f32; 2])> = kinds.collect();
+        let kinds: Vec<(Seed, bool)> = kinds.collect();
         let is_plate_wrong = kinds.iter().any(|(kind, _)| *kind == Seed::WrongPlate);
-        for (group, (kind, ratios)) in groups.iter().zip(kinds) {
-            // Where both shadows fall, frame and plate are equal, but only the frame as dark as expected.
-            let is_shadow = kind == Seed::Thing && is_plate_wrong && is_of_plate_alone(ratios, group.len());
+        for (group, (kind, may_be_shadow)) in groups.iter().zip(kinds) {
+            let is_shadow = kind == Seed::Thing && is_plate_wrong && may_be_shadow;
             let seed = if is_shadow { Seed::WrongPlate } else { kind };
             for index in group {
                 self.seeds[*index] = seed;
@@ -332,6 +333,14 @@ fn lit(compared: &[Compared], (frame, plate): (&Codes, &Codes)) -> Codes {
         size_px: plate.size_px,
         pixels: lit,
     }
+}
+
+/// Median distance in codes of a group's colours in a picture from those of another in less light.
+fn from_less_light(group: &[usize], picture: &Codes, other: &Codes) -> f32 {
+    let distances = group
+        .iter()
+        .map(|index| from_shaded(picture.pixels[*index], other.pixels[*index]));
+    median(distances, f32::total_cmp).unwrap_or(0.0)
 }
 
 /// Kind of a group of seeds, from the log likelihood ratios of its colours in frame and plate, and

@@ -259,7 +259,7 @@ fn shadows_unseen(f: &mut fmt::Formatter<'_>, unseen: &[UnseenShadow]) -> fmt::R
 
 fn bounce_at_limit(is_black: bool) -> &'static str {
     if is_black {
-        "the table beside the toy is darker than beside a black one: possible causes are a tone curve or HDR of the camera, or a light that is not listed; the new shadow may be too dark"
+        "the table beside the toy is darker than beside a black one: possible causes are a tone curve or HDR of the camera, a light that is not listed, or the shadow of something else; the new shadow may be too dark"
     } else {
         "the table beside the toy is brighter than beside a white one: possible causes are a bright thing nearby, or gloss; the new shadow may be too light"
     }
