@@ -148,6 +148,10 @@ fn the_toys_shadow_in_the_plate_is_wrong_on_another_tile() {
         .unwrap()
         .things
         .unwrap();
-    let n_things = things.marks().iter().filter(|mark| matches!(mark, Mark::Thing)).count();
+    let n_things = things
+        .marks()
+        .iter()
+        .filter(|mark| matches!(mark, Mark::Thing))
+        .count();
     assert_eq!(n_things, 0);
 }
