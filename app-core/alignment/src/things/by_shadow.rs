@@ -6,7 +6,7 @@
 //! has. Those on the plane have its colours, by which it is bounded, and all pixels within its bounds
 //! are the next evidence.
 
-use glam::{DVec3, IVec2};
+use glam::{DVec3, IVec2, Vec3Swizzles};
 
 use super::colored_extent::{Evidence, Surroundings};
 use super::extent::{Extent, Outline};
@@ -73,6 +73,26 @@ pub(super) fn found(
 }
 
 impl Search<'_> {
+    /// The plane that explains all shadows near the thing best, together with the known receivers. Where
+    /// both would have the same shadow, no pixel is certainly of the thing: it may have none in a shadow.
+    pub(super) fn best_among_shadows(&self, raster: &mut Rasterizer) -> Option<Candidate> {
+        let pixels: Vec<&Compared> = certain(self.comparison)
+            .into_iter()
+            .filter(|pixel| self.is_near(pixel.at) && is_shadowed(pixel))
+            .collect();
+        let mut among = self.clone().of_pixels(&pixels);
+        among.is_mixed = true;
+        among.best_plane(raster)
+    }
+
+    /// Whether the table behind a pixel is within reach of the thing.
+    fn is_near(&self, at: IVec2) -> bool {
+        self.table.point_at(&self.intrinsics, at).is_some_and(|point| {
+            let on_table = self.table.plane_from_camera.transform_point3(point).xz();
+            on_table.distance(self.middle) < REACH * self.size_m
+        })
+    }
+
     /// The pixels that show a shadow of only one of both: on a plane, or on the known receivers. A pixel
     /// that is lit may also show a side below the plane.
     fn evidence(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Vec<Evidence> {
@@ -137,6 +157,11 @@ impl Search<'_> {
         pixels.retain(|pixel| is_used(pixel.at));
         self.of_pixels(&pixels)
     }
+}
+
+/// Whether a pixel is in a shadow, or should be.
+fn is_shadowed(pixel: &Compared) -> bool {
+    brightness(&pixel.ratio).min(brightness(&pixel.model)) < 1.0 - SHADOWED
 }
 
 /// Pixels with little noise.

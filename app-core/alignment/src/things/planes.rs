@@ -152,6 +152,8 @@ pub(super) struct Search<'a> {
     radius_m: f64,
     /// The plane that a depth sensor measured.
     pub(super) measured: Option<Measured>,
+    /// Whether each pixel shows the plane or the known receivers, whichever explains it better.
+    pub(super) is_mixed: bool,
 }
 
 impl<'a> Search<'a> {
@@ -185,6 +187,7 @@ impl<'a> Search<'a> {
             size_m,
             radius_m: shape.radius_m,
             measured: None,
+            is_mixed: false,
         })?;
         Some(search.of_pixels(pixels))
     }
@@ -414,9 +417,18 @@ impl<'a> Search<'a> {
     /// The same for a prediction of each pixel, if there is one.
     fn loss_of(&self, expected: &[Option<Color>]) -> f64 {
         let depth = self.depth(expected);
-        let pixels = expected.iter().zip(&self.seen);
-        let losses = pixels
-            .map(|(expected, seen)| expected.map_or(MOST_LOSS, |expected| square(seen, expected, depth)));
+        let pixels = expected.iter().zip(&self.expected).zip(&self.seen);
+        let losses = pixels.map(|((expected, known), seen)| {
+            let square = |expected: &Option<Color>, depth| {
+                expected.map_or(MOST_LOSS, |expected| square(seen, expected, depth))
+            };
+            let of_known = if self.is_mixed {
+                square(known, 1.0)
+            } else {
+                MOST_LOSS
+            };
+            square(expected, depth).min(of_known)
+        });
         losses.sum::<f64>() / self.seen.len().max(1) as f64
     }
 

@@ -57,7 +57,7 @@ pub(super) fn find(
                 .into_iter()
                 .flatten()
                 .min_by(|a, b| a.report.losses[1].total_cmp(&b.report.losses[1]))?,
-            None => in_pictures(search()?, &outline)?,
+            None => in_pictures(&search()?, &outline)?,
         };
         Some(FoundPlane {
             instead_of: (on != GROUND && found.is_near(&receivers[on])).then_some(on),
@@ -67,12 +67,19 @@ pub(super) fn find(
     planes.collect()
 }
 
-/// The plane by what the pictures show: within the bounds to which the thing grows, or within those by
-/// the shadow if only they are known or the plate shows them more clearly.
-fn in_pictures(search: Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
-    let first = search.best_plane(&mut Rasterizer::default())?;
+/// The plane by what the pictures show: by the thing's pixels, or else by all that are in a shadow.
+fn in_pictures(search: &Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
+    let raster = &mut Rasterizer::default();
+    let by_own = search.best_plane(raster);
+    let found = by_own.and_then(|first| clearer(search, first, outline));
+    found.or_else(|| clearer(search, search.best_among_shadows(raster)?, outline))
+}
+
+/// The plane within the bounds to which the thing grows, or within those by the shadow if only they are
+/// known or the plate shows them more clearly.
+fn clearer(search: &Search<'_>, first: Candidate, outline: &Outline<'_>) -> Option<FoundPlane> {
     let grown = found_from(search.clone(), &first, outline);
-    let by_shadow = by_shadow::found(search, first, outline);
+    let by_shadow = by_shadow::found(search.clone(), first, outline);
     match (grown, by_shadow) {
         (Some(grown), Some(by_shadow)) if by_shadow.contrast < grown.contrast => Some(grown),
         (grown, by_shadow) => by_shadow.or(grown),
