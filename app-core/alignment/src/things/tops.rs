@@ -67,12 +67,16 @@ pub(super) fn find(
     planes.collect()
 }
 
-/// The plane by what the pictures show: by the thing's pixels, or else by all that are in a shadow.
+/// The plane by what the pictures show: by the thing's pixels, or else a tilted one by all that are in a
+/// shadow. A level one that only these tell is above a side, and known by that.
 fn in_pictures(search: &Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     let raster = &mut Rasterizer::default();
     let by_own = search.best_plane(raster);
     let found = by_own.and_then(|first| clearer(search, first, outline));
-    found.or_else(|| clearer(search, search.best_among_shadows(raster)?, outline))
+    found.or_else(|| {
+        let first = search.best_among_shadows(raster)?;
+        clearer(search, first, outline).filter(|found| found.report.tilt_rad > 0.0)
+    })
 }
 
 /// The plane within the bounds to which the thing grows, or within those by the shadow if only they are
