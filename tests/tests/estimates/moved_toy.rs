@@ -67,6 +67,14 @@ fn pushed(by_px: IVec2, changed: impl Fn(IVec2, [u8; 3]) -> [u8; 3]) -> (Scene, 
     (scene, FrameInput::clone(input).with_image(Arc::new(other)))
 }
 
+fn things_in(scene: &Scene, input: &FrameInput) -> Things {
+    Observer::default()
+        .observed(scene, input)
+        .unwrap()
+        .things
+        .unwrap()
+}
+
 /// Of the pixels well within what is pushed, and outside the toy and its own shadow, the part that is marked.
 fn marked(things: &Things) -> f64 {
     let (scene, input) = &*SESSION;
@@ -106,11 +114,7 @@ fn a_toy_is_seen_beside_itself_in_the_plate() {
 #[test]
 fn the_toys_shadow_in_the_plate_is_wrong() {
     let (scene, input) = &*PUSHED;
-    let things = Observer::default()
-        .observed(scene, input)
-        .unwrap()
-        .things
-        .unwrap();
+    let things = things_in(scene, input);
     let marked = marked(&things);
     assert!(marked > 0.95, "{marked}");
 }
@@ -119,11 +123,7 @@ fn the_toys_shadow_in_the_plate_is_wrong() {
 #[test]
 fn a_plate_without_blue_is_seen_to_be_wrong() {
     let (scene, input) = pushed(PUSHED_PX, |_, [red, green, blue]| [red, green, blue / 16]);
-    let things = Observer::default()
-        .observed(&scene, &input)
-        .unwrap()
-        .things
-        .unwrap();
+    let things = things_in(&scene, &input);
     let marked = marked(&things);
     // Measured: .88, and .43 with all channels as noisy as the noisiest.
     assert!(marked > 0.8, "{marked}");
@@ -143,11 +143,7 @@ fn the_toys_shadow_in_the_plate_is_wrong_on_another_tile() {
             color
         }
     });
-    let things = Observer::default()
-        .observed(&scene, &input)
-        .unwrap()
-        .things
-        .unwrap();
+    let things = things_in(&scene, &input);
     let n_things = things
         .marks()
         .iter()

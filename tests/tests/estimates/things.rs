@@ -213,13 +213,19 @@ fn a_finger_in_the_shadow_that_is_as_bright_as_the_table_is_of_the_hand() {
     assert!(of_it > 0.9, "{of_it:.2} of it");
 }
 
+/// The first frame with a hand, and with what may be its own shadow.
+fn beside_hand(rect: Rect) -> FrameInput {
+    let input = &SESSION.1;
+    let image = shaded(input.image.rgba(), BESIDE_LEGS, 0.5);
+    let image = painted_where(&image, (SKIN, rect), |_| true);
+    input.clone().with_image(Arc::new(image))
+}
+
 /// A hand on most of the shadow, and what may be its own shadow, leave half of the shadows unexplained.
 #[test]
 fn a_list_is_doubted_beside_a_hand_only_if_its_own_shadow_is_not_there() {
-    let (scene, input) = &*SESSION;
-    let image = shaded(input.image.rgba(), BESIDE_LEGS, 0.5);
-    let image = painted_where(&image, (SKIN, ON_SHADOW), |_| true);
-    let input = input.clone().with_image(Arc::new(image));
+    let scene = &SESSION.0;
+    let input = beside_hand(ON_SHADOW);
     let warnings = [0.0_f64, 5.0].map(|turned_deg| {
         let mut scene = scene.clone();
         let Light::Sphere {
@@ -238,11 +244,8 @@ fn a_list_is_doubted_beside_a_hand_only_if_its_own_shadow_is_not_there() {
 
 #[test]
 fn a_list_is_not_doubted_if_a_hand_hides_its_shadow() {
-    let (scene, input) = &*SESSION;
-    let image = shaded(input.image.rgba(), BESIDE_LEGS, 0.5);
-    let image = painted_where(&image, (SKIN, OVER_SHADOW), |_| true);
-    let input = input.clone().with_image(Arc::new(image));
-    let warnings = Aligner::new(scene.clone()).align(&input).unwrap().warnings;
+    let input = beside_hand(OVER_SHADOW);
+    let warnings = Aligner::new(SESSION.0.clone()).align(&input).unwrap().warnings;
     assert!(warnings.is_empty(), "{warnings:?}");
 }
 

@@ -16,7 +16,7 @@ const MOST_OVERSHOOT: f64 = 1.5;
 /// Fraction of the pieces that count: the worst ones are something else.
 const FITTING: f64 = 0.7;
 /// An unknown of the camera is included if the misfit falls to less than this fraction.
-pub(super) const GAIN: f64 = 0.98;
+const GAIN: f64 = 0.98;
 /// Blur in pixels from which a picture is soft: that of a sharp lens, compressed or not, has .6 at most.
 pub(crate) const SOFT_PX: f64 = 0.7;
 /// Fraction of the pieces that it must explain better than none does. Where the toy is hardly
@@ -64,14 +64,25 @@ impl<'a> Pieces<'a> {
 
     /// The blur that explains them best, in pixels, and what it leaves; 0 if they are as sharp.
     pub(super) fn blur(&self) -> (f64, f64) {
-        let sharp = self.misfit(Optics::default());
-        let (spread_px, of_soft) = least((LEAST_SPREAD_PX, MOST_SPREAD_PX), |spread_px| {
-            self.misfit(Optics::blurred(spread_px))
-        });
-        if of_soft < GAIN * sharp && self.are_softer(spread_px) {
-            (spread_px, of_soft)
+        let (spread_px, misfit) = self.blur_beside(Spread::NONE);
+        if self.are_softer(spread_px) {
+            (spread_px, misfit)
         } else {
-            (0.0, sharp)
+            (0.0, self.misfit_of(Spread::NONE))
+        }
+    }
+
+    /// The round blur beside a known one that explains them best, in pixels, and what both leave; 0 if
+    /// it explains no more.
+    pub(super) fn blur_beside(&self, known: Spread) -> (f64, f64) {
+        let of_known = self.misfit_of(known);
+        let (spread_px, of_both) = least((LEAST_SPREAD_PX, MOST_SPREAD_PX), |px| {
+            self.misfit_of(known.and(Spread::round(px)))
+        });
+        if of_both < GAIN * of_known {
+            (spread_px, of_both)
+        } else {
+            (0.0, of_known)
         }
     }
 
@@ -110,7 +121,7 @@ impl<'a> Pieces<'a> {
 
 /// The minimum of a unimodal function between two bounds, and its value. Source: golden-section
 /// search, Kiefer 1953.
-pub(super) fn least((mut low, mut high): (f64, f64), of: impl Fn(f64) -> f64) -> (f64, f64) {
+fn least((mut low, mut high): (f64, f64), of: impl Fn(f64) -> f64) -> (f64, f64) {
     const GOLDEN: f64 = 0.618_033_988_749_895;
     const N_CUTS: usize = 7;
     let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));

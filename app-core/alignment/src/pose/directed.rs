@@ -3,9 +3,9 @@
 use glam::DVec2;
 use nalgebra::{Matrix3, Vector3};
 
-use super::blur::{COMPARED_PX, GAIN, MOST_SPREAD_PX, Pieces, least};
+use super::blur::{COMPARED_PX, MOST_SPREAD_PX, Pieces};
 use super::contour::Element;
-use super::edge::{Edges, LEAST_SPREAD_PX};
+use super::edge::Edges;
 use super::sides::Beside;
 use app_scene::sharpness::Spread;
 
@@ -115,13 +115,5 @@ fn class_of(normal: DVec2) -> usize {
 /// more.
 pub(super) fn beyond(beside: &Beside<'_>, elements: &[Element], spread: Spread) -> f64 {
     let edges = Edges::new(beside, elements, COMPARED_PX);
-    let pieces = Pieces::all(&edges);
-    let (beyond_px, misfit) = least((LEAST_SPREAD_PX, MOST_SPREAD_PX), |px| {
-        pieces.misfit_of(spread.and(Spread::round(px)))
-    });
-    if misfit < GAIN * pieces.misfit_of(spread) {
-        beyond_px
-    } else {
-        0.0
-    }
+    Pieces::all(&edges).blur_beside(spread).0
 }
