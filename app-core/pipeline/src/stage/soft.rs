@@ -10,7 +10,7 @@ use app_scene::sharpness::{Sharpness, Spread};
 /// alone measures as .36: nothing is softened below it.
 const LEAST_PX: f64 = 0.5;
 /// A larger standard deviation is limited to this one. The toy's boxes contain all but the outermost
-/// positions of such a blur, which reach 13 pixels at most.
+/// positions of such a blur.
 const MOST_PX: f64 = 4.0;
 /// Difference of two standard deviations that is invisible, and may be noise of their measurement.
 const ALIKE_PX: f64 = 0.15;
