@@ -33,7 +33,7 @@ fn disc_point(k: u32, n: u32) -> vec2f {
 // occluder as high as the light.
 fn penumbra_radius_m(height_m: f32, receiver: u32, light: u32) -> f32 {
   let at = globals.receivers[receiver].lights[light];
-  let radius = baseline.light_radii[light];
+  let radius = globals.light_radii[light];
   if radius == 0.0 { return 0.0; }
   return radius * height_m / max(at.y - at.w * height_m, radius);
 }

@@ -1,6 +1,6 @@
 // The plate, completed by an estimate in pixels that no plate covers.
 //
-// If the fits have found the shadow, it is B = (frame - gain reflected) / (gain M) per pixel of the
+// If the fits have found the shadow, it is B = (frame - gain reflected) / (gain M), 0 at least, per pixel of the
 // receiver, with all its texture, if enough light remains. Pixels that the toy hides, or bleeds
 // into, stay smooth, as in the fits.
 // Reads: plate, frame, validity, visibility, ambient, lit cells. Writes: linear colour, with alpha
@@ -42,6 +42,6 @@ fn fs_complete(@builtin(position) position: vec4f) -> @location(0) vec4f {
   let model = receiver_model(point, a, v);
   let left = smallest(model);
   if left <= TELLS_NONE { return smooth_color; }
-  let own = (f - fit.gain.rgb * reflected(point, v)) / (fit.gain.rgb * model);
+  let own = max(f - fit.gain.rgb * reflected(point, v), vec3f(0.0)) / (fit.gain.rgb * model);
   return vec4f(mix(smooth_color.rgb, own, smoothstep(TELLS_NONE, TELLS_ALL, left)), smooth_color.a);
 }

@@ -14,6 +14,7 @@
 // CPU reference: tests/reference/src/fit.rs. Source: Lawson and Hanson 1974, 23 (non-negative least
 // squares); here unknowns are only removed, the most negative one first.
 
+//#import common/accumulated
 //#import common/fit
 //#import common/fit_step
 //#import common/receiver_light
@@ -35,8 +36,6 @@ const PRIOR_WEIGHT: f32 = 1e-4;
 const INTENSITY_WEIGHT: f32 = 1e-3;
 // Weight of the first receiver's gain for the other receivers: there is one exposure.
 const SAME_GAIN_WEIGHT: f32 = 10.0;
-// Cap of the accumulated sums' weight, in frames like the latest.
-const MAX_FRAMES: f32 = 8.0;
 // Weight of the three channels' common solution for the toy, relative to their common energy.
 const WHITE_WEIGHT: f32 = 0.003;
 // Weight of the receiver's constraint on the toy's light, relative to the toy's energy.

@@ -1,6 +1,6 @@
 // Colour of the lit receivers, pooled on coarse grids: the source of an estimated plate.
 //
-// B = (frame - gain reflected) / (gain M) if the receiver is visible and most of its light remains.
+// B = (frame - gain reflected) / (gain M), its mean 0 at least, if the receiver is visible and most of its light remains.
 // Reads: frame, validity, visibility, ambient. Writes: cells of (B, 1) times their certainty,
 // finest levels.
 // CPU reference: tests/reference/src/lit.rs.
@@ -42,5 +42,5 @@ fn cs_pool(@builtin(global_invocation_id) cell: vec3u) {
   if !is_cell(cell.z, cell.xy) { return; }
   var sum = vec4f(0.0);
   for (var k = 0u; k < n_taken(); k++) { sum += lit_color(point_of_cell(cell.z, cell.xy, k)); }
-  accumulate(cell.z, cell.xy, select(vec3f(0.0), sum.rgb / sum.a, sum.a > 0.0), sum.a);
+  accumulate(cell.z, cell.xy, select(vec3f(0.0), max(sum.rgb / sum.a, vec3f(0.0)), sum.a > 0.0), sum.a);
 }

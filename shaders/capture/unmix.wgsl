@@ -8,7 +8,6 @@
 // CPU reference: tests/reference/src/unmix.rs.
 
 //#import common/unmixed
-//#import common/factor_code
 //#import common/fullscreen
 
 @group(1) @binding(0) var gbuffer_depth: texture_depth_2d;

@@ -3,8 +3,6 @@
 //#import common/globals
 
 struct Baseline {
-  // Radius of each light's disc: metres for a sphere, slope for a directional light.
-  light_radii: vec4f,
   // Upper bound of the toy's height over each receiver, in metres.
   tallest_m: vec4f,
   // Bit k is 1 if receiver k is textured: its shadow terms are ratios to the plate. For 0 they are

@@ -4,8 +4,8 @@
 
 //#import common/globals
 
-// Distance over which the toy's colours bleed into a pixel beside it.
-const BLEED_PX: f32 = 6.0;
+// Distance up to which a moved toy's colours are looked for beside a pixel.
+const MOVED_BESIDE_PX: f32 = 6.0;
 
 // 1 inside, falling to 0 at an inner border of the region.
 fn inside_border(region_px: vec2f) -> f32 {
@@ -20,7 +20,7 @@ fn has_moved_beside(texel: vec2i) -> bool {
   var most = 0.0;
   for (var k = 0u; k < 16u; k++) {
     let turn = f32(k) * 0.78539816;
-    let reach_px = select(BLEED_PX, 0.5 * BLEED_PX, k < 8u);
+    let reach_px = select(MOVED_BESIDE_PX, 0.5 * MOVED_BESIDE_PX, k < 8u);
     let tap = texel + vec2i(round(reach_px * vec2f(cos(turn), sin(turn))));
     most = max(most, textureLoad(moved_mask, clamped_to_box(tap), 0).r);
   }

@@ -30,7 +30,7 @@ struct Globals {
   receivers: array<ReceiverPlane, MAX_RECEIVERS>,
   // The lights in anchor space.
   lights: array<vec4f, MAX_LIGHTS>,
-  // Radius of each light's disc over its distance, 1 for directions: metres, or a slope.
+  // Radius of each light's disc: metres for a sphere, slope for a directional light.
   light_radii: vec4f,
   // Width of the fade into untouched pixels at the region's (left, top, right, bottom) edge; 0 at the image's own edge.
   border_px: vec4f,

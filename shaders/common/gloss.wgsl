@@ -3,10 +3,10 @@
 // It reflects the light that the fit estimates from the diffuse reflection, so only roughness and
 // strength are new. The importing shader declares `specular`.
 // Source: Blinn 1977 (lobe), Walter et al. 2007 (its exponent from the slope of facets), Schlick
-// 1994 (Fresnel), Hammon 2017 (shadowing), Karis 2014 (reflectance of a rough dielectric under an
-// even sky).
+// 1994 (Fresnel), Hammon 2017 (shadowing).
 
 //#import common/fit
+//#import common/reflectance
 
 struct Specular {
   // Squared roughness of each light's lobe, widened by the light's size.
@@ -20,8 +20,6 @@ struct Specular {
 }
 
 const N_GLOSSES: u32 = 8u;
-// Reflectance of a dielectric of refractive index 1.5 at normal incidence.
-const STRAIGHT_REFLECTANCE: f32 = 0.04;
 // Slope of the transition from the light below to that above as the mirrored direction rises.
 const HORIZON_SLOPE: f32 = 2.5;
 // Smaller cosines are clamped: interpolated normals turn away from a camera that sees the surface.
@@ -39,11 +37,8 @@ fn direction_to_camera(in_anchor: vec3f) -> vec3f {
 // Radiance reflected from the ambient light from above and from below, at strength 1.
 fn reflected_ambient(normal: vec3f, to_camera: vec3f) -> vec2f {
   let view_cosine = max(dot(normal, to_camera), LEAST_COSINE);
-  let terms = sqrt(specular.roughness) * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
-  let grazing = min(terms.x * terms.x, exp2(-9.28 * view_cosine)) * terms.x + terms.y;
-  let reflectance = STRAIGHT_REFLECTANCE * (terms.z - 1.04 * grazing) + 1.04 * grazing + terms.w;
   let above = saturate(0.5 + HORIZON_SLOPE * reflect(-to_camera, normal).y);
-  return reflectance * vec2f(above, 1.0 - above);
+  return even_reflectance(view_cosine, sqrt(specular.roughness)) * vec2f(above, 1.0 - above);
 }
 
 // Radiance reflected from light `i`, at strength 1, relative to a white matt surface.

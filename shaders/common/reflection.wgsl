@@ -4,21 +4,10 @@
 //   reflectance (surroundings + hidden toy)      hidden is that part of the lobe, `toy` the toy's light above that of the surroundings
 // The toy is drawn from mirror images of the eye behind the receiver, in the same way as from
 // points of a light: a channel of the visibility.
-// CPU reference: tests/reference/src/reflection.rs. Source: Karis 2014 (reflectance of a rough
-// dielectric in even surroundings).
+// CPU reference: tests/reference/src/reflection.rs.
 
 //#import common/globals
-
-// Reflectance of a dielectric at normal incidence.
-const FROM_ABOVE: f32 = 0.04;
-
-// Reflectance of a rough surface; `roughness` is the square root of the lobe's width.
-fn reflectance(cosine: f32, roughness: f32) -> f32 {
-  let x = 1.0 - roughness;
-  let y = 0.0425 - 0.0275 * roughness;
-  let grazing = min(x * x, exp2(-9.28 * cosine)) * x + y;
-  return FROM_ABOVE * (1.04 - 0.572 * roughness - 1.04 * grazing) + 0.022 * roughness - 0.04 + 1.04 * grazing;
-}
+//#import common/reflectance
 
 // Reflected light for a camera in anchor space, the plane space of the first receiver. `part` is
 // the visible share of the toy's image.
@@ -27,7 +16,7 @@ fn reflected_to(camera: vec3f, point: ReceiverPoint, visibility: vec4f, part: f3
   let to_camera = normalize(camera - vec3f(point.x, 0.0, point.y));
   let hidden = part * dot(globals.reflection_channel, 1.0 - visibility);
   let light = globals.reflected_surroundings.rgb + hidden * globals.reflected_toy.rgb;
-  return reflectance(to_camera.y, globals.reflected_surroundings.a) * light;
+  return even_reflectance(to_camera.y, globals.reflected_surroundings.a) * light;
 }
 
 // Reflected light at a point with these visibilities of a pose.

@@ -2,6 +2,7 @@
 //
 // The importing shader declares `gbuffer_depth`, `gbuffer_base` and `gbuffer_received`.
 
+//#import common/factor_code
 //#import common/globals
 //#import common/pixel
 //#import common/spread
@@ -19,7 +20,7 @@ fn expected_at(texel: vec2i) -> vec3f {
 }
 
 // Factor from the colour of the toy in a camera pixel to that of the point at its centre: the model's over
-// its mean over the spread. It depends on no tint that the mixed surfaces share.
+// its mean over the spread, as far as codes reach. It depends on no tint that the mixed surfaces share.
 fn unmixed_factor(texel: vec2i) -> vec3f {
   if !is_soft() || textureLoad(gbuffer_depth, texel, 0) == 0.0 { return vec3f(1.0); }
   var sum = vec4f(0.0);
@@ -30,5 +31,7 @@ fn unmixed_factor(texel: vec2i) -> vec3f {
     if is_in_physical_box(tap) && textureLoad(gbuffer_depth, tap, 0) > 0.0 { sum += vec4f(expected_at(tap), 1.0); }
   }
   // Nothing is divided by a nearly black model.
-  return select(vec3f(1.0), (expected_at(texel) + DARKEST_USABLE) / (sum.rgb / sum.a + DARKEST_USABLE), sum.a > 0.0);
+  if sum.a == 0.0 { return vec3f(1.0); }
+  let factor = (expected_at(texel) + DARKEST_USABLE) / (sum.rgb / sum.a + DARKEST_USABLE);
+  return min(factor, vec3f(GREATEST_FACTOR));
 }

@@ -237,10 +237,10 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   return vec4f(select(mixed, (1.0 - toy.a) * mixed + toy.rgb, is_over), 1.0);
 }
 
-// The plate of a pixel under a model and the pooled residual, no brighter than white.
+// The plate of a pixel under a model and the pooled residual, from black to white.
 fn shown_plate(f: vec3f, model: vec3f) -> vec3f {
   let lit = fit.gain.rgb * model;
-  return select(vec3f(1.0), min(f / lit, vec3f(1.0)), lit > vec3f(0.0));
+  return select(vec3f(1.0), saturate(f / lit), lit > vec3f(0.0));
 }
 
 // Pixels clear of the toy in either pose, and of its shadows: the ambient light alone changes.

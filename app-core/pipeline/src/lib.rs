@@ -28,6 +28,7 @@ const SHARED: &[&Mirrors] = &[
     &model::capture::appearance::SOURCE,
     &model::capture::fit::FIT_STEP,
     &model::capture::pool::POOL,
+    &model::diagnostics::evidence::PIXEL,
     &model::frame::coverage::COVERED,
     &passes::specular::GLOSS,
     &model::lighting::self_shadow::SELF_SHADOW_MAPS,

@@ -44,13 +44,13 @@ pub fn complete(region: &Region, known: &Known<'_>, is_final: bool, texel: UVec2
         grid.value_at(lit, point.in_plane)
     };
     let ambient = coarse_at(&pictures.ambient, region, at);
-    let model = known
-        .solution
-        .receiver_model(region, point, ambient, pictures.visibility.at(texel));
+    let (solution, visibility) = (known.solution, pictures.visibility.at(texel));
+    let model = solution.receiver_model(region, point, ambient, visibility);
     let told = smoothstep(TELLS_NONE, TELLS_ALL, model.min_element());
     if !is_final || pictures.seen.at(texel) == 0.0 || told == 0.0 {
         return smooth.extend(ESTIMATED);
     }
-    let own = pictures.frame.at(texel) / (known.solution.gain * model);
+    let light = pictures.frame.at(texel) - solution.gain * region.reflected(point, visibility);
+    let own = light.max(DVec3::ZERO) / (solution.gain * model);
     smooth.lerp(own, told).extend(ESTIMATED)
 }

@@ -10,7 +10,7 @@ use super::raster::Raster;
 /// known yet.
 const LIT_POWER: f64 = 8.0;
 
-/// Pools B = frame / (gain M) of one receiver over the cells of its grid. `pictures.seen` is 1 well
+/// Pools B = (frame - gain reflected) / (gain M), 0 at least, of one receiver over the cells of its grid. `pictures.seen` is 1 well
 /// clear of the toy; the plate is ignored.
 #[must_use]
 pub fn pool(
@@ -30,11 +30,13 @@ pub fn pool(
                 continue;
             };
             let ambient = coarse_at(&pictures.ambient, region, at);
-            let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
+            let visibility = pictures.visibility.at(texel);
+            let model = solution.receiver_model(region, point, ambient, visibility);
             let left = model.min_element();
             if left > 0.0 {
                 let weight = left.min(1.0).powf(LIT_POWER);
-                sum += weight * pictures.frame.at(texel) / (solution.gain * model);
+                let reflected = solution.gain * region.reflected(point, visibility);
+                sum += weight * (pictures.frame.at(texel) - reflected) / (solution.gain * model);
                 total += weight;
             }
         }
@@ -42,7 +44,7 @@ pub fn pool(
             return Cell::default();
         }
         Cell {
-            value: sum / total,
+            value: (sum / total).max(DVec3::ZERO),
             certainty: certainty(total, taken),
         }
     })

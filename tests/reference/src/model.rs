@@ -30,7 +30,7 @@ pub struct Region {
     pub border_px: [f64; 4],
     /// Homogeneous, in anchor space: (position, 1) or (unit direction to the light, 0).
     pub lights: Vec<DVec4>,
-    /// Radius of each light's disc over its distance, which is 1 for a direction.
+    /// Radius of each light's disc: in metres for a sphere, a slope for a direction.
     pub light_radii: Vec<f64>,
     /// Reflection of the first receiver; `None` if it is matt.
     pub reflection: Option<Reflection>,

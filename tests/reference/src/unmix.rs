@@ -8,12 +8,14 @@ use super::raster::Raster;
 
 /// The code of a factor of 1, and the greatest one.
 const CODES: [f64; 2] = [512.0, 1023.0];
+/// The greatest factor that has a code: that of the code of 1023.
+const GREATEST: f64 = 3.992_191_3;
 
 /// Number of sampled places, and rows from one column's place to the next.
 const N_PLACES: u32 = 64;
 const ROW_STEP: u32 = 19;
 
-/// The model's colour of a texel over its mean over the blur; the model has none beside the toy. `spread` is that of
+/// The model's colour of a texel over its mean over the blur, no greater than codes can be; the model has none beside the toy. `spread` is that of
 /// the picture's blur, and places are shifted by `beside_px` to all four sides in turn.
 #[must_use]
 pub fn unmixed_factor(
@@ -36,7 +38,7 @@ pub fn unmixed_factor(
         return DVec3::ONE;
     }
     let mean = seen.iter().sum::<DVec3>() / seen.len() as f64;
-    (own + DARKEST_USABLE) / (mean + DARKEST_USABLE)
+    ((own + DARKEST_USABLE) / (mean + DARKEST_USABLE)).min(DVec3::splat(GREATEST))
 }
 
 /// The factor of codes of ten bits, each relative to the greatest one.

@@ -67,7 +67,16 @@ const ALLOWED: f64 = 1e-4;
 
 /// Errors of the colours and alpha that `source` makes.
 fn errors(source: &str) -> Errors {
-    let (device, mut scene) = (Device::shared(), Scrambled::new());
+    errors_over(Scrambled::new(), source)
+}
+
+/// The same over a glossy table.
+fn errors_of_glossy(source: &str) -> Errors {
+    errors_over(Scrambled::reflecting(), source)
+}
+
+fn errors_over(mut scene: Scrambled, source: &str) -> Errors {
+    let device = Device::shared();
     // Some of what was not photographed has the place's pattern.
     let plate = Raster::from_fn(scene.plate.size(), |at| match scene.plate.at(at) {
         texel if texel.w == 0.0 && at.x % 3 == 0 => texel.truncate().extend(ESTIMATED),
@@ -137,6 +146,20 @@ fn a_fault_in_the_completion_is_found() {
         ("_cells - 0.5", "_cells"),
     ];
     check_faults("estimate", &faults, ALLOWED, errors);
+}
+
+/// No plate is negative where the surroundings seem brighter than the pixel.
+#[test]
+fn plates_of_a_glossy_table_are_completed() {
+    errors_of_glossy(&source("estimate")).check_all("completed glossy plates", ALLOWED);
+    let faults = [
+        (
+            "max(f - fit.gain.rgb * reflected(point, v), vec3f(0.0))",
+            "(f - fit.gain.rgb * reflected(point, v))",
+        ),
+        ("* reflected(point, v)", "* reflected(point, vec4f(1.0))"),
+    ];
+    check_faults("estimate", &faults, ALLOWED, errors_of_glossy);
 }
 
 /// Whether an estimated pixel differs from a smooth version of its surroundings.

@@ -35,7 +35,16 @@ fn kept_before() -> Vec<[f32; 4]> {
 /// Errors of the cells and sums that `source` makes, for all points and for two quarters.
 fn errors(source: &str) -> Errors {
     let taken = [Taken::All, Taken::Quarter(1, 0), Taken::Quarter(0, 1)];
-    Errors::between(taken.map(|taken| pairs(source, taken)).concat())
+    Errors::between(
+        taken
+            .map(|taken| pairs(source, (&Scrambled::new(), taken)))
+            .concat(),
+    )
+}
+
+/// The same for all points of a glossy table.
+fn errors_of_glossy(source: &str) -> Errors {
+    Errors::between(pairs(source, (&Scrambled::reflecting(), Taken::All)))
 }
 
 /// The shader's form of the sampled points: the step from one to the next, then the first.
@@ -47,8 +56,8 @@ fn step(taken: Taken) -> [u32; 4] {
 }
 
 /// Actual and expected cells and sums.
-fn pairs(source: &str, taken: Taken) -> Vec<(f64, f64)> {
-    let (device, scene) = (Device::shared(), Scrambled::new());
+fn pairs(source: &str, (scene, taken): (&Scrambled, Taken)) -> Vec<(f64, f64)> {
+    let device = Device::shared();
     let kept_before = kept_before();
     let pools = [
         device.uniform(&scene.grids()),
@@ -115,4 +124,15 @@ fn a_fault_in_the_pooling_is_found() {
         (") != receiver_of(", ") + 9u == receiver_of("),
     ];
     check_faults("lit", &faults, ALLOWED, errors);
+}
+
+/// No light is negative where the surroundings seem brighter than a cell's mean.
+#[test]
+fn lit_colours_of_a_glossy_table() {
+    errors_of_glossy(&source("lit")).check("glossy lit cells", (ALLOWED, 0.01), 4.0);
+    let faults = [
+        ("max(sum.rgb / sum.a, vec3f(0.0))", "sum.rgb / sum.a"),
+        ("* reflected(here, v)", "* reflected(here, vec4f(1.0))"),
+    ];
+    check_faults("lit", &faults, ALLOWED, errors_of_glossy);
 }

@@ -207,7 +207,7 @@ impl Run {
 }
 
 /// Reflection of a stand's table, for the references.
-fn known_reflection(stand: &Stand, reflection: &Reflection) -> KnownReflection {
+pub(crate) fn known_reflection(stand: &Stand, reflection: &Reflection) -> KnownReflection {
     KnownReflection {
         channel: stand.setup.lights.len(),
         alpha: reflection.roughness,

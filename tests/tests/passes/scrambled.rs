@@ -1,6 +1,7 @@
 //! Inputs for the capture passes with every combination of cases in neighbouring pixels: visible or
 //! hidden, lit or unlit, photographed or estimated.
 
+use app_core::reflection::Reflection;
 use app_core::scene::{MAX_LIGHTS, MAX_RECEIVERS};
 use app_core::wgpu;
 use app_pipeline::geometry::rect::PixelRect;
@@ -15,6 +16,7 @@ use crate::alone::Bindings;
 use crate::device::Device;
 use crate::numbers::{number, numbers};
 use crate::photo::truth;
+use crate::run::known_reflection;
 use crate::setups::WALL;
 use crate::stand::Stand;
 
@@ -36,6 +38,8 @@ pub(crate) struct Scrambled {
     pub(crate) visibility: Raster<DVec4>,
     /// Values in steps of 1/256.
     pub(crate) ambient: Raster<u8>,
+    /// How the table reflects; `None` if it is matt.
+    reflection: Option<Reflection>,
 }
 
 impl Scrambled {
@@ -83,6 +87,25 @@ impl Scrambled {
             stand,
             rect,
             solution,
+            reflection: None,
+        }
+    }
+
+    /// The same over a glossy table, whose surroundings are brighter than many a pixel.
+    pub(crate) fn reflecting() -> Self {
+        let reflection = Reflection {
+            roughness: 0.15,
+            surroundings: [6.0, 2.0, 12.0],
+            toy_above_surroundings: [-3.0, 1.0, -8.0],
+        };
+        let matt = Self::new();
+        Self {
+            region: Region {
+                reflection: Some(known_reflection(&matt.stand, &reflection)),
+                ..matt.region
+            },
+            reflection: Some(reflection),
+            ..matt
         }
     }
 
@@ -100,7 +123,10 @@ impl Scrambled {
     /// Globals and fit, the resources of group 0.
     pub(crate) fn shared(&self, device: &Device) -> [wgpu::Buffer; 2] {
         let fit = device.storage(bytemuck::bytes_of(&fit(&self.solution)));
-        [device.uniform(&self.stand.globals(&self.rect)), fit]
+        let reflection = self.reflection.as_ref();
+        let globals = self.stand.globals(&self.rect);
+        let globals = globals.with_reflection(reflection.map(|known| (known, self.stand.setup.lights.len())));
+        [device.uniform(&globals), fit]
     }
 
     /// The camera's picture, the rest of group 0 for passes that read it.

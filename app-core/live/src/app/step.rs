@@ -1,5 +1,31 @@
 //! The steps of a person, and the causes of a change between them.
 //!
+//! [`Anchor::OF_TOY`]: app_scene::camera_frame::Anchor::OF_TOY
+//! [`Interface::accessibility_tree`]: crate::interface::Interface::accessibility_tree
+//! [`Interface::request`]: crate::interface::Interface::request
+//! [`Language`]: super::Language
+//! [`LaunchHistory`]: super::LaunchHistory
+//! [`Live::times`]: crate::live::Live::times
+//! [`Obstacle`]: super::Obstacle
+//! [`People`]: app_scene::people::People
+//! [`PhoneQuestion`]: super::PhoneQuestion
+//! [`Placing`]: super::Placing
+//! [`PlateJob`]: super::PlateJob
+//! [`PlateTaker`]: super::PlateTaker
+//! [`RecordingJob`]: app_session::recording::RecordingJob
+//! [`ShellEvent::FreeSpace`]: super::ShellEvent
+//! [`ShellEvent::Recorded`]: super::ShellEvent
+//! [`ShellEvent::ToyFiles`]: super::ShellEvent
+//! [`StandingSearch`]: app_alignment::StandingSearch
+//! [`ToyRefusal`]: super::ToyRefusal
+//! [`Translated`]: super::Translated
+//! [`WatchJob`]: super::WatchJob
+//! [`WorkCommand::Record`]: super::WorkCommand
+//! [`WorkCommand::Remember`]: super::WorkCommand
+//! [`card`]: app_scene::card
+//! [`probe`]: app_alignment::probe
+//! [`self_test`]: crate::self_test
+//!
 #![doc = include_str!("../../../doc/app.md")]
 
 /// The steps of a person.

@@ -5,7 +5,7 @@ use crate::gpu::{Buffer, Mirrors, Resource, Slot, mirrors, shared_struct};
 use crate::passes::globals::Globals;
 use crate::preset::BaselineSettings;
 use app_scene::geometry::bounds::Bounds;
-use app_scene::scene::{MAX_LIGHTS, MAX_RECEIVERS, Surface};
+use app_scene::scene::{MAX_RECEIVERS, Surface};
 
 /// WGSL part of the uniform.
 pub(crate) const BASELINE: Mirrors = mirrors!("common/baseline", structs: [Baseline]);
@@ -15,7 +15,6 @@ pub(crate) const SCENE_SLOTS: &[Slot] = &[Slot::uniform::<Globals>(), Slot::unif
 shared_struct! {
     /// The settings, and properties of the scene.
     pub struct Baseline {
-        pub light_radii: [f32; MAX_LIGHTS],
         pub tallest_m: [f32; MAX_RECEIVERS],
         pub textured_receivers: u32,
         pub is_constant: u32,
@@ -45,13 +44,9 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The settings, and the properties of lights and receivers that the globals do not hold. `toy`
+/// The settings, and the properties of receivers that the globals do not hold. `toy`
 /// bounds the toy in every pose, in anchor space.
 pub(crate) fn uniform(layout: &SceneLayout<'_>, toy: &Bounds, settings: &BaselineSettings) -> Baseline {
-    let mut light_radii = [0.0; MAX_LIGHTS];
-    for (slot, light) in light_radii.iter_mut().zip(layout.lights) {
-        *slot = narrowed(light.radius());
-    }
     let mut tallest_m = [0.0; MAX_RECEIVERS];
     let mut textured_receivers = 0;
     let world_from_anchor = layout.world_from_anchor();
@@ -62,7 +57,6 @@ pub(crate) fn uniform(layout: &SceneLayout<'_>, toy: &Bounds, settings: &Baselin
     }
     let ratio = settings.constant_ratio;
     Baseline {
-        light_radii,
         tallest_m,
         textured_receivers,
         is_constant: u32::from(ratio.is_some()),

@@ -50,6 +50,7 @@ const TEXTS: &[(&str, &str)] = texts![
     "plate_light",
     "pool",
     "receiver_light",
+    "reflectance",
     "reflection",
     "relit",
     "self_shadow",

@@ -30,6 +30,9 @@ const MAX_FIT_PIXELS: u32 = 1 << 16;
 /// Number of pixels that suffices for gain and intensities: on six sessions, whose shadows are some
 /// hundred pixels large, shadow, toy and edge change by at most .0004 codes.
 const MAX_INTENSITY_PIXELS: u32 = 1 << 14;
+/// Maximum distance around the toy from which a pixel is read, including one pixel for rounding and
+/// one for multisamples.
+pub(crate) const AROUND_TOY_PX: u32 = 10;
 /// Maximum distance in pixels between the self-shadow caster and the toy's shape: a caster that
 /// protrudes would shade the surface.
 const SELF_CASTER_PX: f64 = 1.0;

@@ -265,7 +265,7 @@ impl Globals {
 }
 
 /// Variance of a position within a pixel, along each axis.
-const PIXEL_PX2: f64 = 1.0 / 12.0;
+pub(crate) const PIXEL_PX2: f64 = 1.0 / 12.0;
 /// Distance of the outermost of 64 positions from the centre, in standard deviations, with a margin
 /// for rounding.
 const OUTERMOST: f64 = 2.44;

@@ -14,7 +14,7 @@ impl NoTargets {
 /// A pass's name and the function that compiles it.
 pub(crate) type WarmUp = (&'static str, fn(&Gpu));
 
-/// Declares the modules of a path's passes, in the order of their first runs, and for each its
+/// Declares the modules of a path's passes, in the order of their first runs for a new scene, and for each its
 /// `Pass` and its `SHADER`; if the type of a plan follows, its `Targets` as well.
 macro_rules! passes {
     ($plan:ty: $($pass:ident),* $(,)?) => {

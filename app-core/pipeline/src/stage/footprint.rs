@@ -13,6 +13,7 @@ use crate::geometry::clip_reach::ClipReach;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::view::View;
+use crate::model::plan::AROUND_TOY_PX;
 use crate::passes::globals::BORDER_PX;
 use crate::passes::plate::PlateViews;
 use crate::plan::SkippedWork;
@@ -27,10 +28,6 @@ use app_scene::toy::{ClipId, ToyError};
 /// Margin of a new region on each side, so that a pose that reaches a little farther does not need
 /// a new view.
 pub(super) const SPARE_PX: u32 = 8;
-
-/// Maximum distance around the toy from which a pixel is read, including one pixel for rounding and
-/// one for multisamples.
-pub(super) const AROUND_TOY_PX: u32 = 10;
 
 /// View, work region and plates of a frame: the same for all frames of one clip and camera, unless a pose reaches farther.
 pub(super) struct Footprint {

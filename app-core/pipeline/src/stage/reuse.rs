@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{UVec2, Vec4};
 
-use super::footprint::{AROUND_TOY_PX, Footprint, SPARE_PX};
+use super::footprint::{Footprint, SPARE_PX};
 use super::marks::are_same;
 use super::method::Method;
 use super::soft;
@@ -20,7 +20,7 @@ use crate::geometry::view::View;
 use crate::governor::QualityStep;
 use crate::gpu::Gpu;
 use crate::model::Model;
-use crate::model::plan::Plan;
+use crate::model::plan::{AROUND_TOY_PX, Plan};
 use crate::model::state::SceneState;
 use crate::model::state::grids::{grids_over, holds};
 use crate::passes::globals::{Globals, globals};

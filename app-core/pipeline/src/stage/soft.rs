@@ -1,13 +1,16 @@
 //! The softness that is used for a picture: the measured one if it is visible, and the previous one
 //! if it is nearly equal.
 
+use glam::DMat2;
+
+use crate::passes::globals::PIXEL_PX2;
 use app_scene::sharpness::{Sharpness, Spread};
 
 /// A smaller standard deviation is not visible beside the extent of a pixel, and JPEG compression
 /// alone measures as .36: nothing is softened below it.
 const LEAST_PX: f64 = 0.5;
-/// A larger standard deviation is limited to this one: the toy's boxes contain nothing farther
-/// away.
+/// A larger standard deviation is limited to this one. The toy's boxes contain all but the outermost
+/// positions of such a blur.
 const MOST_PX: f64 = 4.0;
 /// Difference of two standard deviations that is invisible, and may be noise of their measurement.
 const ALIKE_PX: f64 = 0.15;
@@ -36,13 +39,25 @@ fn seen(spread: Spread) -> Spread {
     spread.times((MOST_PX / widest_px).min(1.0).powi(2))
 }
 
-/// Whether two blurs differ invisibly in every direction. A blur that is just visible is not equal
-/// to an invisible one.
+/// Whether two blurs differ invisibly in every direction, together with the extent of a pixel. A blur
+/// that is just visible is not equal to an invisible one.
 fn are_alike(a: Spread, b: Spread) -> bool {
     if a == b || a == Spread::NONE || b == Spread::NONE {
         return a == b;
     }
-    let apart = a.and(b.times(-1.0)).variances_px2();
-    let largest_px2 = apart[0].abs().max(apart[1].abs());
-    largest_px2 <= 2.0 * ALIKE_PX * a.widest_px().max(b.widest_px())
+    let [a, b] = [a, b].map(|spread| root_px(spread.and(Spread::round(PIXEL_PX2.sqrt()))));
+    let apart = a - b;
+    // The norm of the roots' difference: in no direction are the standard deviations farther apart.
+    let middle = 0.5 * (apart.x_axis.x + apart.y_axis.y);
+    let from_middle = (0.5 * (apart.x_axis.x - apart.y_axis.y)).hypot(apart.x_axis.y);
+    middle.abs() + from_middle <= ALIKE_PX
+}
+
+/// The symmetric root of a blur's covariance, in pixels.
+fn root_px(spread: Spread) -> DMat2 {
+    let [wide, narrow] = spread.axes_px().map(|axis| {
+        let along = axis.normalize_or_zero();
+        DMat2::from_cols(along.x * axis, along.y * axis)
+    });
+    wide + narrow
 }

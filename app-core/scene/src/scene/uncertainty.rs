@@ -28,8 +28,8 @@ pub struct PoseUncertainty {
     /// For a toy that rests on a receiver the search extends along the receiver.
     pub position_m: Option<f64>,
     /// Largest error of the rotation in radians, about any axis, from 0 to pi. `None` sets no
-    /// bound: a toy that rests on a receiver is searched within 45 degrees about its normal, others
-    /// within some; a camera within two. A larger value extends the search of such a toy to all
+    /// bound: a toy that rests on a receiver is searched from turns by up to 45 degrees about its
+    /// normal, others within some; a camera within two. A larger value extends the search of such a toy to all
     /// directions, and of a camera to six degrees.
     pub rotation_rad: Option<f64>,
 }

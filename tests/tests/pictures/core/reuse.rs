@@ -11,7 +11,7 @@ use app_core::toy::NodePose;
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::readback::Map;
 use app_pipeline::readback::inject::InjectedVisibility;
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec2, DVec3};
 use harness::compare::Pair;
 
 use crate::core::bundled::{core, first_input, picture_of, scene, whole};
@@ -298,6 +298,26 @@ fn a_focus_that_breathes_is_no_new_scene() {
         assert_eq!(learned(&mut core, input), Learned::Picture);
         assert!(maps(&core) == *fresh, "{:?}", input.sharpness);
     }
+}
+
+/// A small part of the variance changes, but edges along the motion become soft.
+#[test]
+fn a_blur_that_grows_across_a_motion_is_followed() {
+    let mut core = core();
+    let first = first_frame(&mut core);
+    let with_width = |across_px: f64| {
+        let spread = Spread {
+            yy_px2: across_px * across_px,
+            ..Spread::of_motion(DVec2::new(13.0, 0.0))
+        };
+        first.clone().with_sharpness(Sharpness {
+            plate_spread: spread,
+            outline_spread: spread,
+        })
+    };
+    assert_eq!(learned(&mut core, &with_width(0.0)), Learned::View);
+    assert_eq!(learned(&mut core, &with_width(0.2)), Learned::Nothing);
+    assert_eq!(learned(&mut core, &with_width(0.8)), Learned::Picture);
 }
 
 #[test]

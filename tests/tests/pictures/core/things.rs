@@ -1,9 +1,11 @@
 //! Objects in the picture stay as the camera saw them, in front of the toy or behind it; a wrong
 //! plate is not used.
 
+use app_core::Core;
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
 use app_core::scene::Scene;
+use app_core::sharpness::{Sharpness, Spread};
 use app_core::things::{MOST_PAINTED, Mark, RaisedPoint, Things};
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::frame::{Thing, Warning};
@@ -140,6 +142,41 @@ fn a_wrong_plate_is_estimated() {
     for (index, texel) in (0..).zip(&plate.texels) {
         let at = origin_px + UVec2::new(index % plate.width, index / plate.width);
         assert_eq!(texel[3] < 1.0, is_in(at), "{at}");
+    }
+}
+
+/// The plate where the toy hides it and the place's pattern is known, beside its value in a picture that
+/// is as soft from the first.
+#[test]
+fn a_completed_plate_keeps_its_light_as_the_focus_changes() {
+    let (scene, input) = staged();
+    let completed = Mark::completed_plate([0.5, 1.0, 2.0]).unwrap();
+    let marked = with(&input, &[(completed, OVER_TOY)]);
+    let as_soft_as = |deviation_px: f64| {
+        let spread = Spread::round(deviation_px);
+        marked.clone().with_sharpness(Sharpness {
+            plate_spread: spread,
+            outline_spread: spread,
+        })
+    };
+    let mut core = core();
+    let plate = |core: &mut Core, input: &FrameInput| {
+        core.frame(input).unwrap();
+        core.read_map(Map::Plate).unwrap().unwrap().texels
+    };
+    // The second picture is the first soft one of the view, which has no targets for it before.
+    let softness = [0.0, 2.0, 0.0, 2.0];
+    let fresh = softness.map(|deviation_px| {
+        core.set_scene(scene.clone(), Preset::Balanced).unwrap();
+        plate(&mut core, &as_soft_as(deviation_px))
+    });
+    core.set_scene(scene.clone(), Preset::Balanced).unwrap();
+    for (deviation_px, fresh) in softness.into_iter().zip(&fresh) {
+        let plate = plate(&mut core, &as_soft_as(deviation_px));
+        let of_pattern = plate.iter().zip(fresh).filter(|(_, fresh)| fresh[3] < 1.0);
+        let apart = of_pattern.flat_map(|(a, b)| (0..3).map(|channel| (a[channel] - b[channel]).abs()));
+        let most = apart.fold(0.0, f32::max);
+        assert!(most < 0.02, "{most} of light at a softness of {deviation_px} px");
     }
 }
 

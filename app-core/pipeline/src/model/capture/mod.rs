@@ -18,12 +18,13 @@ use crate::passes::list::passes;
 use crate::passes::pictures::Pictures;
 use crate::passes::plate;
 use crate::passes::plate::FINE_FORMAT;
+use crate::passes::thing_marks::Things;
 use crate::passes::toy_mesh::ToyMesh;
 use crate::plan::{Change, FrameDelta};
 use app_scene::sharpness::Spread;
 
 passes!(Plan:
-    gbuffer, validity, things, soften, lit, estimate, fit, fit_solve, withhold, residual, fill, detail, rim, unmix, gloss, tint, tint_fill,
+    gbuffer, validity, things, soften, lit, fill, fit, fit_solve, withhold, estimate, residual, detail, rim, unmix, gloss, tint, tint_fill,
     appearance,
 );
 
@@ -140,7 +141,12 @@ impl CapturePath<'_> {
         let maps = &self.captured.light;
         self.lighting
             .encode_sharp_visibility(recorder, self.light, self.physical(), maps);
-        self.soften(recorder);
+        if self.pictures.things.is_some_and(Things::is_plate_wrong) {
+            // What completes a plate depends on whether it is made soft afterwards.
+            self.plate(recorder);
+        } else {
+            self.soften(recorder);
+        }
         self.withhold(recorder);
         self.estimate(recorder);
     }

@@ -9,7 +9,7 @@ use crate::gpu::pipeline::{Draw, DrawSpec};
 use crate::gpu::recorder::{Recorder, cleared_to};
 use crate::gpu::shader::{Shader, shader};
 use crate::gpu::texture::{Texture, TextureView};
-use crate::model::plan::Plan;
+use crate::model::plan::{AROUND_TOY_PX, Plan};
 
 pub(crate) const SHADER: Shader = shader!("capture/validity", constants: [EDGE_PX, BLEED_PX]);
 const SLOTS: &[Slot] = &[Slot::Depth, Slot::per_use::<i32>()];
@@ -20,8 +20,6 @@ pub(crate) const FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 const EDGE_PX: u32 = 2;
 /// Largest distance of the search for the toy around a pixel in a sharp picture.
 const BLEED_PX: u32 = 8;
-/// Largest distance in a soft picture: the physical box contains no more.
-const MOST_PX: u32 = 10;
 /// Marks of pixels farther from the toy.
 pub(crate) const FAR_MARKS: [f32; 4] = [1.0, 0.0, 1.0, 1.0];
 
@@ -58,8 +56,9 @@ impl Pass {
     }
 
     pub(crate) fn encode(&self, recorder: &mut Recorder<'_>, inputs: &Inputs<'_>, targets: &Targets) {
+        // The physical box contains no more.
         #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
-        let soft_px = (inputs.soft_reach_px.ceil() as i32).min((MOST_PX - EDGE_PX) as i32);
+        let soft_px = (inputs.soft_reach_px.ceil() as i32).min((AROUND_TOY_PX - EDGE_PX) as i32);
         let resources = [inputs.gbuffer_depth.into(), Resource::PerUse];
         let own = recorder.bind_with(&self.draw, GROUP_PASS, &soft_px, &resources);
         let [r, g, b, a] = FAR_MARKS.map(f64::from);

@@ -2,11 +2,17 @@
 //! of the colour channels.
 
 use crate::geometry::rect::PixelRect;
+use crate::gpu::{Mirrors, mirrors};
 use app_scene::geometry::color::linear_of_codes;
 use app_scene::scene::Image;
 
-/// Codes that are a measure of brightness, as in `common/pixel`, in linear light.
-const USABLE: std::ops::RangeInclusive<f32> = 0.003_035_27..=0.955_973_4;
+/// WGSL part of the bounds of usable codes.
+pub(crate) const PIXEL: Mirrors = mirrors!("common/pixel", constants: [DARKEST_USABLE, BRIGHTEST_USABLE]);
+
+/// Codes that are a measure of brightness, in linear light.
+const USABLE: std::ops::RangeInclusive<f32> = DARKEST_USABLE..=BRIGHTEST_USABLE;
+const DARKEST_USABLE: f32 = 0.003_035_27;
+const BRIGHTEST_USABLE: f32 = 0.955_973_35;
 /// Visibility below which a pixel lies in the shadow of a light, and above which it does not.
 const SHADOW: f32 = 0.5;
 const LIT: f32 = 0.99;
@@ -184,7 +190,7 @@ fn is_readable(color: [f32; 3]) -> bool {
 
 fn is_same(frame: [f32; 3], plate: [f32; 3]) -> bool {
     let mut channels = frame.iter().zip(plate);
-    channels.all(|(frame, plate)| (frame - plate).abs() <= SAME_AS_PLATE * plate.max(*USABLE.start()))
+    channels.all(|(frame, plate)| (frame - plate).abs() <= SAME_AS_PLATE * plate.max(DARKEST_USABLE))
 }
 
 /// Linear colours of a rectangle of a picture, row by row.

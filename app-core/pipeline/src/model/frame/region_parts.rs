@@ -8,12 +8,9 @@ use crate::geometry::silhouette::ByCamera;
 use crate::geometry::tiles::Tiles;
 use crate::model::capture::detail;
 use crate::model::lighting::{LightMaps, Lighting, Posed, TILE_PX};
+use crate::model::plan::AROUND_TOY_PX;
 use crate::model::region::Region;
 use crate::passes::toy_mesh::{CasterLod, PoseBuffers, ToyMesh};
-
-/// Largest distance from a toy's triangles, in pixels, at which the validity or the drawn toy
-/// differs.
-const AROUND_TOY_PX: f32 = 10.0;
 
 /// The tiles that a toy in one pose changes.
 pub(crate) struct Marks {
@@ -43,7 +40,8 @@ impl Marks {
                 origin_px: Vec2::ZERO,
                 ..globals.uniform.by_camera()
             };
-            let around_px = AROUND_TOY_PX + globals.uniform.soft_reach_px;
+            // Beyond it neither the validity nor the drawn toy differs.
+            let around_px = AROUND_TOY_PX as f32 + globals.uniform.soft_reach_px;
             toy.mark_seen(&mut near, pose, CasterLod::Own, &camera, around_px);
         }
         if detail::is_needed(&region.plan) || region.plan.n_lights == 0 {

@@ -164,7 +164,7 @@ fn n_each(points: &[Vec4], n_receivers: u32) -> u32 {
     u32::try_from(points.len()).unwrap_or(0) / n_receivers.max(1)
 }
 
-/// Format of the ambient light's visibility at a reduced resolution: 8 bits are the most that all
+/// Format of the ambient light's visibility at a reduced resolution: 16 bits are the most that all
 /// drivers can filter.
 const AMBIENT_FORMAT: TextureFormat = half_float(1);
 

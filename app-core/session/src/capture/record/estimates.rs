@@ -61,15 +61,15 @@ pub struct UncertaintyRecord {
 pub struct PoseUncertaintyRecord {
     /// Largest error of the position of the toy's centre, or of the camera, metres; 0 if the
     /// position is known. A toy that rests on a receiver is searched within it on the receiver, up
-    /// to one and a half of its radii. By default nothing is bounded: a toy is found within some
+    /// to one and a half of its radii. By default nothing is bounded: a toy is searched within some
     /// centimetres, a camera within ten.
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::UNCERTAINTY_M)))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub position: Option<f64>,
     /// Largest error of the rotation, about any axis, degrees; 0 if it is known. A toy that rests
     /// on a receiver is searched within it in all directions, a camera up to 6 degrees. By default
-    /// nothing is bounded: a toy that rests is found within some 60 degrees about the receiver's
-    /// normal, others within some, a camera within two.
+    /// nothing is bounded: a toy that rests is searched within some 60 degrees about the
+    /// receiver's normal, others within some, a camera within two.
     #[cfg_attr(feature = "schema", schemars(transform = Within(check::UNCERTAINTY_DEG)))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rotation_deg: Option<f64>,
