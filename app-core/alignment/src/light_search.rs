@@ -190,8 +190,8 @@ impl Aligner {
             None => self.find_lights(Arc::clone(&given), looked_at)?,
         };
         if is_searched && lights.in_use() != &*known {
-            self.reflection
-                .search_again(&self.scene, as_it_is, lights.in_use())?;
+            let seen = (&as_it_is.photograph, &as_it_is.input);
+            self.reflection.search_again(&self.scene, seen, lights.in_use())?;
             // A shadow of unknown lights was taken for a reflection: its removal misled the lights.
             if freed.is_some() && self.reflection.found.is_none() && !are_kept {
                 let clear = things.as_ref().map(|things| as_it_is.clear_of(things));

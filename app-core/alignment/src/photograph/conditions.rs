@@ -226,18 +226,19 @@ impl Photograph {
         )
     }
 
-    /// Softness for given camera and pose.
+    /// Softness for given camera and pose, and whether the toy's outline is seen at its place.
     pub(crate) fn sharpness_as_given(
         &self,
         scene: &Scene,
         world_from_object: &DMat4,
-    ) -> Result<Sharpness, ToyError> {
+    ) -> Result<(Sharpness, bool), ToyError> {
         let start = self.start(scene, *world_from_object)?;
         let picture_px = self.pyramid.picture_px();
         let most_px = MOST_OUTLINE_PX / picture_px;
         let outline_px = pose::spread_px(start.subject(), &self.pyramid, most_px);
         let outline_px = outline_px.map(|px| px * picture_px);
-        self.sharpness(scene, world_from_object, outline_px)
+        let sharpness = self.sharpness(scene, world_from_object, outline_px)?;
+        Ok((sharpness, outline_px.is_some()))
     }
 
     /// The softness around a toy at its place, whose outline has the given blur in pixels; `None`
