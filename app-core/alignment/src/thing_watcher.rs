@@ -45,7 +45,8 @@ impl Conditions {
     fn is_like(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene)
             && self.lights == other.lights
-            && self.reflection.is_some() == other.reflection.is_some()
+            && self.reflection == other.reflection
+            && self.plate_spread == other.plate_spread
     }
 }
 
@@ -98,6 +99,10 @@ impl ThingWatcher {
         error::check(&conditions.scene, input)?;
         let small = self.small.take();
         let small = small.filter(|small| Arc::ptr_eq(&small.of, &conditions.scene));
+        if small.is_none() {
+            // Its marks belong to the receivers and plates of another scene.
+            self.memory = None;
+        }
         let small = self
             .small
             .insert(small.unwrap_or_else(|| SmallScene::of(&conditions.scene)));

@@ -145,12 +145,8 @@ impl Sight<'_> {
 
     /// The marks of a level's things; `None` if nothing is marked. And the memory for the next picture.
     fn sighted(&self, level: &Level, frame: &Codes, found: Found<'_>) -> (Option<Sighting>, Memory) {
-        let place = Place {
-            intrinsics: level.intrinsics,
-            world_from_camera: *self.world_from_camera,
-            middle: self.shape.centre,
-            lights: self.lights.to_vec(),
-        };
+        let camera = (&level.intrinsics, self.world_from_camera);
+        let place = Place::new(camera, &self.shape.points, self.lights);
         let memory = Memory::new(place, frame.clone(), found.known(frame.size_px));
         if found.is_empty() {
             return (None, memory);
