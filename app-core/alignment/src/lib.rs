@@ -136,6 +136,8 @@ const POSE_GROWN: f64 = 0.01;
 /// stays if no shadow shows the light.
 #[derive(Debug)]
 pub struct Aligner {
+    /// The scene as it was given.
+    given: Arc<Scene>,
     scene: Arc<Scene>,
     /// The scene that the latest alignment reported.
     reported_scene: Arc<Scene>,
@@ -175,6 +177,7 @@ impl Aligner {
         let scene = scene.into();
         Self {
             reported_scene: Arc::clone(&scene),
+            given: Arc::clone(&scene),
             scene,
             ratio: Ratio::default(),
             are_plates_aligned: false,
@@ -327,14 +330,15 @@ impl Aligner {
         let is_withheld = self.are_shadows_withheld && self.lights.is_some();
         if self.ratio.is_open() && !is_view_known && !is_withheld {
             let lights = self.about(given, input)?;
-            let mut scene = Scene::clone(&self.scene);
+            let mut scene = Scene::clone(&self.given);
             if self.ratio.find(&mut scene, input, &lights) {
-                self.scene = Arc::new(scene);
-                self.are_plates_aligned = false;
-                (self.view, self.held, self.lights) = (None, None, None);
-                (self.gloss, self.things) = (None, None);
-                self.memories = [None, None];
-                self.reflection = KeptReflection::default();
+                // What earlier views told depends on the wrong ratio.
+                *self = Self {
+                    ratio: std::mem::take(&mut self.ratio),
+                    reported_scene: Arc::clone(&self.reported_scene),
+                    are_shadows_withheld: self.are_shadows_withheld,
+                    ..Self::new(scene)
+                };
             }
         }
         Ok(input
