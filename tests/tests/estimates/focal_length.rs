@@ -6,6 +6,7 @@ use std::sync::Arc;
 use app_core::alignment::{Aligner, Alignment, RatioOutcome};
 use app_core::frame::FrameInput;
 use app_core::scene::{Camera, Image, Light, Scene};
+use app_core::session::GroundTruth;
 use glam::{DMat4, DQuat, DVec3};
 
 use harness::bundled_session;

@@ -11,7 +11,6 @@ use glam::{DMat4, UVec2};
 use measure::random::Random;
 
 use super::bundled::{SESSION, middle};
-use super::things::in_light;
 
 /// A rectangle of the bundled picture: its first pixel, and the one after its last.
 type Rect = [UVec2; 2];
@@ -295,26 +294,4 @@ fn softened(image: &Image) -> Image {
         }
     }
     soft
-}
-
-#[test]
-fn noise_of_a_darker_picture_is_no_thing() {
-    let (scene, input) = &*SESSION;
-    for codes in [2.0, 3.0, 4.0, 5.0, 6.0] {
-        for light in [1.0, 0.5, 0.25] {
-            let mut darker = Image::clone(input.image.rgba());
-            for texel in darker.rgba8.chunks_exact_mut(4) {
-                texel[..3]
-                    .iter_mut()
-                    .for_each(|code| *code = in_light(*code, light));
-            }
-            let image = noisy(&darker, codes, &mut Random::new(5));
-            let input = input.clone().with_image(Arc::new(image));
-            let things = Observer::default().observed(scene, &input).unwrap().things;
-            println!(
-                "{codes} {light}: {:?}",
-                things.map(|things| things.marks().len() - things.count(Mark::None))
-            );
-        }
-    }
 }

@@ -402,7 +402,7 @@ fn pixels_of([first, end]: Rect, width_px: u32) -> impl Iterator<Item = usize> {
 
 /// A code in another light.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
-pub(crate) fn in_light(code: u8, light: f32) -> u8 {
+fn in_light(code: u8, light: f32) -> u8 {
     let shown = light * linear_from_srgb(f32::from(code) / 255.0);
     (255.0 * srgb_from_linear(shown)).round() as u8
 }
