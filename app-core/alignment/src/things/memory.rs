@@ -12,7 +12,7 @@ use app_scene::scene::{Intrinsics, Light};
 use app_scene::things::{Mark, RaisedPoint};
 
 /// Evidence that a thing needs, over that of a single picture: one that had half of that evidence in
-/// the previous picture, and one that comes. One that was marked there needs [`HELD`].
+/// the previous picture, and one that no picture before showed. One that was marked there needs [`HELD`].
 const SEEN: f32 = 1.0;
 const NEW: f32 = 2.0;
 /// Share of a thing's pixels that the previous picture must have shown as a thing.
