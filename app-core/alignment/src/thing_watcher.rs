@@ -62,8 +62,8 @@ pub enum Watched {
 /// Searches for things beside the toy, picture after picture, apart from camera, pose and lights: a
 /// hand moves faster than an alignment takes.
 ///
-/// A thing that was marked in the picture before needs half the evidence of a single picture, one
-/// that comes twice as much; and outlines stay where the picture does not change.
+/// A thing that was marked in the picture before needs half the evidence of a single picture, and one
+/// that no picture before showed twice that evidence; and outlines stay where the picture does not change.
 /// A picture that shows what the one before showed is not searched.
 #[derive(Debug, Default)]
 pub struct ThingWatcher {
