@@ -84,7 +84,7 @@ impl Adapting<'_> {
 
 /// For each vertex, the index of its point in the toy's shape.
 fn points(toy: &Toy) -> Vec<Option<usize>> {
-    let used = Shape::vertices(toy);
+    let used = &toy.welded().vertices;
     let place = |first: &u32| used.binary_search(first).ok();
     toy.first_alike().iter().map(place).collect()
 }
@@ -92,7 +92,7 @@ fn points(toy: &Toy) -> Vec<Option<usize>> {
 /// For each point of a toy's shape the mean outward normal of its triangles, weighted by area; zero
 /// if it has no outside.
 fn normals(toy: &Toy, shape: &Shape) -> Vec<DVec3> {
-    let used = Shape::vertices(toy);
+    let used = &toy.welded().vertices;
     let mut normals = vec![DVec3::ZERO; shape.points.len()];
     for corners in toy.shadow_indices().indices.as_chunks::<3>().0 {
         let places = corners.map(|corner| used.binary_search(&corner).unwrap_or_default());

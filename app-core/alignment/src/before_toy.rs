@@ -1,24 +1,41 @@
 //! A second look at the toy if something stands before it, or if its plate is wrong: a part of its
 //! outline is then not its own, and no pose fits, or a blur seems to.
 
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 use super::Aligner;
 use super::kept_lights::KeptLights;
-use super::photograph::{MOST_OUTLINE_PX, Photograph};
+use super::photograph::{EstimatedLights, MOST_OUTLINE_PX, Photograph};
+use super::picture::Pyramid;
 use super::things::is_of_wrong_plate;
 use super::view::Seen;
 use app_scene::frame::FrameInput;
-use app_scene::scene::Light;
+use app_scene::scene::{Light, Scene};
 use app_scene::things::{Mark, Things};
 use app_scene::toy::ToyError;
+
+/// Lights that were searched anywhere in a view with all of its things.
+#[derive(Debug)]
+pub(super) struct LightsOfView {
+    scene: Arc<Scene>,
+    pyramid: Weak<Pyramid>,
+    pub(super) found: EstimatedLights,
+}
+
+impl LightsOfView {
+    /// Whether a view has the same pictures of the same scene, and so these lights.
+    pub(super) fn are_of(&self, scene: &Arc<Scene>, seen: &Seen) -> bool {
+        let pyramid = Arc::downgrade(seen.photograph.pyramid());
+        Arc::ptr_eq(&self.scene, scene) && self.pyramid.ptr_eq(&pyramid)
+    }
+}
 
 impl Aligner {
     /// The view again without the pixels that do not show the toy or its plate, if its outline does
     /// not fit with them, or only a blurred one does, and if it fits without them. A toy in a wrong
     /// pose looks as if something stood before it, too, but the rest of its outline does not fit.
     pub(super) fn past_things(
-        &self,
+        &mut self,
         seen: Seen,
         input: &FrameInput,
         (kept, given): (Option<&KeptLights>, &[Light]),
@@ -33,6 +50,12 @@ impl Aligner {
         } else {
             None
         };
+        let discovered = found.as_ref().and_then(|found| found.discovered.clone());
+        self.lights_of_view = discovered.map(|found| LightsOfView {
+            scene: Arc::clone(&self.scene),
+            pyramid: Arc::downgrade(seen.photograph.pyramid()),
+            found,
+        });
         let lights = kept.or(found.as_ref()).map_or(given, KeptLights::in_use);
         let sighted = seen
             .photograph

@@ -76,6 +76,7 @@ mod thing_lights;
 mod thing_watcher;
 mod things;
 mod toy_search;
+mod unknown_ratio;
 mod view;
 mod warning;
 mod withheld;
@@ -89,9 +90,10 @@ use crate::probe::ProbeReport;
 use adapted::MOST_ADAPTED_PX;
 use app_scene::frame::FrameInput;
 use app_scene::gloss::Gloss;
-use app_scene::scene::{Light, Plate, Scene};
+use app_scene::scene::{Plate, Scene};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
+use before_toy::LightsOfView;
 use kept_lights::KeptLights;
 use kept_reflection::KeptReflection;
 use photograph::{MOST_OUTLINE_PX, Photograph};
@@ -136,6 +138,8 @@ const POSE_GROWN: f64 = 0.01;
 /// stays if no shadow shows the light.
 #[derive(Debug)]
 pub struct Aligner {
+    /// The scene as it was given.
+    given: Arc<Scene>,
     scene: Arc<Scene>,
     /// The scene that the latest alignment reported.
     reported_scene: Arc<Scene>,
@@ -166,6 +170,8 @@ pub struct Aligner {
     n_adaptations: usize,
     /// The probe's report, once it was needed.
     probe: Option<ProbeReport>,
+    /// The lights by which a second look at the toy was decided.
+    lights_of_view: Option<LightsOfView>,
 }
 
 impl Aligner {
@@ -175,6 +181,7 @@ impl Aligner {
         let scene = scene.into();
         Self {
             reported_scene: Arc::clone(&scene),
+            given: Arc::clone(&scene),
             scene,
             ratio: Ratio::default(),
             are_plates_aligned: false,
@@ -192,6 +199,7 @@ impl Aligner {
             model: None,
             n_adaptations: 0,
             probe: None,
+            lights_of_view: None,
         }
     }
 
@@ -274,6 +282,7 @@ impl Aligner {
         let seen = self.with_adapted_model(seen)?;
         let seen = self.on_placed_receivers(seen, input)?;
         let seen = self.with_lights(seen, kept, given)?;
+        self.lights_of_view = None;
         if seen.view.is_trusted(MOST_OUTLINE_PX) {
             self.held = Some(seen.view.world_from_object);
         }
@@ -319,49 +328,6 @@ impl Aligner {
         scene.receivers = receivers;
         scene.uncertainty.are_receivers_guessed = false;
         Ok(Seen::again(&self.scene, seen.view, input))
-    }
-
-    /// The input with the estimated focal length or scale; it is estimated in each new view until one shows it.
-    fn with_ratio(&mut self, input: &FrameInput, given: &Arc<[Light]>) -> Result<FrameInput, AlignError> {
-        let is_view_known = self.view.as_ref().is_some_and(|view| view.is_of(input));
-        let is_withheld = self.are_shadows_withheld && self.lights.is_some();
-        if self.ratio.is_open() && !is_view_known && !is_withheld {
-            let lights = self.about(given, input)?;
-            let mut scene = Scene::clone(&self.scene);
-            if self.ratio.find(&mut scene, input, &lights) {
-                self.scene = Arc::new(scene);
-                self.are_plates_aligned = false;
-                (self.view, self.held, self.lights) = (None, None, None);
-                (self.gloss, self.things) = (None, None);
-                self.memories = [None, None];
-                self.reflection = KeptReflection::default();
-            }
-        }
-        Ok(input
-            .clone()
-            .with_camera(self.ratio.camera(&input.camera))
-            .with_world_from_object(self.ratio.pose(&input.world_from_object)))
-    }
-
-    /// Estimates the distortion of the lens of a frame and its plates, as if they were a pinhole's: two radial terms.
-    /// Remove it from all photographs before aligning them (`Capture::open_with_lens` of a session).
-    ///
-    /// # Errors
-    /// As [`Self::align`].
-    pub fn lens(&self, input: &FrameInput) -> Result<LensAlignment, AlignError> {
-        error::check(&self.scene, input)?;
-        let given = input.lights_in(&self.scene);
-        let lights = self.about(&given, input)?;
-        Ok(ratio::find_lens(&self.scene, input, &lights))
-    }
-
-    /// Approximate lights: as given, or as estimated with the given focal length.
-    fn about(&self, given: &Arc<[Light]>, input: &FrameInput) -> Result<Arc<[Light]>, AlignError> {
-        if !given.is_empty() {
-            return Ok(Arc::clone(given));
-        }
-        let found = Self::new(Arc::clone(&self.scene)).align(input)?;
-        Ok(found.lights.unwrap_or_default())
     }
 
     /// Camera and pose in a new view.

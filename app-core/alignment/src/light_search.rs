@@ -113,6 +113,10 @@ impl Aligner {
     /// Lights all over the hemisphere, or around a probe's estimates.
     pub(super) fn find_anywhere(&self, given: Arc<[Light]>, seen: &Seen) -> Result<KeptLights, ToyError> {
         let by_probe = self.probe.as_ref().map_or(&[][..], |probe| &probe.lights);
+        let known = self.lights_of_view.as_ref();
+        if let Some(known) = known.filter(|known| known.are_of(&self.scene, seen)) {
+            return Ok(KeptLights::discovered(given, known.found.clone(), by_probe));
+        }
         let found = match &seen.view.report {
             Some(pose) if seen.view.is_trusted(DISCOVERY_OUTLINE_PX) => {
                 seen.photograph
@@ -169,6 +173,7 @@ impl Aligner {
         let are_trusted = !self.are_shadows_withheld && seen.view.is_trusted(MOST_OUTLINE_PX);
         let as_it_is = seen;
         let is_searched = !self.are_shadows_withheld && self.reflection.search(&self.scene, seen, &known)?;
+        let reflection = self.reflection.found;
         let freed = self.reflection.removed_from(&self.scene, seen)?;
         let seen = freed.as_ref().unwrap_or(seen);
         let things = if !are_trusted {
@@ -190,8 +195,8 @@ impl Aligner {
             None => self.find_lights(Arc::clone(&given), looked_at)?,
         };
         if is_searched && lights.in_use() != &*known {
-            self.reflection
-                .search_again(&self.scene, as_it_is, lights.in_use())?;
+            let seen = (&as_it_is.photograph, &as_it_is.input);
+            self.reflection.search_again(&self.scene, seen, lights.in_use())?;
             // A shadow of unknown lights was taken for a reflection: its removal misled the lights.
             if freed.is_some() && self.reflection.found.is_none() && !are_kept {
                 let clear = things.as_ref().map(|things| as_it_is.clear_of(things));
@@ -209,8 +214,10 @@ impl Aligner {
             let is_same = Arc::ptr_eq(&before, &self.scene);
             let relit = (!is_same).then(|| Seen::again(&self.scene, seen.view.clone(), &seen.input));
             let relit = relit.as_ref().unwrap_or(as_it_is);
-            let freed = self.reflection.removed_from(&self.scene, relit)?;
-            let freed = freed.as_ref().unwrap_or(relit);
+            let is_freed = is_same && self.reflection.found == reflection;
+            let again = (!is_freed).then(|| self.reflection.removed_from(&self.scene, relit));
+            let again = again.transpose()?;
+            let freed = again.as_ref().unwrap_or(&freed).as_ref().unwrap_or(relit);
             let planes_of = self.planes.wanted(!are_kept);
             // Listed planes are corrected before the lights trust them.
             if !are_kept
@@ -309,7 +316,7 @@ impl Aligner {
         })
     }
 
-    /// Whether pictures can constrain that number of lights; without a plate, only unlisted lights.
+    /// Whether pictures can constrain that number of listed lights: not without a plate.
     fn can_tell_lights(&self, lights: &[Light]) -> bool {
         lights.len() <= MAX_LIGHTS && !self.scene.plates.is_empty()
     }

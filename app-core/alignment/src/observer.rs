@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::error::{self, AlignError};
 use super::found_planes::FoundPlanes;
+use super::kept_reflection::KeptReflection;
 use super::lights::FoundReflection;
 use super::photograph::Photograph;
 use super::report::PlaneAlignment;
@@ -17,13 +18,13 @@ use app_scene::sharpness::Spread;
 #[derive(Debug, Default)]
 pub struct Observer {
     latest: Option<FrameInput>,
-    /// Gloss of the toy, once it was estimated.
+    /// Gloss of the toy, from the first frame that shows it at its place.
     gloss: Option<Gloss>,
     planes: FoundPlanes,
     /// Memory of the search for things in the previous picture.
     memory: Option<Memory>,
     /// The reflection of the receiver under the toy, once it was searched for.
-    reflection: Option<Option<FoundReflection>>,
+    reflection: KeptReflection,
 }
 
 impl Observer {
@@ -64,17 +65,15 @@ impl Observer {
     fn look(&mut self, scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
         let known = self.scene(scene);
         let photograph = Photograph::new(&known, input, None);
-        let sharpness = photograph.sharpness_as_given(&known, &input.world_from_object)?;
+        let (sharpness, is_toy_seen) = photograph.sharpness_as_given(&known, &input.world_from_object)?;
         let grain = photograph.grain(sharpness.plate_spread);
         let lights = input.lights_in(&known);
         // It belongs to the receiver under the toy: found planes and later frames do not change it.
-        let reflection = match self.reflection {
-            Some(reflection) => reflection,
-            None => photograph
-                .with_plate_as_soft(sharpness.plate_spread)
-                .reflection(&known, input, &lights)?,
-        };
-        self.reflection = Some(reflection);
+        if is_toy_seen {
+            let soft = photograph.with_plate_as_soft(sharpness.plate_spread);
+            self.reflection.search_first(&known, (&soft, input), &lights)?;
+        }
+        let reflection = self.reflection.found;
         let look = Look {
             input,
             plate_spread: sharpness.plate_spread,
@@ -92,12 +91,12 @@ impl Observer {
             let sighted = photograph.things(&known, input, &lights, (None, before.as_ref()))?;
             (things, self.memory) = (sighted.things, sighted.memory);
         }
-        let gloss = match self.gloss {
-            Some(gloss) => gloss,
-            None => photograph.gloss(scene, &input.world_from_object, (&lights, things.as_ref()))?,
-        };
         // Without lights no highlight constrains it: a later frame may.
-        self.gloss = (!lights.is_empty()).then_some(gloss);
+        if is_toy_seen && self.gloss.is_none() && !lights.is_empty() {
+            let in_light = (&lights[..], things.as_ref());
+            self.gloss = Some(photograph.gloss(scene, &input.world_from_object, in_light)?);
+        }
+        let gloss = self.gloss.unwrap_or(input.gloss);
         let input = input.clone().with_things(things).with_sharpness(sharpness);
         let given = input.grain;
         let input = input.with_grain(given.or(grain));

@@ -33,7 +33,7 @@ const ROUNDING: f64 = 1e-6;
 
 /// A photograph with its plate, and the receivers in its camera space.
 pub(super) struct Photograph {
-    pyramid: Pyramid,
+    pyramid: Arc<Pyramid>,
     receivers: Vec<SeenReceiver>,
     camera_from_world: DMat4,
 }
@@ -47,7 +47,7 @@ impl Photograph {
         let withheld = without_people(input, withheld.cloned());
         let frame = Picture::without(input.image.rgba(), withheld.as_ref());
         Self {
-            pyramid: Pyramid::new(frame, plate, input.camera.intrinsics),
+            pyramid: Arc::new(Pyramid::new(frame, plate, input.camera.intrinsics)),
             receivers,
             camera_from_world,
         }
@@ -58,12 +58,12 @@ impl Photograph {
         if deviation_px > 0.0
             && let Some(pyramid) = self.pyramid.with_plate_spread(deviation_px)
         {
-            self.pyramid = pyramid;
+            self.pyramid = Arc::new(pyramid);
         }
         self
     }
 
-    pub(super) fn pyramid(&self) -> &Pyramid {
+    pub(super) fn pyramid(&self) -> &Arc<Pyramid> {
         &self.pyramid
     }
 

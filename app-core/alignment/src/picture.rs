@@ -294,7 +294,7 @@ impl Pyramid {
         Some(self.with_largest(self.levels[0].with_plate_spread(deviation_px)?))
     }
 
-    /// With unknown pixels at marks of the largest level, in either picture.
+    /// With unknown pixels of the photograph at marks of the largest level.
     pub(super) fn clear_of(&self, marks: &[Mark]) -> Self {
         let mut level = self.levels[0].clone();
         for (pixel, mark) in level.frame.pixels.iter_mut().zip(marks) {

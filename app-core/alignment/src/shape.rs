@@ -1,6 +1,7 @@
 //! The physical toy as a shape in camera space.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
@@ -8,7 +9,7 @@ use super::picture::Level;
 use app_scene::geometry::bounds::Bounds;
 use app_scene::geometry::edges::Faces;
 use app_scene::scene::Scene;
-use app_scene::toy::{PosedMesh, Toy, ToyError};
+use app_scene::toy::{PosedMesh, ToyError};
 
 /// Welded vertices, and triangles of which those facing an eye cover the whole toy.
 #[derive(Clone, Debug)]
@@ -16,7 +17,7 @@ pub(super) struct Shape {
     /// Points in camera space.
     pub(super) points: Vec<DVec3>,
     /// Faces of these points.
-    pub(super) faces: Faces,
+    pub(super) faces: Arc<Faces>,
     /// Centre of the box around it.
     pub(super) centre: DVec3,
     /// Half of that box's diagonal, in metres.
@@ -29,36 +30,19 @@ impl Shape {
         let toy = &scene.toy;
         let mut posed = PosedMesh::default();
         toy.pose(&scene.physical_pose, camera_from_object, &mut posed)?;
-        let shadow = toy.shadow_indices();
-        let used = Self::vertices(toy);
-        let mut places = vec![0; posed.positions.len()];
-        for (place, vertex) in (0..).zip(&used) {
-            places[*vertex as usize] = place;
-        }
-        let points: Vec<DVec3> = used
+        let welded = toy.welded();
+        let points: Vec<DVec3> = welded
+            .vertices
             .iter()
             .map(|vertex| posed.positions[*vertex as usize].as_dvec3())
             .collect();
         let bounds = Bounds::around(points.iter().copied());
         Ok(Self {
-            faces: Faces::new(
-                shadow
-                    .facing_anywhere()
-                    .map(|corners| corners.map(|vertex| places[vertex as usize]))
-                    .collect(),
-            ),
+            faces: Arc::clone(&welded.faces),
             centre: bounds.centre(),
             radius_m: 0.5 * (bounds.max - bounds.min).length(),
             points,
         })
-    }
-
-    /// The toy's vertex of each point, in the points' order.
-    pub(super) fn vertices(toy: &Toy) -> Vec<u32> {
-        let mut used = toy.shadow_indices().indices.clone();
-        used.sort_unstable();
-        used.dedup();
-        used
     }
 
     /// The shape merged in cells whose side is in pixels of a level, at the distance of its centre.
@@ -108,7 +92,7 @@ impl Shape {
                 [*c, *a, *b]
             })
         });
-        let faces = Faces::new(merged.collect());
+        let faces = Arc::new(Faces::new(merged.collect()));
         Self {
             points: sums.into_iter().map(|(sum, n)| sum / n).collect(),
             faces,

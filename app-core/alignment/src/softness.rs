@@ -1,6 +1,6 @@
 //! Measures how much softer a photograph is than its plate, from their common texture.
 //!
-//! A Gaussian removes the more of a texture the finer it is: the right blur leaves as much of the
+//! A blur removes more of a fine texture than of a coarse one: the right blur leaves as much of the
 //! plate's texture, along each of four directions, as the photograph has. Four directions determine
 //! a covariance, and so distinguish motion from defocus. Shadows, things and the toy itself are
 //! excluded by their ratio to the plate. Noise, which photograph and plate do not share, cancels if
@@ -47,8 +47,8 @@ const ALIKE_PX: f64 = 0.3;
 const MOST_STEP_PX2: f64 = 1.5;
 const LAST_STEP_PX2: f64 = 0.02;
 const N_STEPS: usize = 10;
-/// Difference of an outline's deviations along its axes from which it is blurred by a motion, in
-/// pixels. Measured: up to .34 out of focus, .86 to 1.3 for motions of 5 px.
+/// Difference of the deviations along the axes of a blur, of an outline or a texture, from which it is a motion's, in
+/// pixels. Measured at outlines: up to .34 out of focus, .86 to 1.3 for motions of 5 px.
 const MOTION_PX: f64 = 0.5;
 
 /// Directions of the derivatives.
@@ -61,7 +61,7 @@ pub(super) struct Outline<'a> {
     /// By direction; `None` if too few directions tell.
     pub(super) directed: &'a dyn Fn() -> Option<Directed>,
     /// That of a round blur beside a known one.
-    pub(super) beyond_px: &'a dyn Fn(Spread) -> Option<f64>,
+    pub(super) beyond_px: &'a dyn Fn(Spread) -> f64,
 }
 
 /// The softness of a photograph, from its texture relative to the plate's and from the blur of its
@@ -82,7 +82,7 @@ pub(super) fn sharpness(level: &Level, coverage: &Coverage, outline: &Outline<'_
         .filter(|_| is_soft)
         .and_then(|textures| textures.motion(blurred));
     if let Some(motion) = motion.filter(is_motion) {
-        let of_plate = (outline.beyond_px)(motion).filter(is_visible);
+        let of_plate = Some((outline.beyond_px)(motion)).filter(is_visible);
         return Sharpness {
             plate_spread: motion,
             outline_spread: motion.and(Spread::round(of_plate.unwrap_or(0.0))),
@@ -115,124 +115,12 @@ fn is_motion(spread: &Spread) -> bool {
     wide - narrow >= MOTION_PX
 }
 
-impl Textures {
-    /// The blur that makes the plate as soft as the photograph; `None` if it is unconstrained, or if
-    /// the plate is as soft already.
-    fn over_plate(&self) -> Option<Spread> {
-        let frame = self.frame.spread(Spread::round(SMOOTHED_PX));
-        let plate = self.plate.spread(Spread::round(SMOOTHED_PX));
-        let mut spread = Spread::NONE;
-        for _ in 0..N_STEPS {
-            let measurements = measurements(&frame, &plate.spread(spread), &self.is_used);
-            let step_px2 = step(&measurements, spread)?;
-            let most_px2 = step_px2.amax();
-            let step_px2 = step_px2 * (MOST_STEP_PX2 / most_px2.max(MOST_STEP_PX2));
-            spread = steadied(spread.and(Spread {
-                xx_px2: step_px2.x,
-                xy_px2: step_px2.y,
-                yy_px2: step_px2.z,
-            }));
-            if most_px2 < LAST_STEP_PX2 {
-                break;
-            }
-        }
-        let measurements = measurements(&frame, &plate.spread(spread), &self.is_used);
-        let is_met = measurements
-            .iter()
-            .all(|one| one.correlation < LEAST_CORRELATION || one.correlation >= CORRELATION);
-        is_met.then_some(spread)
-    }
-
-    /// The same as a motion, beside what the outline tells.
-    fn motion(&self, outline: Option<Spread>) -> Option<Spread> {
-        let light = |roots: &Grey| Grey {
-            size_px: roots.size_px,
-            values: roots.values.iter().map(|root| root * root).collect(),
-        };
-        let pictures = [&light(&self.frame), &light(&self.plate)];
-        motion::measured(pictures, &self.is_used, outline)
-    }
-}
-
-/// The measurement in one direction.
-struct Measurement {
-    /// Logarithm of the photograph's energy over the plate's.
-    excess: f64,
-    /// Derivative of the plate's energy by each of (xx, xy, yy).
-    falls: Vector3<f64>,
-    /// Squared correlation.
-    correlation: f64,
-}
-
-fn measurements(frame: &Grey, plate: &Grey, is_used: &[bool]) -> [Measurement; DIRECTIONS.len()] {
-    DIRECTIONS.map(|direction| {
-        let (frame, plate) = (frame.difference(direction), plate.difference(direction));
-        let [across, down] = [IVec2::X, IVec2::Y].map(|axis| plate.difference(axis));
-        let mut sums = [0.0; 6];
-        let used = is_used.iter().enumerate().filter(|(_, is_used)| **is_used);
-        for (index, _) in used {
-            let at = |grey: &Grey| f64::from(grey.values[index]);
-            // Differences over two pixels.
-            let (f, b, x, y) = (at(&frame), at(&plate), 0.5 * at(&across), 0.5 * at(&down));
-            let terms = [f * f, b * b, f * b, x * x, x * y, y * y];
-            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
-        }
-        let [ff, bb, fb, xx, xy, yy] = sums;
-        // A picture without any texture has no energy and no information.
-        let (frame_energy, plate_energy) = (ff.max(f64::MIN_POSITIVE), bb.max(f64::MIN_POSITIVE));
-        Measurement {
-            excess: (frame_energy / plate_energy).ln(),
-            falls: Vector3::new(xx, 2.0 * xy, yy) / plate_energy,
-            correlation: (fb / frame_energy) * (fb / plate_energy),
-        }
-    })
-}
-
-/// Change of (xx, xy, yy) that makes the plate's energies equal to the photograph's; `None` if no
-/// direction has information.
-fn step(measurements: &[Measurement], spread: Spread) -> Option<Vector3<f64>> {
-    let is_heard = |one: &&Measurement| one.correlation >= LEAST_CORRELATION;
-    measurements.iter().find(is_heard)?;
-    let mut normal = Matrix3::identity() * f64::EPSILON;
-    let mut right = Vector3::zeros();
-    let mut add = |row: Vector3<f64>, value: f64| {
-        normal += row * row.transpose();
-        right += row * value;
-    };
-    for one in measurements.iter().filter(is_heard) {
-        add(one.falls, -one.excess);
-    }
-    add(
-        Vector3::new(ROUND, 0.0, -ROUND),
-        ROUND * (spread.yy_px2 - spread.xx_px2),
-    );
-    add(Vector3::new(0.0, 2.0 * ROUND, 0.0), -2.0 * ROUND * spread.xy_px2);
-    let step = normal.cholesky()?.solve(&right);
-    step.iter().all(|value| value.is_finite()).then_some(step)
-}
-
 /// Square roots of light around the toy.
 struct Textures {
     /// The photograph, at the plate's exposure.
     frame: Grey,
     plate: Grey,
     is_used: Vec<bool>,
-}
-
-/// A valid covariance: positive semidefinite, and isotropic if it is nearly so.
-fn steadied(spread: Spread) -> Spread {
-    let [wide, narrow] = spread
-        .variances_px2()
-        .map(|variance| variance.clamp(0.0, MOST_PX2));
-    if wide.sqrt() - narrow.sqrt() < ALIKE_PX {
-        return Spread::round((0.5 * (wide + narrow)).sqrt());
-    }
-    with_variances(spread, [wide, narrow])
-}
-
-/// The part of a difference of two blurs by which the first is wider.
-fn positive(spread: Spread) -> Spread {
-    with_variances(spread, spread.variances_px2().map(|variance| variance.max(0.0)))
 }
 
 impl Textures {
@@ -289,6 +177,122 @@ impl Textures {
             is_used,
         })
     }
+
+    /// The blur that makes the plate as soft as the photograph; `None` if it is unconstrained, or if
+    /// the plate is as soft already.
+    fn over_plate(&self) -> Option<Spread> {
+        let frame = self.frame.spread(Spread::round(SMOOTHED_PX));
+        let frame = DIRECTIONS.map(|direction| frame.difference(direction));
+        let plate = self.plate.spread(Spread::round(SMOOTHED_PX));
+        let mut spread = Spread::NONE;
+        for _ in 0..N_STEPS {
+            let measurements = measurements(&frame, &plate.spread(spread), &self.is_used);
+            let step_px2 = step(&measurements, spread)?;
+            let most_px2 = step_px2.amax();
+            let step_px2 = step_px2 * (MOST_STEP_PX2 / most_px2.max(MOST_STEP_PX2));
+            spread = steadied(spread.and(Spread {
+                xx_px2: step_px2.x,
+                xy_px2: step_px2.y,
+                yy_px2: step_px2.z,
+            }));
+            if most_px2 < LAST_STEP_PX2 {
+                break;
+            }
+        }
+        let measurements = measurements(&frame, &plate.spread(spread), &self.is_used);
+        let is_met = measurements
+            .iter()
+            .all(|one| one.correlation < LEAST_CORRELATION || one.correlation >= CORRELATION);
+        is_met.then_some(spread)
+    }
+
+    /// The same as a motion, beside what the outline tells.
+    fn motion(&self, outline: Option<Spread>) -> Option<Spread> {
+        let light = |roots: &Grey| Grey {
+            size_px: roots.size_px,
+            values: roots.values.iter().map(|root| root * root).collect(),
+        };
+        let pictures = [&light(&self.frame), &light(&self.plate)];
+        motion::measured(pictures, &self.is_used, outline)
+    }
+}
+
+/// The measurement in one direction.
+struct Measurement {
+    /// Logarithm of the photograph's energy over the plate's.
+    excess: f64,
+    /// Derivative of the plate's energy by each of (xx, xy, yy).
+    falls: Vector3<f64>,
+    /// Squared correlation.
+    correlation: f64,
+}
+
+/// Measurements of a plate beside the photograph's differences in each direction.
+fn measurements(
+    frame: &[Grey; DIRECTIONS.len()],
+    plate: &Grey,
+    is_used: &[bool],
+) -> [Measurement; DIRECTIONS.len()] {
+    std::array::from_fn(|index| {
+        let (frame, plate) = (&frame[index], plate.difference(DIRECTIONS[index]));
+        let [across, down] = [IVec2::X, IVec2::Y].map(|axis| plate.difference(axis));
+        let mut sums = [0.0; 6];
+        let used = is_used.iter().enumerate().filter(|(_, is_used)| **is_used);
+        for (index, _) in used {
+            let at = |grey: &Grey| f64::from(grey.values[index]);
+            // Differences over two pixels.
+            let (f, b, x, y) = (at(frame), at(&plate), 0.5 * at(&across), 0.5 * at(&down));
+            let terms = [f * f, b * b, f * b, x * x, x * y, y * y];
+            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+        }
+        let [ff, bb, fb, xx, xy, yy] = sums;
+        // A picture without any texture has no energy and no information.
+        let (frame_energy, plate_energy) = (ff.max(f64::MIN_POSITIVE), bb.max(f64::MIN_POSITIVE));
+        Measurement {
+            excess: (frame_energy / plate_energy).ln(),
+            falls: Vector3::new(xx, 2.0 * xy, yy) / plate_energy,
+            correlation: (fb / frame_energy) * (fb / plate_energy),
+        }
+    })
+}
+
+/// Change of (xx, xy, yy) that makes the plate's energies equal to the photograph's; `None` if no
+/// direction has information.
+fn step(measurements: &[Measurement], spread: Spread) -> Option<Vector3<f64>> {
+    let is_heard = |one: &&Measurement| one.correlation >= LEAST_CORRELATION;
+    measurements.iter().find(is_heard)?;
+    let mut normal = Matrix3::identity() * f64::EPSILON;
+    let mut right = Vector3::zeros();
+    let mut add = |row: Vector3<f64>, value: f64| {
+        normal += row * row.transpose();
+        right += row * value;
+    };
+    for one in measurements.iter().filter(is_heard) {
+        add(one.falls, -one.excess);
+    }
+    add(
+        Vector3::new(ROUND, 0.0, -ROUND),
+        ROUND * (spread.yy_px2 - spread.xx_px2),
+    );
+    add(Vector3::new(0.0, 2.0 * ROUND, 0.0), -2.0 * ROUND * spread.xy_px2);
+    let step = normal.cholesky()?.solve(&right);
+    step.iter().all(|value| value.is_finite()).then_some(step)
+}
+
+/// A valid covariance: positive semidefinite, and isotropic if it is nearly so.
+fn steadied(spread: Spread) -> Spread {
+    let [wide, narrow] = spread
+        .variances_px2()
+        .map(|variance| variance.clamp(0.0, MOST_PX2));
+    if wide.sqrt() - narrow.sqrt() < ALIKE_PX {
+        return Spread::round((0.5 * (wide + narrow)).sqrt());
+    }
+    with_variances(spread, [wide, narrow])
+}
+
+/// The part of a difference of two blurs by which the first is wider.
+fn positive(spread: Spread) -> Spread {
+    with_variances(spread, spread.variances_px2().map(|variance| variance.max(0.0)))
 }
 
 fn is_at_border(at: IVec2, size_px: IVec2) -> bool {

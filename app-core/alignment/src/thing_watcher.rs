@@ -45,7 +45,8 @@ impl Conditions {
     fn is_like(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene)
             && self.lights == other.lights
-            && self.reflection.is_some() == other.reflection.is_some()
+            && self.reflection == other.reflection
+            && self.plate_spread == other.plate_spread
     }
 }
 
@@ -61,8 +62,8 @@ pub enum Watched {
 /// Searches for things beside the toy, picture after picture, apart from camera, pose and lights: a
 /// hand moves faster than an alignment takes.
 ///
-/// A thing that was marked in the picture before needs half the evidence of a single picture, one
-/// that comes twice as much; and outlines stay where the picture does not change.
+/// A thing that was marked in the picture before needs half the evidence of a single picture, and one
+/// that no picture before showed twice that evidence; and outlines stay where the picture does not change.
 /// A picture that shows what the one before showed is not searched.
 #[derive(Debug, Default)]
 pub struct ThingWatcher {
@@ -98,6 +99,10 @@ impl ThingWatcher {
         error::check(&conditions.scene, input)?;
         let small = self.small.take();
         let small = small.filter(|small| Arc::ptr_eq(&small.of, &conditions.scene));
+        if small.is_none() {
+            // Its marks belong to the receivers and plates of another scene.
+            self.memory = None;
+        }
         let small = self
             .small
             .insert(small.unwrap_or_else(|| SmallScene::of(&conditions.scene)));

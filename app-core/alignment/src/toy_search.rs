@@ -103,7 +103,8 @@ pub fn find_toy(
     check(scene, input)?;
     let mut scene = Scene::clone(scene);
     scene.uncertainty.are_receivers_guessed = true;
-    register_plates(&mut scene, input);
+    let mut cameras = Finder::default();
+    register_plates(&mut scene, input, &mut cameras);
     let search = Search::new(Arc::new(scene.clone()), input.clone())?;
     let followed = search.followed(directions)?;
     let nearest_px = followed.first().map(|pose| pose.outline_px);
@@ -116,7 +117,7 @@ pub fn find_toy(
             receiver.world_from_plane = *world_from_table;
         }
         let before = scene.plates.clone();
-        if register_plates(&mut scene, input) {
+        if register_plates(&mut scene, input, &mut cameras) {
             let search = Search::new(Arc::new(scene.clone()), input.clone())?;
             match search.refine(&one.world_from_object)? {
                 Some(refined) => *one = refined,
@@ -133,10 +134,10 @@ pub fn find_toy(
 
 /// Corrects the cameras of the plates, each relative to the photograph. Returns whether any
 /// changed.
-fn register_plates(scene: &mut Scene, input: &FrameInput) -> bool {
+fn register_plates(scene: &mut Scene, input: &FrameInput, cameras: &mut Finder) -> bool {
     let mut is_any_moved = false;
     for plate in &mut scene.plates {
-        let camera = registered(plate, input, &scene.receivers);
+        let camera = registered(plate, input, &scene.receivers, cameras);
         is_any_moved |= camera != plate.camera;
         plate.camera = camera;
     }
@@ -145,7 +146,7 @@ fn register_plates(scene: &mut Scene, input: &FrameInput) -> bool {
 
 /// The camera of a plate relative to the photograph: the best estimate from the given one, from a
 /// wider search, and from common corners.
-fn registered(plate: &Plate, input: &FrameInput, receivers: &[Receiver]) -> Camera {
+fn registered(plate: &Plate, input: &FrameInput, receivers: &[Receiver], cameras: &mut Finder) -> Camera {
     let from_hand = PoseUncertainty {
         position_m: Some(HAND_M),
         rotation_rad: Some(HAND_RAD),
@@ -162,7 +163,8 @@ fn registered(plate: &Plate, input: &FrameInput, receivers: &[Receiver]) -> Came
     let tries = starts.into_iter().flatten().filter_map(|(start, uncertainty)| {
         let mut plate = plate.clone();
         plate.camera = start;
-        follow(&mut plate, input, receivers, &uncertainty).map(|loss| (loss, plate.camera))
+        let loss = follow(&mut plate, input, receivers, (&uncertainty, cameras))?;
+        Some((loss, plate.camera))
     });
     let best = tries.min_by(|(a, _), (b, _)| a.total_cmp(b));
     best.map_or(plate.camera, |(_, camera)| camera)
@@ -174,13 +176,13 @@ fn follow(
     plate: &mut Plate,
     input: &FrameInput,
     receivers: &[Receiver],
-    uncertainty: &PoseUncertainty,
+    (uncertainty, cameras): (&PoseUncertainty, &mut Finder),
 ) -> Option<f64> {
     let mut loss = None;
     for _ in 0..2 {
         let known = (std::slice::from_ref(&*plate), receivers);
         let photograph = (input.image.rgba(), &input.camera, None);
-        let found = Finder::default().find(photograph, known, uncertainty)?;
+        let found = cameras.find(photograph, known, uncertainty)?;
         let (camera, _) = corrected(&input.camera, Some(found));
         let moved = input.camera.world_from_camera * camera.world_from_camera.inverse();
         loss = Some(if camera == input.camera {

@@ -52,9 +52,7 @@ impl Seen {
             input,
         }
     }
-}
 
-impl Seen {
     /// The same view, as if the receiver that the toy stands on were matt.
     pub(super) fn freed_of(&self, scene: &Scene, found: &FoundReflection) -> Result<Self, ToyError> {
         Ok(Self {

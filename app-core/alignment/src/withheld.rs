@@ -1,4 +1,4 @@
-//! Pixels that alignment must not read: withheld shadows, which are to be predicted, and people.
+//! Pixels that alignment must not read: withheld shadows, which are to be predicted.
 
 use glam::{DVec2, UVec2};
 

@@ -6,9 +6,13 @@ use std::sync::Arc;
 use app_core::alignment::{Aligner, Alignment, RatioOutcome};
 use app_core::frame::FrameInput;
 use app_core::scene::{Camera, Image, Light, Scene};
+use app_core::session::GroundTruth;
 use glam::{DMat4, DQuat, DVec3};
 
+use harness::bundled_session;
+
 use super::bundled::{SESSION, middle};
+use super::model::wavy;
 
 /// Largest error of the ratio that is found: the session was rendered with few samples per pixel.
 const RATIO: f64 = 6e-4;
@@ -168,4 +172,40 @@ fn what_cannot_tell_it_leaves_it() {
     let report = found.report.focal_length.unwrap();
     assert_eq!(report.outcome, RatioOutcome::Unseen);
     assert_eq!(found.camera.intrinsics, input.camera.intrinsics);
+}
+
+/// A view without a shadow shows the toy, and so adapts its model, though nothing tells the focal length. What it told
+/// is forgotten once the length is found: all is then as if the later view were the first.
+#[test]
+fn what_was_told_before_it_was_found_is_forgotten() {
+    let (scene, input) = off(1.01);
+    let scene = scene.with_toy(wavy(1.0).toy);
+    let plate = Arc::clone(&scene.plates[0].image);
+    let labels = bundled_session().truth(0).unwrap().unwrap().mask;
+    let mut unlit = Image::clone(&plate);
+    for at in (0..labels.rgba8.len())
+        .step_by(4)
+        .filter(|at| labels.rgba8[at + 1] > 0)
+    {
+        unlit.rgba8[at..at + 3].copy_from_slice(&input.image.rgba().rgba8[at..at + 3]);
+    }
+    let mut aligner = Aligner::new(scene.clone()).with_unknown_focal_length();
+    let first = aligner.align(&input.clone().with_image(unlit)).unwrap();
+    assert!(first.report.model.is_some(), "{:?}", first.report);
+    assert!(
+        !first.report.focal_length.unwrap().is_applied(),
+        "{:?}",
+        first.report
+    );
+    let second = aligner.align(&input).unwrap();
+    assert!(
+        second.report.focal_length.unwrap().is_applied(),
+        "{:?}",
+        second.report
+    );
+    let alone = Aligner::new(scene)
+        .with_unknown_focal_length()
+        .align(&input)
+        .unwrap();
+    assert_eq!(second.report, alone.report);
 }

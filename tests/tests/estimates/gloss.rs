@@ -120,3 +120,21 @@ fn a_toy_before_a_hand_is_as_glossy() {
     assert_eq!(found.gloss, alone);
     assert_ne!(found.gloss, Gloss::NONE);
 }
+
+/// Neither a frame without the toy nor one without lights tells the gloss, and neither ends or changes it.
+#[test]
+fn a_gloss_is_found_in_the_first_frame_that_shows_the_toy_and_kept() {
+    let (scene, input) = shot(Some(Sheen {
+        roughness: 0.25,
+        strength: 1.0,
+    }));
+    let mut observer = Observer::default();
+    let mut look = |input: FrameInput| observer.observed(&scene, &input).unwrap().gloss;
+    let empty = input.clone().with_image(Arc::clone(&scene.plates[0].image));
+    let dark = input.clone().with_lights(Some(Arc::from([])));
+    assert_eq!(look(empty), Gloss::NONE);
+    assert_eq!(look(dark.clone()), Gloss::NONE);
+    let found = look(input);
+    assert!((0.6..1.6).contains(&found.strongest()), "{found:?}");
+    assert_eq!(look(dark), found);
+}

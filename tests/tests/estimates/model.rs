@@ -31,7 +31,7 @@ fn wave(point: DVec3) -> DVec3 {
 }
 
 /// The bundled scene with a model that is deformed by waves, so many times as high.
-fn wavy(times: f64) -> Scene {
+pub(crate) fn wavy(times: f64) -> Scene {
     let scene = SESSION.0.clone();
     let points = positions(&scene.toy, &scene.physical_pose).into_iter();
     let displacements: Vec<DVec3> = points.map(|point| times * wave(point)).collect();

@@ -135,3 +135,20 @@ fn a_varnished_table_is_told_from_a_matt_one() {
     let unlike = found(&varnished, &input);
     assert_eq!(unlike, None);
 }
+
+#[test]
+fn a_reflection_is_found_in_the_first_frame_that_shows_the_toy() {
+    let (mut scene, input) = SESSION.clone();
+    let table = Table::of(&scene, &input);
+    let input = input
+        .clone()
+        .with_image(table.varnished(input.image.rgba(), true));
+    for plate in &mut scene.plates {
+        plate.image = Arc::new(table.varnished(&plate.image, false));
+    }
+    let mut observer = Observer::default();
+    let mut look = |input: &FrameInput| observer.observed(&scene, input).unwrap().reflection;
+    let empty = input.clone().with_image(Arc::clone(&scene.plates[0].image));
+    assert_eq!(look(&empty), None);
+    assert!(look(&input).is_some());
+}

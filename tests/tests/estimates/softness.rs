@@ -6,9 +6,11 @@ use std::sync::Arc;
 use app_core::alignment::{Aligner, Observer};
 use app_core::frame::FrameInput;
 use app_core::scene::{Image, Scene};
+use app_core::session::GroundTruth;
 use app_core::sharpness::{Sharpness, Spread};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 use glam::{DMat4, DVec2, DVec3};
+use harness::bundled_session;
 
 use super::bundled::SESSION;
 
@@ -159,17 +161,18 @@ fn a_motion_is_told_by_its_direction() {
 
 /// Length and direction of a motion of the camera, in pixels.
 const MOTION_PX: DVec2 = DVec2::new(4.1, 2.87);
+/// One at 45 degrees whose variances along rows and columns are 1: only their covariance tells it from a round
+/// blur of a pixel.
+const DIAGONAL_PX: DVec2 = DVec2::new(3.464, 3.464);
 
-/// The session's first frame in that motion, of steps between pixels.
+/// A frame in a motion, of steps between pixels.
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
     reason = "pixels, and codes from 0 to 255"
 )]
-fn moved_session() -> (Scene, FrameInput) {
+fn moved(image: &Image, motion_px: DVec2) -> Image {
     const N: i32 = 20;
-    let (scene, input) = SESSION.clone();
-    let image = input.image.rgba();
     let (width, height) = (image.width_px as i32, image.height_px as i32);
     let light = |x: i32, y: i32, channel: usize| {
         let at = y.clamp(0, height - 1) * width + x.clamp(0, width - 1);
@@ -185,23 +188,56 @@ fn moved_session() -> (Scene, FrameInput) {
     let code = |x: i32, y: i32, channel: usize| {
         let steps = (0..N).map(|k| (f64::from(k) + 0.5) / f64::from(N) - 0.5);
         let at = DVec2::new(f64::from(x), f64::from(y));
-        let sum: f32 = steps.map(|part| between(at + part * MOTION_PX, channel)).sum();
+        let sum: f32 = steps.map(|part| between(at + part * motion_px, channel)).sum();
         (255.0 * srgb_from_linear(sum / N as f32)).round() as u8
     };
     let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    let moved = Image {
+    Image {
         rgba8: texels
             .flat_map(|(x, y)| [code(x, y, 0), code(x, y, 1), code(x, y, 2), 255])
             .collect(),
-        ..Image::clone(image)
+        ..image.clone()
+    }
+}
+
+/// The session's first frame in a motion.
+fn moved_session(motion_px: DVec2) -> (Scene, FrameInput) {
+    let (scene, input) = SESSION.clone();
+    let image = moved(input.image.rgba(), motion_px);
+    let input = input.clone().with_image(image);
+    (scene, input)
+}
+
+/// Whether each pixel of the session's first frame shows the toy.
+fn toy_mask() -> Vec<bool> {
+    let labels = bundled_session().truth(0).unwrap().unwrap().mask;
+    labels.rgba8.chunks_exact(4).map(|texel| texel[1] > 0).collect()
+}
+
+/// The same over an even table without a shadow.
+fn moved_over_even() -> (Scene, FrameInput) {
+    let (mut scene, input) = SESSION.clone();
+    let painted = |image: &Image, is_kept: &dyn Fn(usize) -> bool| {
+        let mut image = image.clone();
+        for (index, texel) in image.rgba8.chunks_exact_mut(4).enumerate() {
+            if !is_kept(index) {
+                texel[..3].fill(120);
+            }
+        }
+        image
     };
-    let input = input.clone().with_image(moved);
+    for plate in &mut scene.plates {
+        plate.image = Arc::new(painted(&plate.image, &|_| false));
+    }
+    let is_toy = toy_mask();
+    let image = painted(input.image.rgba(), &|index| is_toy[index]);
+    let input = input.clone().with_image(moved(&image, MOTION_PX));
     (scene, input)
 }
 
 /// Interpolation blurs as well: by a sixth of a square pixel along each axis.
-fn check_motion(spread: Spread, (allowed_px, allowed_rad): (f64, f64)) {
-    let expected = Spread::of_motion(MOTION_PX).and(Spread::round((1.0_f64 / 6.0).sqrt()));
+fn check_motion(spread: Spread, motion_px: DVec2, (allowed_px, allowed_rad): (f64, f64)) {
+    let expected = Spread::of_motion(motion_px).and(Spread::round((1.0_f64 / 6.0).sqrt()));
     let [told, true_px] = [spread, expected].map(|spread| spread.variances_px2().map(f64::sqrt));
     for k in 0..2 {
         assert!(
@@ -209,22 +245,30 @@ fn check_motion(spread: Spread, (allowed_px, allowed_rad): (f64, f64)) {
             "{told:?} for {true_px:?}"
         );
     }
-    let across = spread.axes_px()[0].normalize().perp_dot(MOTION_PX.normalize());
+    let across = spread.axes_px()[0].normalize().perp_dot(motion_px.normalize());
     assert!(across.abs() < allowed_rad, "{spread:?} is turned by {across}");
     assert!(spread.is_line());
 }
 
 #[test]
 fn a_motion_is_told_by_its_texture_and_its_outline() {
-    let sharpness = as_given(&moved_session());
-    check_motion(sharpness.plate_spread, (0.05, 0.05));
-    check_motion(sharpness.outline_spread, (0.05, 0.05));
+    let sharpness = as_given(&moved_session(MOTION_PX));
+    check_motion(sharpness.plate_spread, MOTION_PX, (0.05, 0.05));
+    check_motion(sharpness.outline_spread, MOTION_PX, (0.05, 0.05));
+}
+
+/// Measured: .03 and .11 px too wide along the motion and across it.
+#[test]
+fn a_diagonal_motion_is_told_by_its_texture_and_its_outline() {
+    let sharpness = as_given(&moved_session(DIAGONAL_PX));
+    check_motion(sharpness.plate_spread, DIAGONAL_PX, (0.15, 0.05));
+    check_motion(sharpness.outline_spread, DIAGONAL_PX, (0.15, 0.05));
 }
 
 /// The lens of photograph and plate is as soft, and the photograph's camera has moved.
 #[test]
 fn a_soft_lens_beside_a_motion_is_told_by_the_outline() {
-    let (scene, input) = moved_session();
+    let (scene, input) = moved_session(MOTION_PX);
     let soft = [gaussian(1.0), gaussian(1.0)];
     let (mut scene, input) = (
         scene,
@@ -236,16 +280,50 @@ fn a_soft_lens_beside_a_motion_is_told_by_the_outline() {
         plate.image = Arc::new(spread(&plate.image, &soft[0], &soft[1]));
     }
     let sharpness = as_given(&(scene, input));
-    check_motion(sharpness.plate_spread, (0.2, 0.1));
+    check_motion(sharpness.plate_spread, MOTION_PX, (0.2, 0.1));
     let beyond = sharpness.outline_spread.and(sharpness.plate_spread.times(-1.0));
     let beyond_px = beyond.mean_px();
     assert!((beyond_px - 1.0).abs() < 0.25, "{beyond_px}");
 }
 
-/// Without a texture, as on an even table.
+/// No texture tells a blur of the plate.
 #[test]
 fn a_motion_over_an_even_table_is_told_by_the_outline() {
-    let (mut scene, input) = moved_session();
+    let sharpness = as_given(&moved_over_even());
+    assert_eq!(sharpness.plate_spread, Spread::NONE);
+    check_motion(sharpness.outline_spread, MOTION_PX, (0.15, 0.12));
+}
+
+/// A blur of the outline that the table beside it does not have is no camera's.
+#[test]
+fn a_motion_of_the_toy_alone_is_none_of_the_camera() {
+    let (scene, input) = SESSION.clone();
+    let image = input.image.rgba();
+    let [soft, moved] = [
+        spread(image, &gaussian(1.5), &gaussian(1.5)),
+        moved(image, 2.0 * MOTION_PX),
+    ];
+    let width = image.width_px as i32;
+    let is_toy = toy_mask();
+    let is_near = |index: usize| {
+        let around = (0..15 * 15).map(|k| (k / 15 - 7) * width + k % 15 - 7);
+        let around = around.filter_map(|step| index.checked_add_signed(step as isize));
+        around.into_iter().any(|at| is_toy.get(at) == Some(&true))
+    };
+    let mut mixed = soft.clone();
+    for index in (0..is_toy.len()).filter(|index| is_near(*index)) {
+        mixed.rgba8[4 * index..4 * index + 4].copy_from_slice(&moved.rgba8[4 * index..4 * index + 4]);
+    }
+    let input = input.clone().with_image(mixed);
+    let sharpness = as_given(&(scene, input));
+    let plate_px = sharpness.plate_spread.variances_px2().map(f64::sqrt);
+    assert!(plate_px.iter().all(|px| (px - 1.5).abs() < 0.15), "{plate_px:?}");
+    assert_eq!(sharpness.outline_spread, sharpness.plate_spread);
+}
+
+#[test]
+fn a_motion_without_a_plate_is_told_by_the_outline() {
+    let (mut scene, input) = moved_session(MOTION_PX);
     scene.plates.clear();
-    check_motion(as_given(&(scene, input)).outline_spread, (0.15, 0.12));
+    check_motion(as_given(&(scene, input)).outline_spread, MOTION_PX, (0.15, 0.12));
 }

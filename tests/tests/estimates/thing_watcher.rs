@@ -7,17 +7,17 @@ use app_core::alignment::{Aligner, Conditions, Observer, ThingWatcher, Watched};
 use app_core::frame::FrameInput;
 use app_core::scene::{Camera, Image, Scene};
 use app_core::things::{Mark, Things};
-use glam::UVec2;
+use glam::{DMat4, UVec2};
 use measure::random::Random;
 
-use super::bundled::SESSION;
+use super::bundled::{SESSION, middle};
 
 /// A rectangle of the bundled picture: its first pixel, and the one after its last.
 type Rect = [UVec2; 2];
 
 /// In the shadow, away from the toy.
 const IN_SHADOW: Rect = [UVec2::new(365, 220), UVec2::new(415, 262)];
-const SKIN: [u8; 3] = [20, 120, 130];
+const TEAL: [u8; 3] = [20, 120, 130];
 
 /// A hand on the table, whose left end is at a column.
 fn hand(left_px: u32) -> Rect {
@@ -34,8 +34,8 @@ fn painted(image: &Image, rect: Rect) -> Image {
         let first = 4 * (at.y * image.width_px + at.x) as usize;
         // Not of one code, as no object is.
         let grain = ((7 * at.x + 13 * at.y) % 5) as u8;
-        for (code, skin) in image.rgba8[first..first + 3].iter_mut().zip(SKIN) {
-            *code = skin + grain;
+        for (code, color) in image.rgba8[first..first + 3].iter_mut().zip(TEAL) {
+            *code = color + grain;
         }
     }
     image
@@ -108,7 +108,7 @@ fn a_picture_of_another_camera_is_searched_though_it_looks_the_same() {
     assert!(matches!(look(&input), Watched::Things(_)));
     assert!(matches!(look(&input), Watched::Unchanged(_)));
     let mut camera = input.camera;
-    camera.world_from_camera *= glam::DMat4::from_translation(glam::DVec3::X * 1e-3);
+    camera.world_from_camera *= DMat4::from_translation(glam::DVec3::X * 1e-3);
     assert!(matches!(
         look(&input.clone().with_camera(camera)),
         Watched::Things(_)
@@ -169,13 +169,13 @@ fn a_hand_in_a_picture_of_two_megapixels_is_found_where_it_is() {
     assert!((focal_px / of_session_px - scale).abs() < 1e-6, "{focal_px}");
 }
 
-/// The picture with noise of three codes.
-fn noisy(image: &Image, random: &mut Random) -> Image {
+/// The picture with noise of so many codes.
+fn noisy(image: &Image, codes: f64, random: &mut Random) -> Image {
     let mut image = image.clone();
     for pixel in image.rgba8.chunks_exact_mut(4) {
         for code in &mut pixel[..3] {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a code")]
-            let noisy = (f64::from(*code) + 3.0 * random.normal())
+            let noisy = (f64::from(*code) + codes * random.normal())
                 .round()
                 .clamp(0.0, 255.0) as u8;
             *code = noisy;
@@ -193,7 +193,9 @@ fn no_mark_flickers_where_nothing_changes() {
     let frame = painted(input.image.rgba(), IN_SHADOW);
     let mut observer = Observer::default();
     let mut look = || {
-        let input = input.clone().with_image(Arc::new(noisy(&frame, &mut random)));
+        let input = input
+            .clone()
+            .with_image(Arc::new(noisy(&frame, 3.0, &mut random)));
         observer.observed(&scene, &input).unwrap().things.unwrap()
     };
     let mut before = look();
@@ -209,4 +211,87 @@ fn no_mark_flickers_where_nothing_changes() {
         );
         before = now;
     }
+}
+
+/// A turn about the toy's own centre leaves that where it was, but its shadow moves: no mark of before stays.
+#[test]
+fn marks_of_a_toy_that_was_turned_are_those_of_its_new_place() {
+    let (conditions, input) = aligned();
+    let image = Arc::new(painted(input.image.rgba(), IN_SHADOW));
+    let turned = {
+        let at = middle(&input.world_from_object);
+        let turn = DMat4::from_translation(at)
+            * DMat4::from_rotation_y(10f64.to_radians())
+            * DMat4::from_translation(-at);
+        input
+            .clone()
+            .with_image(Arc::clone(&image))
+            .with_world_from_object(turn * input.world_from_object)
+    };
+    let alone = things(ThingWatcher::default().look(&conditions, &turned).unwrap());
+    let mut watcher = ThingWatcher::default();
+    watcher.look(&conditions, &input.with_image(image)).unwrap();
+    let after = things(watcher.look(&conditions, &turned).unwrap());
+    assert_eq!(marks(&after), marks(&alone));
+}
+
+/// Marks of another scene are none of this one's.
+#[test]
+fn marks_in_another_scene_are_its_own() {
+    let (conditions, input) = aligned();
+    let (mut other, _) = SESSION.clone();
+    other.plates[0].image = Arc::new(painted(&other.plates[0].image, IN_SHADOW));
+    let mut aligner = Aligner::new(other);
+    aligner.align(&SESSION.1).unwrap();
+    let others = aligner.conditions().unwrap();
+    let seen = input
+        .clone()
+        .with_image(Arc::new(painted(input.image.rgba(), IN_SHADOW)));
+    let alone = things(ThingWatcher::default().look(&others, &seen).unwrap());
+    let mut watcher = ThingWatcher::default();
+    watcher.look(&conditions, &seen).unwrap();
+    let after = things(watcher.look(&others, &seen).unwrap());
+    assert_eq!(marks(&after), marks(&alone));
+}
+
+fn marks(things: &Option<Things>) -> Option<&[Mark]> {
+    things.as_ref().map(Things::marks)
+}
+
+/// A picture that shows the same is searched again if an alignment has measured another softness.
+#[test]
+fn another_softness_is_another_condition() {
+    let (scene, input) = &*SESSION;
+    let mut aligner = Aligner::new(Scene::clone(scene));
+    let alignment = aligner.align(input).unwrap();
+    let sharp = aligner.conditions().unwrap();
+    let soft = FrameInput::clone(input).with_image(Arc::new(softened(input.image.rgba())));
+    aligner.align(&soft).unwrap();
+    let soft = aligner.conditions().unwrap();
+    let input = alignment.applied_to(input);
+    let mut watcher = ThingWatcher::default();
+    watcher.look(&sharp, &input).unwrap();
+    assert!(matches!(
+        watcher.look(&sharp, &input).unwrap(),
+        Watched::Unchanged(_)
+    ));
+    assert!(matches!(watcher.look(&soft, &input).unwrap(), Watched::Things(_)));
+}
+
+/// The picture with the mean of the nine pixels around each one.
+fn softened(image: &Image) -> Image {
+    let mut soft = image.clone();
+    let width = image.width_px as usize;
+    for y in 1..image.height_px as usize - 1 {
+        for x in 1..width - 1 {
+            for channel in 0..3 {
+                let at = |k: usize| 4 * ((y + k / 3 - 1) * width + x + k % 3 - 1) + channel;
+                let sum: u32 = (0..9).map(|k| u32::from(image.rgba8[at(k)])).sum();
+                #[allow(clippy::cast_possible_truncation, reason = "a mean of codes")]
+                let mean = (sum / 9) as u8;
+                soft.rgba8[at(4)] = mean;
+            }
+        }
+    }
+    soft
 }

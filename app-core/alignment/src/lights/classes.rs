@@ -309,19 +309,14 @@ struct Mixture<'a> {
 
 impl<'a> Mixture<'a> {
     fn new(shadows: &Shadows<'_>, taken: &'a [Vec<f32>], size_px: IVec2) -> Self {
-        let compared = shadows.pixels.iter().enumerate().map(|(index, pixel)| {
-            let noises = [0, 1, 2].map(|channel| {
-                noise_deviation(pixel.frame[channel]) / pixel.plate[channel].max(f32::MIN_POSITIVE)
-            });
-            Compared {
-                at: pixel.at,
-                on: pixel.receiver,
-                ratio: [1.0; 3],
-                model: [1.0; 3],
-                blocked: array::from_fn(|lamp| taken.get(lamp).map_or(0.0, |taken| taken[index])),
-                noises,
-                receiver: FIRST_PRIOR,
-            }
+        let compared = shadows.pixels.iter().enumerate().map(|(index, pixel)| Compared {
+            at: pixel.at,
+            on: pixel.receiver,
+            ratio: [1.0; 3],
+            model: [1.0; 3],
+            blocked: array::from_fn(|lamp| taken.get(lamp).map_or(0.0, |taken| taken[index])),
+            noises: [0.0; 3],
+            receiver: FIRST_PRIOR,
         });
         Self {
             taken,
@@ -345,6 +340,10 @@ impl<'a> Mixture<'a> {
                 both
             });
             compared.ratio = [0, 1, 2].map(|channel| ratio[channel] / of_channels[channel].0);
+            compared.noises = [0, 1, 2].map(|channel| {
+                let plate = pixel.plate[channel] * of_channels[channel].0;
+                noise_deviation(pixel.frame[channel]) / plate.max(f32::MIN_POSITIVE)
+            });
             compared.model = of_channels.map(|(gain, lit)| lit / gain);
         }
     }

@@ -1,5 +1,7 @@
 //! The conditions of a photograph: its softness, and the other things in it.
 
+use std::sync::Arc;
+
 use glam::DMat4;
 
 use super::{MOST_OUTLINE_PX, Photograph, base};
@@ -48,7 +50,7 @@ impl Photograph {
     /// The same place and camera with other pictures.
     fn with_pictures(&self, pyramid: Pyramid) -> Self {
         Self {
-            pyramid,
+            pyramid: Arc::new(pyramid),
             receivers: self.receivers.clone(),
             camera_from_world: self.camera_from_world,
         }
@@ -226,18 +228,16 @@ impl Photograph {
         )
     }
 
-    /// Softness for given camera and pose.
+    /// Softness for given camera and pose, and whether the toy's outline is seen at its place.
     pub(crate) fn sharpness_as_given(
         &self,
         scene: &Scene,
         world_from_object: &DMat4,
-    ) -> Result<Sharpness, ToyError> {
+    ) -> Result<(Sharpness, bool), ToyError> {
         let start = self.start(scene, *world_from_object)?;
-        let picture_px = self.pyramid.picture_px();
-        let most_px = MOST_OUTLINE_PX / picture_px;
-        let outline_px = pose::spread_px(start.subject(), &self.pyramid, most_px);
-        let outline_px = outline_px.map(|px| px * picture_px);
-        self.sharpness(scene, world_from_object, outline_px)
+        let outline = pose::OutlineBlur::new(start.subject(), &self.pyramid);
+        let outline_px = outline.spread_px(MOST_OUTLINE_PX / self.pyramid.picture_px());
+        Ok((self.sharpness_beside(&outline, outline_px), outline_px.is_some()))
     }
 
     /// The softness around a toy at its place, whose outline has the given blur in pixels; `None`
@@ -248,21 +248,28 @@ impl Photograph {
         world_from_object: &DMat4,
         outline_px: Option<f64>,
     ) -> Result<Sharpness, ToyError> {
-        let shape = self.shape(scene, world_from_object)?;
+        let start = self.start(scene, *world_from_object)?;
+        let outline = pose::OutlineBlur::new(start.subject(), &self.pyramid);
+        Ok(self.sharpness_beside(&outline, outline_px.map(|px| px / self.pyramid.picture_px())))
+    }
+
+    /// The same for an outline whose blur is in pixels of the largest level.
+    fn sharpness_beside(&self, outline: &pose::OutlineBlur<'_>, outline_px: Option<f64>) -> Sharpness {
         let (level, picture_px) = (self.pyramid.level(0), self.pyramid.picture_px());
-        let outline_px = outline_px.map(|px| px / picture_px);
-        // A scene whose toy has no start has failed above.
-        let start = || self.start(scene, *world_from_object).ok();
-        let outline = softness::Outline {
-            px: outline_px,
-            directed: &|| pose::directed_spread(start()?.subject(), &self.pyramid),
-            beyond_px: &|known| Some(pose::beyond_px(start()?.subject(), &self.pyramid, known)),
-        };
-        let in_level = softness::sharpness(level, &pose::covered(&shape, level), &outline);
+        let coverage = pose::covered(outline.shape(), level);
+        let in_level = softness::sharpness(
+            level,
+            &coverage,
+            &softness::Outline {
+                px: outline_px,
+                directed: &|| outline.directed(),
+                beyond_px: &|known| outline.beyond_px(known),
+            },
+        );
         let in_picture = |spread: Spread| spread.times(picture_px * picture_px);
-        Ok(Sharpness {
+        Sharpness {
             plate_spread: in_picture(in_level.plate_spread),
             outline_spread: in_picture(in_level.outline_spread),
-        })
+        }
     }
 }

@@ -75,7 +75,9 @@ pub(crate) fn adapt(
             0 => Viewpoint::sharp(&now, pyramid),
             _ => Viewpoint::new(&now, pyramid),
         };
-        let Some(field) = viewpoint.field(skin, (&now, &displacements_m)) else {
+        let measured = viewpoint.measured(&now);
+        let field = measured.and_then(|measured| viewpoint.field(skin, (&now, &displacements_m), &measured));
+        let Some(field) = field else {
             return Ok(None);
         };
         if round > 0 && field.evidence < 0.0 {
@@ -86,9 +88,10 @@ pub(crate) fn adapt(
     }
     // The camera's edge response is known best at a matching outline.
     let viewpoint = Viewpoint::new(&now, pyramid);
-    let field = viewpoint.field(skin, (given, &as_given));
-    let measured = [given, &now].map(|surface| viewpoint.measured(surface));
-    let (Some(field), [Some(before), Some(after)]) = (field, measured) else {
+    let [Some(before), Some(after)] = [given, &now].map(|surface| viewpoint.measured(surface)) else {
+        return Ok(None);
+    };
+    let Some(field) = viewpoint.field(skin, (given, &as_given), &before) else {
         return Ok(None);
     };
     let misfits = [&before, &after].map(|measured| Misfit::of(measured, Misfit::ROBUST_PX));
@@ -144,11 +147,15 @@ impl<'a> Viewpoint<'a> {
         })
     }
 
-    /// The field of a surface with the given present displacements.
-    fn field(&self, skin: Skin<'_>, (surface, displacements_m): (&Surface, &[DVec3])) -> Option<Field> {
+    /// The field of a surface with the given present displacements, and of its measured outline.
+    fn field(
+        &self,
+        skin: Skin<'_>,
+        (surface, displacements_m): (&Surface, &[DVec3]),
+        measured: &[Measured],
+    ) -> Option<Field> {
         let k = &self.pyramid.level(0).intrinsics;
-        let measured = self.measured(surface)?;
-        let segments = ContourSegment::all(&measured, (&surface.0, displacements_m), k);
+        let segments = ContourSegment::all(measured, (&surface.0, displacements_m), k);
         let camera = Camera {
             alike_px: AS_A_RULE * most_model_px(0.0) + OF_SPREAD * self.optics.spread_px,
             cell_px: cell_px(measured.len()),

@@ -64,18 +64,23 @@ impl<'a> Pieces<'a> {
 
     /// The blur that explains them best, in pixels, and what it leaves; 0 if they are as sharp.
     pub(super) fn blur(&self) -> (f64, f64) {
-        let (spread_px, misfit) = self.blur_beside(Spread::NONE);
+        let sharp = self.misfit_of(Spread::NONE);
+        let (spread_px, misfit) = self.blur_beyond(Spread::NONE, sharp);
         if self.are_softer(spread_px) {
             (spread_px, misfit)
         } else {
-            (0.0, self.misfit_of(Spread::NONE))
+            (0.0, sharp)
         }
     }
 
     /// The round blur beside a known one that explains them best, in pixels, and what both leave; 0 if
     /// it explains no more.
     pub(super) fn blur_beside(&self, known: Spread) -> (f64, f64) {
-        let of_known = self.misfit_of(known);
+        self.blur_beyond(known, self.misfit_of(known))
+    }
+
+    /// The same, given what the known one leaves.
+    fn blur_beyond(&self, known: Spread, of_known: f64) -> (f64, f64) {
         let (spread_px, of_both) = least((LEAST_SPREAD_PX, MOST_SPREAD_PX), |px| {
             self.misfit_of(known.and(Spread::round(px)))
         });

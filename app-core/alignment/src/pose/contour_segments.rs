@@ -49,7 +49,7 @@ pub(super) fn cell_px(n_pieces: usize) -> f64 {
 }
 
 impl ContourSegment {
-    /// Sightings of an outline that was measured with a displaced shape.
+    /// Segments of an outline that was measured with a displaced shape.
     pub(super) fn all(
         measured: &[Measured],
         (shape, displacements_m): (&Shape, &[DVec3]),

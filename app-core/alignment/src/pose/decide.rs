@@ -10,7 +10,7 @@ use super::placement::{Information, Placement, SIZE};
 use super::settle::{Balance, Known, LEAST_EVIDENCE, Misfit, smoothed_px};
 use super::standing::{Ground, Plane, Standing};
 use super::texture::{LAST_SPREAD, Likeness, Texture};
-use super::{Beside, Element, FINE, Fit, Found, Search, Subject, WIDE, enough};
+use super::{FINE, Fit, Found, Posed, Search, Subject, WIDE, enough};
 use crate::picture::Level;
 use crate::report::{PoseDeviation, most_model_px};
 use crate::rigid_motion::RigidMotion;
@@ -148,12 +148,15 @@ impl Search<'_> {
         let light = self.light(paint, &Placement::of(motion));
         let lit = light.as_ref().map(|light| Lit { paint, light });
         let start = Placement::of(self.fine(motion, lit, wide_bands())?);
-        let explained = self.explained(paint, &start);
+        let (explained, _) = self.explained(paint, &start);
         // The effects of camera and light on the outline are measured best near a match.
         let start = self.settled(explained.seen(paint), &start, None)?.placement;
-        let (start, explained) = self.explaining(paint, start);
+        let (start, (explained, posed)) = self.explaining(paint, start);
         let seen = explained.seen(paint);
-        let texture = seen.lit.and_then(|lit| self.texture(lit, &start));
+        let texture = posed
+            .shaded
+            .as_ref()
+            .and_then(|shaded| Texture::new(shaded, self.pyramid.level(0), &posed.coverage));
         let (seen, free) = self.textured(seen, texture.as_ref(), &start)?;
         let standing = ground.and_then(|Ground { plane, .. }| Standing::on(shape, plane));
         let is_upright = |plane: &Plane| {
@@ -297,28 +300,9 @@ impl Search<'_> {
         self.settled(seen, &free.placement, Some((&heights, SizeOf::Given)))
     }
 
-    /// A measurement of the pixels beside the outline.
-    pub(super) fn of_outline<T>(
-        &mut self,
-        (paint, placement): (&Paint, &Placement),
-        measure: impl Fn(&Beside<'_>, &[Element]) -> T,
-    ) -> T {
-        let explained = self.explained(paint, placement);
-        let posed = self.posed(placement, explained.seen(paint).lit);
-        let softened = self.softened.as_ref().map(|(level, _)| level);
-        let level = softened.unwrap_or_else(|| self.pyramid.level(0));
-        measure(&posed.beside(level), &posed.elements)
-    }
-
     pub(super) fn light(&mut self, paint: &Paint, placement: &Placement) -> Option<Light> {
         let posed = self.posed(placement, None);
         paint.light(placement, self.pyramid.level(0), &posed.coverage)
-    }
-
-    /// The model's paint near the toy's pose; `None` if it has no texture there.
-    fn texture(&mut self, lit: Lit<'_>, placement: &Placement) -> Option<Texture> {
-        let posed = self.posed(placement, Some(lit));
-        Texture::new(posed.shaded.as_ref()?, self.pyramid.level(0), &posed.coverage)
     }
 
     /// Estimates the pose freely, by the outline and by the toy's texture if it is the model's. It
@@ -352,25 +336,28 @@ impl Search<'_> {
     /// codes beside its outline are explained better by a sharp picture: where the toy is as bright as
     /// the table, such rounds slide off a given pose that is right. A blur explains a poor model, too.
     ///
-    /// Measured: with the toy pushed aside in the plate, a pale llama on dark wood had 10.0/23.2/29.5
-    /// (shadow/toy/edge) without it, and 3.3/5.0/10.1 with it.
-    fn explaining(&mut self, paint: &Paint, found: Placement) -> (Placement, Explained) {
+    /// Measured: with the toy pushed aside in the plate, a pale llama on dark wood had RMS errors of 10.0/23.2/29.5
+    /// codes (shadow/toy/edge) without it, and 3.3/5.0/10.1 with it.
+    fn explaining<'a>(&mut self, paint: &'a Paint, found: Placement) -> (Placement, (Explained, Posed<'a>)) {
         let given = Placement::of(RigidMotion::none(self.shape.centre, self.shape.radius_m));
         let by_given = self.explained(paint, &given);
         let softened = self.softened.take();
         let by_found = self.explained(paint, &found);
-        if by_given.optics.spread_px < blur::SOFT_PX && by_given.misfit < by_found.misfit {
+        if by_given.0.optics.spread_px < blur::SOFT_PX && by_given.0.misfit < by_found.0.misfit {
             self.softened = softened;
             return (given, by_given);
         }
         (found, by_found)
     }
 
-    /// Light and camera at a placement; if it is soft, with a blurred or the original plate, whichever
-    /// explains more.
-    pub(super) fn explained(&mut self, paint: &Paint, placement: &Placement) -> Explained {
-        let light = self.light(paint, placement);
-        let posed = self.posed(placement, light.as_ref().map(|light| Lit { paint, light }));
+    /// Light and camera at a placement, and the toy there in that light; if it is soft, with a blurred or
+    /// the original plate, whichever explains more.
+    pub(super) fn explained<'a>(
+        &mut self,
+        paint: &'a Paint,
+        placement: &Placement,
+    ) -> (Explained, Posed<'a>) {
+        let posed = self.lit(paint, placement);
         let sharp = self.pyramid.level(0);
         let found = |level: &Level| blur::optics(&posed.beside(level), &posed.elements);
         self.softened = None;
@@ -384,11 +371,12 @@ impl Search<'_> {
                 (optics, misfit) = (of_softened, its_misfit);
             }
         }
-        Explained {
-            light,
+        let explained = Explained {
+            light: posed.shaded.as_ref().map(|shaded| shaded.light().clone()),
             optics,
             misfit,
-        }
+        };
+        (explained, posed)
     }
 
     /// The pieces measured by codes or by area; `None` if there are too few.
@@ -446,9 +434,10 @@ impl Search<'_> {
         };
         let depth_m = -placement.motion.centre().z;
         let balance = Balance::new((&measured, rows(usize::MAX, &placement)), &placement, known);
+        let covariance = balance.covariance();
         Some(Settled {
-            deviation: balance.deviation(misfit.loss_px2.sqrt(), depth_m),
-            covariance: balance.covariance(),
+            deviation: balance.deviation(&covariance, (misfit.loss_px2.sqrt(), depth_m)),
+            covariance,
             misfit,
             placement,
             measured,

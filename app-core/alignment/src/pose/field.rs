@@ -62,7 +62,7 @@ pub(super) struct Camera {
     pub(super) alike_px: f64,
     /// Side of a pixel at the toy's distance.
     pub(super) pixel_m: f64,
-    /// Side of the squares of a sighting.
+    /// Side of the squares of a segment.
     pub(super) cell_px: f64,
 }
 
@@ -143,7 +143,7 @@ impl<'a> Process<'a> {
         &self.unit[prior.length] * prior.deviation_m.powi(2)
     }
 
-    /// Covariance of the noise, if neighbouring pieces are correlated over `alike` sightings.
+    /// Covariance of the noise, if neighbouring pieces are correlated over `alike` segments.
     fn noise(&self, robust: &[f64], alike: f64) -> DMatrix<f64> {
         let mut noise = self.common.clone();
         for (index, (one, weight)) in self.segments.iter().zip(robust).enumerate() {

@@ -22,6 +22,7 @@ mod lines;
 mod matte;
 mod motion;
 mod odds;
+mod outline_blur;
 mod owners;
 mod paint;
 mod placement;
@@ -41,7 +42,6 @@ use super::report::{PoseDeviation, Stand, most_model_px};
 use super::rigid_motion::{Matrix6, RigidMotion};
 use super::shape::Shape;
 use app_scene::scene::{Intrinsics, PoseUncertainty};
-use app_scene::sharpness::Spread;
 use contour::{Element, contour};
 use matte::Band;
 use motion::{Held, Measured, solve};
@@ -53,6 +53,7 @@ use sides::Beside;
 
 pub(super) use blur::SOFT_PX;
 pub(super) use directed::Directed;
+pub(super) use outline_blur::OutlineBlur;
 pub(super) use paint::{Paint, Surfel};
 pub use regions::ViewDirection;
 pub(super) use regions::{Standing, TINY_PIXELS, changed, guesses, standing_guesses};
@@ -224,41 +225,6 @@ pub(super) fn tried(shape: &Shape, pyramid: &Pyramid, start: Start) -> Option<(D
     Some((motion.matrix(), fit.outline_px()))
 }
 
-/// Standard deviation of the camera's blur of the outline of a toy in its place, in pixels of the
-/// largest level; `None` if too little of the outline is visible, or if it is more than `most_px`
-/// from the picture's, which looks like a blur.
-pub(super) fn spread_px(subject: Subject<'_>, pyramid: &Pyramid, most_px: f64) -> Option<f64> {
-    let shape = subject.shape;
-    let mut search = Search::new(shape, pyramid, &PoseUncertainty::default());
-    let placement = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
-    let fit = search.fit(&placement)?;
-    (fit.outline_px() <= most_px).then(|| search.explained(subject.paint, &placement).optics.spread_px)
-}
-
-/// The camera's blur of the outline by direction, as [`spread_px`]; `None` if too few directions tell.
-pub(super) fn directed_spread(subject: Subject<'_>, pyramid: &Pyramid) -> Option<Directed> {
-    of_outline(subject, pyramid, directed::directed)
-}
-
-/// Standard deviation of a round blur of the outline beside a known one, in pixels of the largest
-/// level.
-pub(super) fn beyond_px(subject: Subject<'_>, pyramid: &Pyramid, known: Spread) -> f64 {
-    of_outline(subject, pyramid, |beside, elements| {
-        directed::beyond(beside, elements, known)
-    })
-}
-
-fn of_outline<T>(
-    subject: Subject<'_>,
-    pyramid: &Pyramid,
-    measure: impl Fn(&Beside<'_>, &[Element]) -> T,
-) -> T {
-    let shape = subject.shape;
-    let mut search = Search::new(shape, pyramid, &PoseUncertainty::default());
-    let placement = Placement::of(RigidMotion::none(shape.centre, shape.radius_m));
-    search.of_outline((subject.paint, &placement), measure)
-}
-
 /// The pixels of a level that a shape covers.
 pub(super) fn covered(shape: &Shape, level: &Level) -> Coverage {
     let corners = project(shape.points.iter().copied(), &level.intrinsics);
@@ -339,6 +305,17 @@ impl<'a> Search<'a> {
         let (coverage, elements) = self.outline(placement, level);
         Posed {
             shaded: lit.map(|lit| lit.shaded(placement, level, &coverage)),
+            coverage,
+            elements,
+        }
+    }
+
+    /// The toy in its estimated place, in the light that the photograph shows on it.
+    fn lit<'b>(&mut self, paint: &'b Paint, placement: &Placement) -> Posed<'b> {
+        let level = self.pyramid.level(0);
+        let (coverage, elements) = self.outline(placement, level);
+        Posed {
+            shaded: paint.lit(placement, level, &coverage),
             coverage,
             elements,
         }

@@ -82,13 +82,21 @@ impl Paint {
     /// light of `level`; `None` if too little of it is visible.
     pub(crate) fn shown(&self, level: &Level, coverage: &Coverage) -> Option<Vec<Option<Color>>> {
         let placement = Placement::of(RigidMotion::none(DVec3::ZERO, 1.0));
-        let light = self.light(&placement, level, coverage)?;
-        let shaded = Lit {
-            paint: self,
-            light: &light,
-        }
-        .shaded(&placement, level, coverage);
+        let shaded = self.lit(&placement, level, coverage)?;
         Some(coverage.pixels().map(|at| shaded.at(at)).collect())
+    }
+
+    /// The predicted colours of the toy in its estimated place, in the light of `level`; `None` if too
+    /// little of it is visible.
+    pub(super) fn lit(
+        &self,
+        placement: &Placement,
+        level: &Level,
+        coverage: &Coverage,
+    ) -> Option<Shaded<'_>> {
+        let seen = self.seen(placement, &level.intrinsics, coverage);
+        let light = Light::fitted(&seen, level, coverage)?;
+        Some(Shaded { seen, light })
     }
 
     /// Pixels of the toy at its given place, at most `most` of them.
@@ -428,7 +436,7 @@ impl<'a> Lit<'a> {
     pub(super) fn shaded(self, placement: &Placement, level: &Level, coverage: &Coverage) -> Shaded<'a> {
         Shaded {
             seen: self.paint.seen(placement, &level.intrinsics, coverage),
-            light: self.light,
+            light: self.light.clone(),
         }
     }
 }
@@ -436,10 +444,14 @@ impl<'a> Lit<'a> {
 /// Predicted colours of the toy, over a rectangle of the picture.
 pub(super) struct Shaded<'a> {
     seen: Seen<'a>,
-    light: &'a Light,
+    light: Light,
 }
 
 impl Shaded<'_> {
+    pub(super) fn light(&self) -> &Light {
+        &self.light
+    }
+
     /// `None` if the toy does not cover the pixel's centre.
     pub(super) fn at(&self, at: IVec2) -> Option<Color> {
         self.seen.at(at).map(|surface| self.light.shade(&surface))

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 use glam::{DMat4, DQuat, DVec2, DVec3, IVec2};
 
 use super::odds::logarithms;
+use crate::median::median;
 use crate::picture::{Color, Level, index_in, places};
 use crate::raster::{Rasterizer, project};
 use crate::shape::Shape;
@@ -398,9 +399,8 @@ pub(crate) fn changed(level: &Level) -> Vec<IVec2> {
         .filter_map(|at| Some((at, logarithms(level, at)?.1)))
         .collect();
     let median = [0, 1, 2].map(|channel| {
-        let mut values: Vec<f32> = ratios.iter().map(|(_, ratio)| ratio[channel]).collect();
-        values.sort_by(f32::total_cmp);
-        values.get(values.len() / 2).copied().unwrap_or(0.0)
+        let values = ratios.iter().map(|(_, ratio)| ratio[channel]);
+        median(values, f32::total_cmp).unwrap_or(0.0)
     });
     let is_changed = |ratio: &Color| (0..3).any(|channel| (ratio[channel] - median[channel]).abs() > CHANGED);
     let changed = ratios

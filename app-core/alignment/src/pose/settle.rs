@@ -9,6 +9,7 @@ use super::motion::Measured;
 use super::placement::{Information, OFFSET, Placement, SIZE, Unknowns};
 use super::standing::{DEVIATION_M, Standing};
 use super::texture::{self, Likeness};
+use crate::median::median;
 use crate::report::PoseDeviation;
 use crate::robust;
 use app_scene::scene::Intrinsics;
@@ -175,9 +176,12 @@ impl<'a> Balance<'a> {
     }
 
     /// Standard deviation of the placement, whose outline has the given root mean square distance
-    /// in pixels: by the scatter of residuals between parts of the picture, and by the misfit.
-    pub(super) fn deviation(&self, misfit_px: f64, depth_m: f64) -> PoseDeviation {
-        let covariance = self.covariance();
+    /// in pixels: by its covariance, and by the misfit.
+    pub(super) fn deviation(
+        &self,
+        covariance: &Information,
+        (misfit_px, depth_m): (f64, f64),
+    ) -> PoseDeviation {
         let root = |index: usize| OF_BLOCKS * covariance[(index, index)].max(0.0).sqrt();
         let floor_m = OF_MISFIT * misfit_px * depth_m / self.known.k.fx_px;
         PoseDeviation {
@@ -215,9 +219,7 @@ fn block(at_px: DVec2) -> IVec2 {
 
 /// Scale of the weights: far above the median, a residual is an outlier.
 fn robust_px(residuals_px: impl Iterator<Item = f64>, most_px: f64) -> f64 {
-    let mut away_px: Vec<f64> = residuals_px.map(f64::abs).collect();
-    away_px.sort_by(f64::total_cmp);
-    let median_px = away_px.get(away_px.len() / 2).copied().unwrap_or(most_px);
+    let median_px = median(residuals_px.map(f64::abs), f64::total_cmp).unwrap_or(most_px);
     (ROBUST * median_px).clamp(LEAST_ROBUST_PX, most_px)
 }
 

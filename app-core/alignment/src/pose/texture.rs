@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3, IVec2};
 
 use super::paint::Shaded;
 use super::placement::{Placement, Unknowns};
-use crate::median::DEVIATION_OF_MEDIAN;
+use crate::median::{DEVIATION_OF_MEDIAN, median};
 use crate::picture::{Color, Level, Picture, UNKNOWN, places};
 use crate::raster::{Coverage, project};
 use crate::robust;
@@ -323,15 +323,9 @@ impl<'a> Compared<'a> {
 
     /// Sets weights from each value's distance from the majority.
     fn weigh(&mut self) {
-        let mut away: Vec<f64> = self
-            .excess
-            .iter()
-            .flatten()
-            .flatten()
-            .map(|excess| excess.abs())
-            .collect();
-        away.sort_by(f64::total_cmp);
-        let median = away.get(away.len() / 2).copied().unwrap_or(LEAST_DEVIATION);
+        let excess = self.excess.iter().flatten().flatten();
+        let away = median(excess.map(|excess| excess.abs()), f64::total_cmp);
+        let median = away.unwrap_or(LEAST_DEVIATION);
         let deviation = (DEVIATION_OF_MEDIAN * median).max(LEAST_DEVIATION);
         self.variance = deviation * deviation;
         let scale = (ROBUST * deviation).powi(2);

@@ -96,7 +96,7 @@ fn add<E>(tried: &mut Vec<Tried>, at: f64, loss: &mut impl FnMut(f64) -> Result<
     Ok(())
 }
 
-/// The middle one of equal minima; of three or more trials.
+/// The first one of equal minima; of three or more trials.
 fn place_of_least(tried: &[Tried]) -> usize {
     let least = tried
         .iter()

@@ -51,7 +51,9 @@ fn of_texture([frame, plate]: &[Grey; 2], is_used: &[bool], outline: Option<Spre
         let kernel = Kernel::new(spread);
         let sums = Sums::new(frame, &kernel.of(plate), is_used);
         let (change, is_known) = sums.step(kernel.spread, outline)?;
-        let most_px2 = change.xx_px2.abs().max(change.yy_px2.abs());
+        let most_px2 = [change.xx_px2, change.xy_px2, change.yy_px2]
+            .into_iter()
+            .fold(0.0, |most: f64, change| most.max(change.abs()));
         let part = MOST_STEP_PX2 / most_px2.max(MOST_STEP_PX2);
         spread = valid(kernel.spread.and(change.times(part)));
         if most_px2 < LAST_STEP_PX2 || k + 1 == N_STEPS {
@@ -197,12 +199,13 @@ impl Sums {
             .sqrt();
         let texture = self.light2 - self.light * self.light / self.n;
         let is_known = worst_px2 <= KNOWN_PX2 && self.residual2 <= (1.0 - CORRELATION) * texture;
+        let is_finite = change.iter().all(|change| change.is_finite());
         let change = Spread {
             xx_px2: change[0],
             xy_px2: change[1],
             yy_px2: change[2],
         };
-        change.xx_px2.is_finite().then_some((change, is_known))
+        is_finite.then_some((change, is_known))
     }
 }
 

@@ -1,5 +1,5 @@
-//! Finds a plane by the toy's shadow alone, of a thing that does not grow to its edges since its colours
-//! are the place's, or beyond them over its own shadow.
+//! Finds a plane by the toy's shadow alone, for things whose outline by colour is wrong: too small, because
+//! they look like the table, or too large, because their own shadow is included.
 //!
 //! The first plane comes from the few pixels that are certainly of the thing. Where the
 //! shadow on the plane would differ from that on the receiver, the picture shows which of both a pixel
@@ -45,9 +45,8 @@ pub(super) fn found(
         let surroundings = Surroundings::new(outline.level, &endless, (middle, REACH * search.size_m))?;
         let extent = surroundings.extent(&evidence)?;
         search = search.over(&extent.plane(&endless));
-        let start = (candidate.loss, candidate.heights);
-        let level = (candidate.loss, [candidate.heights[0], 0.0, 0.0]);
-        candidate = search.refined(raster, &[level], &[start])?;
+        let start = candidate.heights;
+        candidate = search.refined(raster, &[[start[0], 0.0, 0.0]], &[start])?;
         if !is_level {
             // With pixels beside the plane, such as those of a face below it, a descent may have ended
             // elsewhere: the search begins anew.
@@ -99,6 +98,8 @@ impl Search<'_> {
         let plane = self.plane(&candidate.heights);
         let depth = self.depth(&self.ratios(raster, &plane));
         let pixels = certain(self.comparison);
+        // What is surely explained, and what is surely not, is as for the seeds of things.
+        let [explained, unexplained] = [EXPLAINED, UNEXPLAINED].map(|away| f64::from(away).powi(2));
         let places: Vec<IVec2> = pixels.iter().map(|pixel| pixel.at).collect();
         let ratios = self.on_plane.ratios(raster, &plane, &places);
         let evidence = pixels.iter().zip(ratios).filter_map(|(pixel, of_plane)| {
@@ -106,8 +107,6 @@ impl Search<'_> {
             let seen = (pixel.ratio, pixel.noise());
             let [known, new] = [(pixel.model, 1.0), (of_plane, depth)]
                 .map(|(expected, depth)| square(&seen, expected, depth));
-            // What is surely explained, and what is surely not, is as for the seeds of things.
-            let [explained, unexplained] = [EXPLAINED, UNEXPLAINED].map(|away| f64::from(away).powi(2));
             let is_decided = known.min(new) < explained && known.max(new) > unexplained;
             let is_on_plane = new < known;
             let is_shadowed = brightness(&of_plane) < 1.0 - SHADOWED;

@@ -1,4 +1,4 @@
-//! Extent of a level plane whose colours are the place's, so that no thing grows to its edges: the
+//! Extent of a plane whose colours are the place's, so that no thing grows to its edges: the
 //! rectangle that has the colours of the pixels where the toy's shadow lies on the plane.
 //!
 //! Source: Rother et al. 2004 (GrabCut: the colours inside and outside are learned in turn), with a

@@ -52,33 +52,54 @@ pub(super) struct Grown {
     /// The thing of each pixel.
     thing: Vec<Option<u32>>,
     n_seeds: Vec<usize>,
-    /// Whether most pixels around each one have the place's colours in the plate.
-    is_like_place: Vec<bool>,
+    place: Place,
     /// Whether each pixel is of a thing's shadow.
     is_shadow: Vec<bool>,
     colors: Colors,
 }
 
+/// What things grow in, whatever the cost of their own steps.
+struct Place {
+    /// Each pixel's distance from the receiver's seeds.
+    from_receiver: Vec<f32>,
+    /// Whether most pixels around each one have the place's colours in the plate.
+    is_like: Vec<bool>,
+}
+
+impl Place {
+    /// The place of seeds of a kind; `None` if there are none.
+    fn of(seeds: &Seeds, kind: Seed, plate: &Codes) -> Option<Self> {
+        let colors = seeds.known_colors(kind);
+        seeds.seeds.contains(&kind).then(|| Self {
+            from_receiver: distances(seeds, (plate, colors), (Seed::Receiver, OF_STEP)),
+            is_like: like_place(seeds.size_px, plate, colors),
+        })
+    }
+}
+
 impl Grown {
     /// Grows from the seeds of a kind; `None` if there are none.
     pub(super) fn from(seeds: &Seeds, kind: Seed, plate: &Codes) -> Option<Self> {
-        Self::of_step(seeds, kind, plate, OF_STEP)
+        let place = Place::of(seeds, kind, plate)?;
+        Some(Self::within(place, (seeds, kind), plate, OF_STEP))
     }
 
     /// The same over all of a thing's uniform faces.
     pub(super) fn whole_from(seeds: &Seeds, kind: Seed, plate: &Codes) -> Option<Self> {
-        Self::of_step(seeds, kind, plate, OF_OWN_STEP)
+        let place = Place::of(seeds, kind, plate)?;
+        Some(Self::within(place, (seeds, kind), plate, OF_OWN_STEP))
     }
 
-    /// The same; `of_own` is the cost of a step between colours of the thing.
-    fn of_step(seeds: &Seeds, kind: Seed, plate: &Codes, of_own: f32) -> Option<Self> {
-        if !seeds.seeds.contains(&kind) {
-            return None;
-        }
-        let colors = &seeds.colors[usize::from(kind == Seed::WrongPlate)];
+    /// What grew from the seeds of a kind, grown over all of a thing's uniform faces.
+    pub(super) fn whole(self, seeds: &Seeds, kind: Seed, plate: &Codes) -> Self {
+        Self::within(self.place, (seeds, kind), plate, OF_OWN_STEP)
+    }
+
+    /// Grows in a place; `of_own` is the cost of a step between colours of the thing.
+    fn within(place: Place, (seeds, kind): (&Seeds, Seed), plate: &Codes, of_own: f32) -> Self {
+        let colors = seeds.known_colors(kind);
         let of_thing = distances(seeds, (plate, colors), (kind, of_own));
-        let of_receiver = distances(seeds, (plate, colors), (Seed::Receiver, OF_STEP));
-        let both = of_thing.iter().zip(&of_receiver);
+        let both = of_thing.iter().zip(&place.from_receiver);
         let nearer = both.map(|(thing, receiver)| receiver - thing);
         let nearer = without_holes(nearer.collect(), seeds);
         let groups = groups(seeds.size_px, |index| nearer[index] > 0.0);
@@ -90,15 +111,15 @@ impl Grown {
             }
             n_seeds.push(group.iter().filter(|index| seeds.seeds[**index] == kind).count());
         }
-        Some(Self {
+        Self {
             size_px: seeds.size_px,
             nearer,
             thing,
             n_seeds,
-            is_like_place: like_place(seeds.size_px, plate, colors),
+            place,
             is_shadow: vec![false; plate.pixels.len()],
             colors: colors.clone(),
-        })
+        }
     }
 
     /// Things of known pixels, each with the number of its seeds, in a place of unknown colours.
@@ -116,7 +137,10 @@ impl Grown {
             nearer,
             thing,
             n_seeds: groups.iter().map(|(n_seeds, _)| *n_seeds).collect(),
-            is_like_place: vec![false; n_pixels],
+            place: Place {
+                from_receiver: vec![FARTHEST; n_pixels],
+                is_like: vec![false; n_pixels],
+            },
             is_shadow: vec![false; n_pixels],
             colors: Colors::default(),
         }
@@ -151,7 +175,7 @@ impl Grown {
     /// Whether a place in pixels has the colours of the place below the things, such as a thing's
     /// shadow.
     pub(super) fn is_like_place(&self, place: DVec2) -> bool {
-        index_in(self.size_px, place.floor().as_ivec2()).is_some_and(|index| self.is_like_place[index])
+        self.index(place).is_some_and(|index| self.place.is_like[index])
     }
 
     /// Whether a colour in codes is a thing's own.

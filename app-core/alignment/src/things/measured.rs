@@ -15,9 +15,9 @@ use crate::median::{DEVIATION_OF_MEDIAN, median, part_of};
 const LEAST_POINTS: usize = 40;
 /// Distance of a point from the thing's outline, in pixels of the level: closer ones may be mixed.
 const WITHIN_PX: i32 = 3;
-/// Largest height of a point on the receiver, and its largest distance from the thing's middle, in
-/// metres.
-const ON_TABLE_M: f64 = 0.025;
+/// Largest height of a point on the receiver, in metres.
+pub(super) const ON_TABLE_M: f64 = 0.025;
+/// Largest distance of such a point from the thing's middle, in metres.
 const AROUND_M: f64 = 0.3;
 /// Least noise in metres.
 const LEAST_NOISE_M: f64 = 5e-4;

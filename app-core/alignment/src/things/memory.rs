@@ -12,7 +12,7 @@ use app_scene::scene::{Intrinsics, Light};
 use app_scene::things::{Mark, RaisedPoint};
 
 /// Evidence that a thing needs, over that of a single picture: one that had half of that evidence in
-/// the previous picture, and one that comes. One that was marked there needs [`HELD`].
+/// the previous picture, and one that no picture before showed. One that was marked there needs [`HELD`].
 const SEEN: f32 = 1.0;
 const NEW: f32 = 2.0;
 /// Share of a thing's pixels that the previous picture must have shown as a thing.
@@ -23,14 +23,17 @@ const SAME_VIEW_PX: f64 = 0.5;
 /// picture stays.
 const SAME_OUTLINE_PX: f64 = 3.0;
 
+/// Number of the toy's points by which a movement of it or of a part of it is told.
+const N_POINTS: usize = 64;
+
 /// Place from which a picture was taken, with the toy and the lights in it.
 #[derive(Clone, Debug)]
 pub(crate) struct Place {
-    pub(crate) intrinsics: Intrinsics,
-    pub(crate) world_from_camera: DMat4,
-    /// Toy in camera space.
-    pub(crate) middle: DVec3,
-    pub(crate) lights: Vec<Light>,
+    intrinsics: Intrinsics,
+    world_from_camera: DMat4,
+    /// Some points of the toy in camera space, the same for each pose.
+    toy: Vec<DVec3>,
+    lights: Vec<Light>,
 }
 
 /// The memory of a search.
@@ -200,21 +203,42 @@ impl Codes {
 }
 
 impl Place {
+    /// The place of a camera's picture, with a toy of these points in camera space.
+    pub(super) fn new(
+        (intrinsics, world_from_camera): (&Intrinsics, &DMat4),
+        points: &[DVec3],
+        lights: &[Light],
+    ) -> Self {
+        let stride = points.len().div_ceil(N_POINTS).max(1);
+        Self {
+            intrinsics: *intrinsics,
+            world_from_camera: *world_from_camera,
+            toy: points.iter().step_by(stride).copied().collect(),
+            lights: lights.to_vec(),
+        }
+    }
+
     /// Whether both pictures show the same view of the toy in the same light, within a part of a
     /// pixel.
     fn is_like(&self, other: &Self, size_px: IVec2) -> bool {
         let before_from_camera = self.world_from_camera.inverse() * other.world_from_camera;
         let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.5]];
+        let distance_m = other.toy.iter().map(|point| point.z.abs()).sum::<f64>() / other.toy.len() as f64;
         let is_still = |corner: [f64; 2]| {
             let at = glam::DVec2::from_array(corner) * size_px.as_dvec2();
-            let point = other.middle.z.abs() * other.intrinsics.ray(at);
+            let point = distance_m * other.intrinsics.ray(at);
             let there = self
                 .intrinsics
                 .pixel_of(before_from_camera.transform_point3(point));
             there.is_some_and(|there| there.distance(at) < SAME_VIEW_PX)
         };
-        let toy = [self, other].map(|place| place.intrinsics.pixel_of(place.middle));
-        let is_toy_still = matches!(toy, [Some(a), Some(b)] if a.distance(b) < SAME_VIEW_PX);
+        let is_toy_still = self.toy.len() == other.toy.len()
+            && self.toy.iter().zip(&other.toy).all(|(a, b)| {
+                match [self.intrinsics.pixel_of(*a), other.intrinsics.pixel_of(*b)] {
+                    [Some(a), Some(b)] => a.distance(b) < SAME_VIEW_PX,
+                    both => both == [None, None],
+                }
+            });
         self.lights == other.lights && is_toy_still && corners.into_iter().all(is_still)
     }
 }

@@ -64,7 +64,6 @@ use codes::Codes;
 use expected_light::ExpectedLight;
 use found::Found;
 use grown::Grown;
-use known::Known;
 use memory::Place;
 use pattern::Hidden;
 use planes::{FoundPlane, is_clearer};
@@ -145,12 +144,8 @@ impl Sight<'_> {
 
     /// The marks of a level's things; `None` if nothing is marked. And the memory for the next picture.
     fn sighted(&self, level: &Level, frame: &Codes, found: Found<'_>) -> (Option<Sighting>, Memory) {
-        let place = Place {
-            intrinsics: level.intrinsics,
-            world_from_camera: *self.world_from_camera,
-            middle: self.shape.centre,
-            lights: self.lights.to_vec(),
-        };
+        let camera = (&level.intrinsics, self.world_from_camera);
+        let place = Place::new(camera, &self.shape.points, self.lights);
         let memory = Memory::new(place, frame.clone(), found.known(frame.size_px));
         if found.is_empty() {
             return (None, memory);
@@ -199,7 +194,7 @@ impl Sight<'_> {
         let hidden = Hidden {
             level,
             receivers: self.receivers,
-            coverage: &Toy::of(self, level).coverage,
+            coverage: &toy::covered(self, level),
             marks,
         };
         hidden.completed()
@@ -224,12 +219,12 @@ impl Sight<'_> {
             Seeds::found(&compared.pixels, hidden, (frame, plate), colored)
         };
         let seeds = seeds_of(things);
-        let grown = Grown::from(&seeds, Seed::Thing, plate);
+        // The search in doubtful colours is for things without planes.
+        let planes_of = self.planes_of.filter(|_| things == Colored::Otherwise);
+        let grown = planes_of.and_then(|_| Grown::from(&seeds, Seed::Thing, plate));
         let wrong = Grown::from(&seeds, Seed::WrongPlate, plate);
         let needed = |grown: &Grown| self.needed(grown, level);
         let in_frame = toy.in_frame(&seeds, frame, needed);
-        // The search in doubtful colours is for things without planes.
-        let planes_of = self.planes_of.filter(|_| things == Colored::Otherwise);
         let planes = planes_of.map_or(Vec::new(), |colored| {
             let alike = (grown.is_none() && colored == Colored::Alike)
                 .then(|| Grown::from(&seeds_of(colored), Seed::Thing, plate))
@@ -240,10 +235,10 @@ impl Sight<'_> {
             };
             self.planes(things, grown.as_ref(), (level, toy), compared)
         });
-        let grown = if planes.is_empty() {
-            Grown::whole_from(&seeds, Seed::Thing, plate)
-        } else {
-            grown
+        let grown = match grown {
+            Some(grown) if planes.is_empty() => Some(grown.whole(&seeds, Seed::Thing, plate)),
+            None if planes.is_empty() => Grown::whole_from(&seeds, Seed::Thing, plate),
+            grown => grown,
         };
         let evidence = grown.as_ref().map(|grown| (grown, self.needed(grown, level)));
         let before = evidence.as_ref().map_or(Vec::new(), |(grown, needed)| {
@@ -260,9 +255,9 @@ impl Sight<'_> {
         let on_things = grown
             .as_ref()
             .map(|grown| Brightness::of_things(grown, &compared.pixels, (&toy.coverage, size_px)));
-        let on_planes = grown.as_ref().map_or(Vec::new(), |grown| {
-            self.on_planes((grown, &seeds), level, &before)
-        });
+        let on_planes = grown
+            .as_ref()
+            .map_or(Vec::new(), |grown| self.on_planes((grown, &seeds), level));
         Found {
             planes,
             on_planes,
@@ -352,8 +347,8 @@ impl Sight<'_> {
     /// For each pixel of a level, whether it is in a part of a thing with few seeds, but shows
     /// another receiver than the thing stands on: for example the top of a book that is a receiver,
     /// in contrast to its sides.
-    fn on_planes(&self, (grown, seeds): (&Grown, &Seeds), level: &Level, before: &[Known]) -> Vec<bool> {
-        let mut counts = vec![[[0; 2]; MAX_RECEIVERS]; before.len()];
+    fn on_planes(&self, (grown, seeds): (&Grown, &Seeds), level: &Level) -> Vec<bool> {
+        let mut counts = vec![[[0; 2]; MAX_RECEIVERS]; grown.n_things()];
         let pixels: Vec<Option<(usize, usize)>> = places(level.frame.size_px)
             .map(|at| {
                 let thing = grown.of_pixel(at)?;
@@ -365,7 +360,7 @@ impl Sight<'_> {
             })
             .collect();
         let stands_on = |thing: usize| (0..MAX_RECEIVERS).max_by_key(|on| counts[thing][*on][0]);
-        let stands_on: Vec<Option<usize>> = (0..before.len()).map(stands_on).collect();
+        let stands_on: Vec<Option<usize>> = (0..grown.n_things()).map(stands_on).collect();
         let is_of_receiver = |(thing, on): (usize, usize)| {
             let [n_seeds, n] = counts[thing][on];
             stands_on[thing] != Some(on) && (n_seeds as f32) < OF_PLANE * n as f32

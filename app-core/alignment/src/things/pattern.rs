@@ -37,6 +37,8 @@ const N_BEST: usize = 24;
 /// Part of the deviation from a smooth place that the best offset may leave. It leaves .07 to .28 on
 /// tiles, gingham and planks, .76 where planks end, and .92 on terrazzo, whose spots do not repeat.
 const REPEATS: f64 = 0.5;
+/// Number of coefficients of light that changes evenly, and so of the pixels that it needs.
+const N_TERMS: usize = 3;
 
 /// A place with a wrong plate.
 pub(super) struct Hidden<'a> {
@@ -85,8 +87,12 @@ impl Hidden<'_> {
         let colors: Vec<(DVec2, Color)> = checked.iter().map(|one| (one.place_m, one.color)).collect();
         let smooth = even_light(&colors)?.differs;
         let left = offsets.first().and_then(|best| {
-            let best_m = self.offset_m(middle_px, best.px)?;
-            Some(even_light(&self.pairs(&checked, best_m))?.differs)
+            let pairs = self.pairs(&checked, self.offset_m(middle_px, best.px)?);
+            Some(
+                even_light(&pairs)
+                    .filter(|_| are_enough(&pairs, &checked))?
+                    .differs,
+            )
         });
         if left.is_none_or(|left| left >= REPEATS * REPEATS * smooth) {
             return Some(self.evenly_filled(&of_hidden, &[searched, checked].concat()));
@@ -206,8 +212,7 @@ impl Hidden<'_> {
             return None;
         }
         let pairs = self.pairs(around, self.offset_m(middle_px, px)?);
-        let is_enough = pairs.len() as f64 >= LEAST_SEEN * around.len() as f64;
-        let differs = variance(&pairs).filter(|_| is_enough)?;
+        let differs = variance(&pairs).filter(|_| are_enough(&pairs, around))?;
         Some(Offset { px, differs })
     }
 
@@ -270,6 +275,11 @@ fn spread(around: &[Around], first: usize) -> Vec<Around> {
         .collect()
 }
 
+/// Whether enough of the surroundings have a counterpart.
+fn are_enough(pairs: &[(DVec2, Color)], around: &[Around]) -> bool {
+    pairs.len() as f64 >= LEAST_SEEN * around.len() as f64
+}
+
 /// Mean squared difference of colours from their mean.
 fn variance(pairs: &[(DVec2, Color)]) -> Option<f64> {
     let n = pairs.len() as f64;
@@ -301,6 +311,9 @@ impl Light {
 
 /// The even light that explains logarithms of colours best; `None` if their places are too few.
 fn even_light(pairs: &[(DVec2, Color)]) -> Option<Light> {
+    if pairs.len() < N_TERMS {
+        return None;
+    }
     let n = pairs.len() as f64;
     let origin_m = pairs.iter().map(|(place_m, _)| *place_m).sum::<DVec2>() / n;
     let mut square = DMat3::ZERO;

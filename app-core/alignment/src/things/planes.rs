@@ -37,8 +37,6 @@ pub(super) const SHADOWED: f32 = 0.25;
 /// of no shadow at all.
 const OF_PLANE: f64 = 0.0012;
 const OF_OTHERS: f64 = 0.35;
-/// Least pixels that contradict a plane.
-const LEAST_CONTRADICTING: usize = 60;
 /// The same for a side that has to be proved: its place is known, so that nothing is searched.
 const OF_OTHERS_SIDE: f64 = 0.6;
 /// Largest loss of a plane that a depth sensor measured, and the addition to the losses of the
@@ -47,7 +45,7 @@ const OF_MEASURED: f64 = 0.003;
 const NOISE: f64 = 1e-4;
 /// Loss of a squared deviation from the plane of a depth sensor.
 const OFF_MEASURED: f64 = 1e-4;
-/// If these leave a smaller loss, there is nothing to explain.
+/// If known receivers, or no shadow at all, leave a smaller loss, there is nothing to explain.
 const LEAST_LEFT: f64 = 3e-4;
 /// The same for a listed plane. One that is 2 mm off leaves 4e-4, an exact one 1e-5.
 const LEAST_LISTED: f64 = 1e-4;
@@ -77,6 +75,8 @@ const BELOW_M: f64 = 0.004;
 const N_STARTS: usize = 2;
 const FIRST_STEP: f64 = 0.05;
 const N_TRIES: usize = 60;
+/// Least pixels that contradict a plane.
+const LEAST_CONTRADICTING: usize = 60;
 /// Side of the cells that merge the toy's vertices, in pixels of the level.
 pub(super) const CELL_PX: f64 = 0.7;
 
@@ -222,8 +222,8 @@ impl<'a> Search<'a> {
             [height_m, 0.0, 0.0],
             [height_m, slope.x * self.size_m, slope.y * self.size_m],
         ];
-        let [level, tilted] = starts.map(|heights| [(self.loss(raster, &heights), heights)]);
-        let nearer = self.refined(raster, &level, &tilted)?;
+        let [level, tilted] = starts;
+        let nearer = self.refined(raster, &[level], &[tilted])?;
         let is_better = nearer.loss < OF_OTHERS * of_others;
         (is_better && self.is_shown(raster, &nearer, LEAST_SHADOWED)).then(|| Nearer {
             losses: [of_listed, nearer.loss],
@@ -263,7 +263,7 @@ impl<'a> Search<'a> {
             .map(|measured| measured.heights(self.size_m));
         let level = level.chain(measured.map(|heights| [heights[0], 0.0, 0.0]));
         let level = self.best(raster, level, N_STARTS + 1);
-        let slopes = level.iter().flat_map(|(_, [height_m, ..])| {
+        let slopes = level.iter().flat_map(|[height_m, ..]| {
             SLOPES.into_iter().flat_map(move |slope| {
                 (0..N_SIDES).map(move |side| {
                     let to = DVec2::from_angle(std::f64::consts::TAU * side as f64 / N_SIDES as f64);
@@ -271,7 +271,7 @@ impl<'a> Search<'a> {
                 })
             })
         });
-        let all = level.iter().map(|(_, heights)| *heights).chain(slopes);
+        let all = level.iter().copied().chain(slopes);
         let all: Vec<Heights> = all.chain(measured).collect();
         let tilted = self.best(raster, all.into_iter(), N_STARTS);
         self.refined(raster, &level, &tilted)
@@ -281,12 +281,12 @@ impl<'a> Search<'a> {
     pub(super) fn refined(
         &self,
         raster: &mut Rasterizer,
-        level: &[(f64, Heights)],
-        tilted: &[(f64, Heights)],
+        level: &[Heights],
+        tilted: &[Heights],
     ) -> Option<Candidate> {
         let step_m = FIRST_STEP * self.radius_m;
-        let mut descended = |starts: &[(f64, Heights)], n_free: usize| {
-            let ends = starts.iter().map(|(_, start)| {
+        let mut descended = |starts: &[Heights], n_free: usize| {
+            let ends = starts.iter().map(|start| {
                 descend((*start, step_m), n_free, N_TRIES, |heights| {
                     self.loss(raster, heights)
                 })
@@ -377,19 +377,13 @@ impl<'a> Search<'a> {
         (of_receiver, of_receiver.min(of_light))
     }
 
-    /// The best of some tries, with their losses.
-    fn best(
-        &self,
-        raster: &mut Rasterizer,
-        tries: impl Iterator<Item = Heights>,
-        n: usize,
-    ) -> Vec<(f64, Heights)> {
+    /// The best of some tries, from the best one.
+    fn best(&self, raster: &mut Rasterizer, tries: impl Iterator<Item = Heights>, n: usize) -> Vec<Heights> {
         let mut tried: Vec<(f64, Heights)> = tries
             .map(|heights| (self.loss(raster, &heights), heights))
             .collect();
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-        tried.truncate(n);
-        tried
+        tried.into_iter().take(n).map(|(_, heights)| heights).collect()
     }
 
     pub(super) fn plane(&self, [height_m, along_x, along_z]: &Heights) -> SeenReceiver {

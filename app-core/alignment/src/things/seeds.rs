@@ -85,6 +85,11 @@ pub(super) struct Seeds {
 }
 
 impl Seeds {
+    /// The colours of things of a kind, and of their place.
+    pub(super) fn known_colors(&self, kind: Seed) -> &Colors {
+        &self.colors[usize::from(kind == Seed::WrongPlate)]
+    }
+
     /// Finds the seeds. `hidden` are the pixels that show the plate in place of the toy.
     pub(super) fn found(
         compared: &[Compared],
@@ -289,7 +294,7 @@ impl Seeds {
         let mut found = Self {
             seeds,
             open: Vec::new(),
-            colors: self.colors.clone(),
+            colors: [Colors::default(), Colors::default()],
             ..*self
         };
         found.learn_in_frame(frame);

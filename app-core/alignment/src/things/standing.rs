@@ -9,16 +9,15 @@ use glam::{DVec3, IVec2};
 use super::extent::is_exact;
 use super::groups::{groups, in_level};
 use super::grown::{Grown, LEAST_ALONE};
-use super::measured::{above_m, of_table};
+use super::measured::{ON_TABLE_M, above_m, of_table};
 use super::seeds::is_unexplained;
 use crate::lights::Compared;
 use crate::measured_points::MeasuredPoints;
 use crate::picture::{Level, index_in, places};
 use crate::receivers::SeenReceiver;
 
-/// Largest height of a point on the receiver, and least height of one on a thing, in metres: more
-/// than the noise of points of 1 mm, and less than a thin book.
-const ON_TABLE_M: f64 = 0.025;
+/// Least height of a point on a thing, in metres: more than the noise of points of 1 mm, and less than a
+/// thin book.
 const LEAST_M: f64 = 0.003;
 /// Least points on the receiver.
 const LEAST_POINTS: usize = 1000;

@@ -67,8 +67,8 @@ pub(super) fn find(
     planes.collect()
 }
 
-/// The plane by what the pictures show: by the thing's pixels, or else a tilted one by all that are in a
-/// shadow. A level one that only these tell is above a side, and known by that.
+/// The plane by what the pictures show: by the thing's pixels, or else by all that are in a shadow. A level one
+/// by these is refused: a block's top came out some millimetres too low, in place of the points of its side.
 fn in_pictures(search: &Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane> {
     let raster = &mut Rasterizer::default();
     let by_own = search.best_plane(raster);
@@ -103,8 +103,7 @@ fn found_from(search: Search<'_>, first: &Candidate, outline: &Outline<'_>) -> O
     let extent = Extent::of(outline, &endless, first.is_level)?;
     let search = search.within(&extent.plane(&endless));
     let heights = first.heights;
-    let level = [(first.loss, [heights[0], 0.0, 0.0])];
-    let plane = search.refined(raster, &level, &[(first.loss, heights)])?;
+    let plane = search.refined(raster, &[[heights[0], 0.0, 0.0]], &[heights])?;
     let losses = search.significant_losses(raster, &plane, outline.colored)?;
     let endless = search.plane(&plane.heights).plane_from_camera;
     let extent = Extent::of(outline, &endless, plane.is_level)?;

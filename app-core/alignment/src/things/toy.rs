@@ -43,10 +43,15 @@ pub(super) struct Toy {
     shown: Option<Vec<Option<Color>>>,
 }
 
+/// The pixels of a level that the toy covers.
+pub(super) fn covered(sight: &Sight<'_>, level: &Level) -> Coverage {
+    let corners = project(sight.shape.points.iter().copied(), &level.intrinsics);
+    Rasterizer::default().coverage(&corners, &sight.shape.faces, level.frame.size_px)
+}
+
 impl Toy {
     pub(super) fn of(sight: &Sight<'_>, level: &Level) -> Self {
-        let corners = project(sight.shape.points.iter().copied(), &level.intrinsics);
-        let coverage = Rasterizer::default().coverage(&corners, &sight.shape.faces, level.frame.size_px);
+        let coverage = covered(sight, level);
         let shown = sight.paint.shown(level, &coverage);
         let codes = |color: Color| codes_of(color.map(|linear| linear.clamp(0.0, 1.0)));
         let shown = shown.map(|shown| shown.into_iter().map(|color| color.map(codes)).collect());

@@ -107,6 +107,15 @@ struct Point {
     of_lights: f32,
 }
 
+/// A pixel of the level that shows a point of a thing.
+#[derive(Clone, Copy)]
+struct Shown {
+    thing: usize,
+    point: Point,
+    /// Brightness over that of the receiver in all of its light.
+    ratio: f32,
+}
+
 /// Inputs of the search.
 pub(super) struct Upright<'a> {
     pub(super) bodies: &'a Bodies,
@@ -205,8 +214,9 @@ impl Upright<'_> {
             }
         }
         let tallest_m = tops_m.clone();
+        let shown = self.shown(points, known);
         let mut best: Vec<f32> = self
-            .gained(points, known)
+            .gained(&shown, known)
             .iter()
             .map(|gained| OF_TOP * gained)
             .collect();
@@ -219,73 +229,64 @@ impl Upright<'_> {
         for step in tried {
             let part = f64::from(step) / f64::from(N_TOPS);
             let tried_m: Vec<f64> = tallest_m.iter().map(|tallest_m| part * tallest_m).collect();
-            let gained = self.gained(&self.lowered(points, &tried_m), known);
+            let lowered = |one: &Shown| Shown {
+                point: self.lowered(one.point, tried_m[one.thing]),
+                ..*one
+            };
+            let gained = self.gained(&shown.iter().map(lowered).collect::<Vec<_>>(), known);
             for thing in 0..known.n_things {
                 if has_shadow[thing] && gained[thing] > best[thing] {
                     (tops_m[thing], best[thing]) = (tried_m[thing], gained[thing]);
                 }
             }
         }
-        self.lowered(points, &tops_m)
-    }
-
-    /// The points of the same pixels, none above its thing's top.
-    fn lowered(&self, points: &[Option<Point>], tops_m: &[f64]) -> Vec<Option<Point>> {
-        let eye = self.table.plane_from_camera.w_axis.truncate();
         let lowered = |(point, thing): (&Option<Point>, &Option<usize>)| {
-            let (point, top_m) = ((*point)?, tops_m[(*thing)?]);
-            // A ray to a point above the camera does not come down to a top.
-            if point.at.y <= top_m || point.at.y >= eye.y {
-                return Some(point);
-            }
-            let times = (eye.y - top_m) / (eye.y - point.at.y);
-            Some(Point {
-                at: eye + times * (point.at - eye),
-                ..point
-            })
+            Some(self.lowered((*point)?, tops_m[(*thing)?]))
         };
         points.iter().zip(&self.bodies.thing).map(lowered).collect()
     }
 
+    /// The point of the same pixel on its thing's top, if it is above that.
+    fn lowered(&self, point: Point, top_m: f64) -> Point {
+        let eye = self.table.plane_from_camera.w_axis.truncate();
+        // A ray to a point above the camera does not come down to a top.
+        if point.at.y <= top_m || point.at.y >= eye.y {
+            return point;
+        }
+        let times = (eye.y - top_m) / (eye.y - point.at.y);
+        Point {
+            at: eye + times * (point.at - eye),
+            ..point
+        }
+    }
+
     /// For each thing, how much less the picture differs from its points in the toy's shadow than from
     /// none in it.
-    fn gained(&self, points: &[Option<Point>], known: &Known) -> Vec<f32> {
-        let losses = self.losses(points, known).into_iter();
+    fn gained(&self, shown: &[Shown], known: &Known) -> Vec<f32> {
+        let losses = self.losses(shown, known).into_iter();
         losses.map(|([with, without], _)| without - with).collect()
     }
 
     /// For each thing, whether the toy's shadow in the picture is where its points have it.
     fn agreeing(&self, points: &[Option<Point>], known: &Known) -> Vec<bool> {
-        let agrees = self.losses(points, known).into_iter();
+        let agrees = self.losses(&self.shown(points, known), known).into_iter();
         let agrees = agrees.map(|([with, without], n)| n >= LEAST_SHADOWED && with < OF_NONE * without);
         agrees.collect()
     }
 
     /// For each thing, the squared difference of the picture from its points in the toy's shadow, and
     /// from none in it, and the number of pixels in it.
-    fn losses(&self, points: &[Option<Point>], known: &Known) -> Vec<([f32; 2], usize)> {
+    fn losses(&self, shown: &[Shown], known: &Known) -> Vec<([f32; 2], usize)> {
         let size_px = self.level.frame.size_px;
         let mut losses = vec![[0.0; 2]; known.n_things];
         let mut n_shadowed = vec![0; known.n_things];
-        for at in places(size_px) {
-            let Some((thing, point)) = self.shown(at, points) else {
-                continue;
-            };
-            let colors = self
-                .level
-                .frame
-                .get(at)
-                .zip(self.level.plate.as_ref().and_then(|plate| plate.get(at)));
+        for Shown { thing, point, ratio } in shown.iter().copied() {
             let taken_from = |(light, taken): (&Light, &Vec<f32>)| {
                 Some(taken[index_in(size_px, self.shadow_px(point.at, light)?)?])
             };
             let lost: Option<f32> = self.lights.iter().zip(&known.taken).map(taken_from).sum();
-            let (Some((frame, plate)), Some(lost)) = (colors, lost) else {
-                continue;
-            };
-            let lost = point.of_lights * lost;
-            let ratio = brightness(&frame) / (known.gain * brightness(&plate));
-            if lost.is_finite() && ratio.is_finite() {
+            let lost = lost.map(|lost| point.of_lights * lost);
+            if let Some(lost) = lost.filter(|lost| lost.is_finite()) {
                 let loss = |expected: f32| (ratio - expected).powi(2).min(MOST_LOSS);
                 losses[thing][0] += loss(1.0 - lost);
                 losses[thing][1] += loss(1.0);
@@ -295,8 +296,20 @@ impl Upright<'_> {
         losses.into_iter().zip(n_shadowed).collect()
     }
 
+    /// The pixels of the level that show points, with those.
+    fn shown(&self, points: &[Option<Point>], known: &Known) -> Vec<Shown> {
+        let shown = |at: IVec2| {
+            let (thing, point) = self.point_at(at, points)?;
+            let frame = self.level.frame.get(at)?;
+            let plate = self.level.plate.as_ref()?.get(at)?;
+            let ratio = brightness(&frame) / (known.gain * brightness(&plate));
+            ratio.is_finite().then_some(Shown { thing, point, ratio })
+        };
+        places(self.level.frame.size_px).filter_map(shown).collect()
+    }
+
     /// The point that a pixel of the level shows, and its thing.
-    fn shown(&self, at: IVec2, points: &[Option<Point>]) -> Option<(usize, Point)> {
+    fn point_at(&self, at: IVec2, points: &[Option<Point>]) -> Option<(usize, Point)> {
         let there = ((at.as_dvec2() + 0.5) / self.bodies.per_px).floor().as_ivec2();
         let index = index_in(self.bodies.size_px, there)?;
         let thing = self.bodies.thing[index]?;

@@ -5,19 +5,18 @@ use glam::IVec2;
 use super::codes::Codes;
 use super::colors::Colors;
 use super::groups::{groups, in_level, place_of};
-use super::grown::{Grown, like_place};
+use super::grown::{Grown, TOUCH_PX, like_place};
 use super::toy::Toy;
 use crate::lights::Compared;
 use crate::picture::{Mask, places, square};
 
-/// Difference between plate and model around a wrong part of the plate, in plates, as a multiple of the
-/// noise, and the margin in pixels that is wrong, too.
+/// Least difference between plate and model around a wrong part of the plate, in plates.
 const DIFFERS: f32 = 0.05;
+/// The same as a multiple of the noise.
 const OF_NOISE: f32 = 2.0;
+/// Margin of such a part that is wrong, too, in pixels.
 const WRONG_PX: i32 = 2;
-/// Distance in pixels at which a shadow in the plate touches what casts it, and its minimum number of
-/// pixels.
-const TOUCH_PX: i32 = 3;
+/// Minimum number of pixels of a shadow in the plate that touches what casts it.
 const LEAST_SHADOW: usize = 30;
 
 /// Wrong part of a level's plate: everything that is connected with seeds and differs from the

@@ -67,6 +67,7 @@ pub(super) fn assemble(file: &str, bytes: &[u8]) -> Result<Toy, Flaw> {
         rig: Arc::new(rig),
         shadow_indices: Arc::new(shadow_indices),
         casters: OnceLock::new(),
+        welded: Arc::default(),
         geometries,
         surfaces: surfaces.into(),
         draws: Arc::new(draws),

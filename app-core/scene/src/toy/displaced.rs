@@ -44,6 +44,7 @@ impl Toy {
             draws: Arc::clone(&self.draws),
             shadow_indices: Arc::clone(&self.shadow_indices),
             casters: OnceLock::new(),
+            welded: Arc::clone(&self.welded),
             materials: self.materials.clone(),
             textures: Arc::clone(&self.textures),
             warnings: self.warnings.clone(),

@@ -53,6 +53,7 @@ mod topology;
 mod track;
 mod uv_transform;
 mod warning;
+mod welded;
 
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -71,6 +72,7 @@ pub use shadow_indices::ShadowIndices;
 pub use surface::Part;
 pub use texture::Texture;
 pub use warning::ToyWarning;
+pub use welded::Welded;
 
 use geometry::Geometry;
 use rig::Rig;
@@ -85,6 +87,8 @@ pub struct Toy {
     draws: Arc<Draws>,
     shadow_indices: Arc<ShadowIndices>,
     casters: OnceLock<Vec<Caster>>,
+    /// Made when it is first asked for.
+    welded: Arc<OnceLock<Welded>>,
     materials: Vec<Material>,
     textures: Arc<[Texture]>,
     warnings: Vec<ToyWarning>,
