@@ -169,7 +169,11 @@ impl Seeds {
         let kinds = groups.iter().map(|group| {
             let ratios = [in_frame.median(lit, group), by_plate(group)];
             let differs = from_less_light(group, frame, plate);
-            let n_seeds = if group.len() < LEAST_PIECE { group.len() } else { n_in_pieces.max(group.len()) };
+            let n_seeds = if group.len() < LEAST_PIECE {
+                group.len()
+            } else {
+                n_in_pieces.max(group.len())
+            };
             let kind = classified(ratios, differs, n_seeds, colored);
             // Where both shadows fall, frame and plate are equal, but only the frame as dark as expected; where
             // that in the plate falls alone, the plate shows the frame's colours in less light.

@@ -12,7 +12,7 @@ pub(crate) const PIXEL: Mirrors = mirrors!("common/pixel", constants: [DARKEST_U
 /// Codes that are a measure of brightness, in linear light.
 const USABLE: std::ops::RangeInclusive<f32> = DARKEST_USABLE..=BRIGHTEST_USABLE;
 const DARKEST_USABLE: f32 = 0.003_035_27;
-const BRIGHTEST_USABLE: f32 = 0.955_973_35;
+const BRIGHTEST_USABLE: f32 = 0.955_973_3;
 /// Visibility below which a pixel lies in the shadow of a light, and above which it does not.
 const SHADOW: f32 = 0.5;
 const LIT: f32 = 0.99;
