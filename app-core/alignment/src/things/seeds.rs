@@ -44,9 +44,6 @@ const OF_FRAME: [f32; 2] = [2.0, 1.5];
 /// minimum number of pixels; and the limit for large groups.
 const SIGNIFICANT: (f32, usize) = (3.0, 8);
 const SIGNIFICANT_LARGE: (f32, usize) = (1.0, 200);
-/// The minimum number of pixels of a piece of a large group. The shadow on a ramp coincides with the table's in
-/// its middle, which leaves pieces of 112 and 193 pixels beside it.
-const LEAST_PIECE: usize = 50;
 /// The minimum number of pixels of a group in the place's own colours: a white mug on pale stone has
 /// 527; no group of a varnished table, a lamp's tube, an inexact scan or a phone's camera is as large.
 const LEAST_ALIKE: usize = 200;
@@ -160,21 +157,10 @@ impl Seeds {
         let of_place = || place.iter().map(|index| plate.pixels[*index]);
         let in_plate = Colors::of(seeds(plate).into_iter(), of_place());
         let in_frame = Colors::of(seeds(lit).into_iter(), of_place());
-        let by_plate = |group: &[usize]| in_plate.median(plate, group);
-        let n_in_pieces: usize = groups
-            .iter()
-            .filter(|group| group.len() >= LEAST_PIECE && by_plate(group) > SIGNIFICANT_LARGE.0)
-            .map(Vec::len)
-            .sum();
         let kinds = groups.iter().map(|group| {
-            let ratios = [in_frame.median(lit, group), by_plate(group)];
+            let ratios = [in_frame.median(lit, group), in_plate.median(plate, group)];
             let differs = from_less_light(group, frame, plate);
-            let n_seeds = if group.len() < LEAST_PIECE {
-                group.len()
-            } else {
-                n_in_pieces.max(group.len())
-            };
-            let kind = classified(ratios, differs, n_seeds, colored);
+            let kind = classified(ratios, differs, group.len(), colored);
             // Where both shadows fall, frame and plate are equal, but only the frame as dark as expected; where
             // that in the plate falls alone, the plate shows the frame's colours in less light.
             let may_be_shadow = is_of_plate_alone(ratios, group.len())
