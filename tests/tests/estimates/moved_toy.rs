@@ -132,7 +132,6 @@ fn turned_on_an_even_table() -> (Scene, FrameInput) {
 fn a_camera_does_not_follow_a_toy_on_an_even_table() {
     let (scene, input) = turned_on_an_even_table();
     let camera = Aligner::new(scene).align(&input).unwrap().report.camera.unwrap();
-    eprintln!("{camera:?}");
     assert!(!camera.is_applied, "{camera:?}");
 }
 
