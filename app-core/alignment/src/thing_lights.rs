@@ -71,7 +71,8 @@ impl Aligner {
     }
 
     /// What is found in moved lights, or planes that the lights as they are listed explain better: a shadow on
-    /// a thing may have moved them, and planes in them agree with it. `before` is what the search has changed.
+    /// a thing may have moved them, so that planes agree with them, or that none is found. `before` is what the
+    /// search has changed.
     fn or_in_listed(
         &mut self,
         given: &Arc<[Light]>,
@@ -80,12 +81,13 @@ impl Aligner {
         (first, before): (Looked, &Searched),
     ) -> Result<Looked, ToyError> {
         let are_moved = !given.is_empty() && lights.in_use() != &**given;
-        let Some(loss) = self.planes.latest_loss().filter(|_| are_moved) else {
+        let loss = match &first {
+            Looked::Planes(_) => self.planes.latest_loss(),
+            Looked::Things(things) => (things.is_some() && planes_of.is_some()).then_some(f64::INFINITY),
+        };
+        let Some(loss) = loss.filter(|_| are_moved) else {
             return Ok(first);
         };
-        if !matches!(first, Looked::Planes(_)) {
-            return Ok(first);
-        }
         let in_moved = self.replaced(before.clone());
         let listed = self.look_for_things(given, seen, planes_of)?;
         let is_less = self
