@@ -12,15 +12,13 @@ use super::colored_extent::{Evidence, Surroundings};
 use super::extent::{Extent, Outline};
 use super::inner::NOISIEST;
 use super::planes::{Candidate, FoundPlane, SHADOWED, Search};
-use super::seeds::{EXPLAINED, UNEXPLAINED};
+use super::seeds::{EXPLAINED, UNEXPLAINED, is_unexplained};
 use super::shadow_loss::square;
 use crate::lights::{Compared, Comparison};
 use crate::picture::{Level, brightness};
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
 
-/// Distance from the thing's middle up to which it may reach, over the size of its certain pixels.
-const REACH: f64 = 3.0;
 /// Rounds of bounds and plane.
 const N_ROUNDS: usize = 2;
 
@@ -42,7 +40,7 @@ pub(super) fn found(
             .plane_from_camera
             .inverse()
             .transform_point3(on_table);
-        let surroundings = Surroundings::new(outline.level, &endless, (middle, REACH * search.size_m))?;
+        let surroundings = Surroundings::new(outline.level, &endless, (middle, search.reach_m))?;
         let extent = surroundings.extent(&evidence)?;
         search = search.over(&extent.plane(&endless));
         let start = candidate.heights;
@@ -72,23 +70,31 @@ pub(super) fn found(
 }
 
 impl Search<'_> {
-    /// The plane that explains all shadows near the thing best, together with the known receivers. Where
-    /// both would have the same shadow, no pixel is certainly of the thing: it may have none in a shadow.
-    pub(super) fn best_among_shadows(&self, raster: &mut Rasterizer) -> Option<Candidate> {
-        let pixels: Vec<&Compared> = certain(self.comparison)
+    /// The plane that explains all shadows near the thing best, together with the known receivers, and the
+    /// search about the shadows that these do not explain. Where both would have the same shadow, no pixel is
+    /// certainly of the thing: it may have none in a shadow, or many of the table's.
+    pub(super) fn best_among_shadows(&self, raster: &mut Rasterizer) -> Option<(Self, Candidate)> {
+        let shadowed: Vec<&Compared> = certain(self.comparison)
             .into_iter()
             .filter(|pixel| self.is_near(pixel.at) && is_shadowed(pixel))
             .collect();
-        let mut among = self.clone().of_pixels(&pixels);
+        let unexplained: Vec<&Compared> = shadowed
+            .iter()
+            .copied()
+            .filter(|pixel| is_unexplained(pixel))
+            .collect();
+        let about = self.about(&unexplained)?;
+        let mut among = about.clone().of_pixels(&shadowed);
         among.is_mixed = true;
-        among.best_plane(raster)
+        let first = among.best_plane(raster)?;
+        Some((about, first))
     }
 
     /// Whether the table behind a pixel is within reach of the thing.
     fn is_near(&self, at: IVec2) -> bool {
         self.table.point_at(&self.intrinsics, at).is_some_and(|point| {
             let on_table = self.table.plane_from_camera.transform_point3(point).xz();
-            on_table.distance(self.middle) < REACH * self.size_m
+            on_table.distance(self.middle) < self.reach_m
         })
     }
 
@@ -107,10 +113,9 @@ impl Search<'_> {
             let seen = (pixel.ratio, pixel.noise());
             let [known, new] = [(pixel.model, 1.0), (of_plane, depth)]
                 .map(|(expected, depth)| square(&seen, expected, depth));
-            let is_decided = known.min(new) < explained && known.max(new) > unexplained;
-            let is_on_plane = new < known;
             let is_shadowed = brightness(&of_plane) < 1.0 - SHADOWED;
-            (is_decided && (is_shadowed || !is_on_plane)).then_some(Evidence {
+            let is_on_plane = is_shadowed && new < explained && known > unexplained;
+            (is_on_plane || new > unexplained).then_some(Evidence {
                 at: pixel.at,
                 is_on_plane,
             })

@@ -9,7 +9,7 @@ use glam::{DMat4, DVec2, DVec3, IVec2, Vec3Swizzles};
 use super::codes::Codes;
 use super::colors::Colors;
 use super::extent::Extent;
-use crate::picture::{Level, index_in, places, square};
+use crate::picture::{Color, Level, index_in, places, square};
 use crate::receivers::SeenReceiver;
 
 /// Least pixels whose shadow shows that they are on the plane.
@@ -28,6 +28,10 @@ const SHOWN: f32 = 4.0;
 /// ends where it does in truth, and with .35 it does not: the thing's own growth is better bounded then,
 /// and 6 mm too short.
 const OF_PLACE: f32 = 0.25;
+/// Least mean log likelihood ratio of the inner pixels by their colours: with less, these do not tell the
+/// plane from the place. For a ramp of terrazzo on terrazzo it is .35 to .45, for seven other books and ramps
+/// 1.0 to 2.
+const LEAST_TOLD: f32 = 0.7;
 /// Distance in pixels up to which ratios are averaged: a pattern has colours of the place, too.
 const AROUND_PX: i32 = 1;
 /// Number of strips along the distance that a thing may reach, among which the sides are chosen: each is
@@ -77,8 +81,8 @@ impl<'a> Surroundings<'a> {
         })
     }
 
-    /// The rectangle of the colours of those pixels that are on the plane; `None` if they are too few,
-    /// or the colours have no end.
+    /// The rectangle of the colours of those pixels that are on the plane, or of these pixels alone if their
+    /// colours have no end, as those of stone on a table of the same stone; `None` if they are too few.
     pub(super) fn extent(&self, evidence: &[Evidence]) -> Option<Extent> {
         let mut is_inside = vec![false; self.plate.pixels.len()];
         for pixel in evidence.iter().filter(|pixel| pixel.is_on_plane) {
@@ -91,33 +95,42 @@ impl<'a> Surroundings<'a> {
         if inside.len() < LEAST_SHOWN {
             return None;
         }
-        let mut extent = Extent::smallest(&inside)?;
-        let strip_m = self.reach_m / STRIPS_A_REACH;
+        let about = Extent::smallest(&inside)?;
+        let by_color = self.of_colors(is_inside, evidence, &about);
+        by_color.or_else(|| self.likeliest(&self.likelier(|_| -OF_PLACE, evidence), &about))
+    }
+
+    /// The rectangle of the colours of inner pixels, which it learns in turn; `None` if these
+    /// do not tell it from the place, or have no end.
+    fn of_colors(&self, mut is_inside: Vec<bool>, evidence: &[Evidence], about: &Extent) -> Option<Extent> {
+        let mut learned: Option<Extent> = None;
         for _ in 0..N_ROUNDS {
-            let likelier = self.likelier(&is_inside, evidence);
-            let values = self.near.iter().map(|(index, place)| (*place, likelier[*index]));
-            extent = likeliest(&values.collect::<Vec<_>>(), strip_m, &extent)?;
+            let known = &is_inside;
+            let of = |kind: bool| {
+                let near = self.near.iter().filter(move |(index, _)| known[*index] == kind);
+                near.map(|(index, _)| self.plate.pixels[*index])
+            };
+            let colors = Colors::of(of(true), of(false));
+            let ratio = |color| colors.likelier(color).unwrap_or(0.0).clamp(-MOST, MOST);
+            let (sum, n) = of(true).fold((0.0, 0.0_f32), |(sum, n), color| (sum + ratio(color), n + 1.0));
+            if sum < LEAST_TOLD * n {
+                return None;
+            }
+            let by_color = |color| ratio(color) - OF_PLACE;
+            let about = learned.as_ref().unwrap_or(about);
+            let extent = self.likeliest(&self.likelier(by_color, evidence), about)?;
             let rectangle = extent.plane(self.plane_from_camera);
             for (at, is_inside) in places(self.plate.size_px).zip(&mut is_inside) {
                 *is_inside = rectangle.point_at(&self.level.intrinsics, at).is_some();
             }
+            learned = Some(extent);
         }
-        let farthest_m = extent.middle.distance(self.middle) + extent.half_m.length();
-        (farthest_m < self.reach_m).then_some(extent)
+        learned.filter(|extent| extent.middle.distance(self.middle) + extent.half_m.length() < self.reach_m)
     }
 
-    /// For each pixel, the log likelihood ratio that it shows what the inner ones show, by the pixels
-    /// around it.
-    fn likelier(&self, is_inside: &[bool], evidence: &[Evidence]) -> Vec<f32> {
-        let of = |kind: bool| {
-            let near = self
-                .near
-                .iter()
-                .filter(move |(index, _)| is_inside[*index] == kind);
-            near.map(|(index, _)| self.plate.pixels[*index])
-        };
-        let colors = Colors::of(of(true), of(false));
-        let by_color = |color| (colors.likelier(color).unwrap_or(0.0) - OF_PLACE).clamp(-MOST, MOST);
+    /// For each pixel, the log likelihood ratio that it shows what the inner ones show, by the colours of the
+    /// pixels around it.
+    fn likelier(&self, by_color: impl Fn(Color) -> f32, evidence: &[Evidence]) -> Vec<f32> {
         let mut likelier: Vec<f32> = self.plate.pixels.iter().map(|color| by_color(*color)).collect();
         for pixel in evidence {
             if let Some(index) = index_in(self.plate.size_px, pixel.at) {
@@ -129,6 +142,12 @@ impl<'a> Surroundings<'a> {
             around().map(|index| likelier[index]).sum::<f32>() / around().count().max(1) as f32
         };
         places(self.plate.size_px).map(mean).collect()
+    }
+
+    /// The likeliest rectangle near another one.
+    fn likeliest(&self, likelier: &[f32], about: &Extent) -> Option<Extent> {
+        let values = self.near.iter().map(|(index, place)| (*place, likelier[*index]));
+        likeliest(&values.collect::<Vec<_>>(), self.reach_m / STRIPS_A_REACH, about)
     }
 }
 

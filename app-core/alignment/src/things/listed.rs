@@ -96,7 +96,12 @@ fn corrected_plane(
     let height_m = as_listed.height_m(&plane_from_camera, table);
     let tilt = table.own_from_plane(&plane_from_camera).y_axis.y;
     let foot = (tilt > LEVEL).then_some(table);
-    let by_edges = as_listed.clearer(level, &plane_from_camera, foot);
+    let by_edges = as_listed
+        .clearer(level, &plane_from_camera, foot)
+        .filter(|extent| {
+            let larger = extent.plane(&plane_from_camera);
+            is_agreed(place, (level, comparison), &larger, listed)
+        });
     if by_shadow.is_none() && by_edges.is_none() {
         return None;
     }
@@ -111,6 +116,27 @@ fn corrected_plane(
             half_extent_m: extent.half_m.to_array(),
             losses: by_shadow.map_or([0.0; 2], |nearer| nearer.losses),
         },
+    })
+}
+
+/// Whether the toy's shadow agrees with a plane where it reaches beyond the listed one: its edge may be a line
+/// of the table's pattern.
+fn is_agreed(
+    place: &Place<'_>,
+    (level, comparison): (&Level, &Comparison),
+    larger: &SeenReceiver,
+    listed: &SeenReceiver,
+) -> bool {
+    let has = |plane: &SeenReceiver, at| plane.point_at(&level.intrinsics, at).is_some();
+    let pixels = comparison
+        .pixels
+        .iter()
+        .filter(|pixel| pixel.noise() < NOISIEST && has(larger, pixel.at) && !has(listed, pixel.at));
+    let pixels: Vec<&Compared> = pixels.collect();
+    let search = Search::new((place.shape, place.receivers), level, comparison, &pixels);
+    search.is_none_or(|search| {
+        let losses = search.agreed_losses(&mut Rasterizer::default(), larger, false);
+        losses.is_some()
     })
 }
 

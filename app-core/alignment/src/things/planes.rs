@@ -71,6 +71,8 @@ const N_SIDES: usize = 8;
 /// Steepest slope, and largest depth of a plane below the receiver, in metres.
 const STEEPEST: f64 = 0.6;
 const BELOW_M: f64 = 0.004;
+/// Distance from the thing's middle up to which it may reach, over the size of its certain pixels.
+const REACH: f64 = 3.0;
 /// Starts of the descents, their first steps over the toy's radius, and the tries of each.
 const N_STARTS: usize = 2;
 const FIRST_STEP: f64 = 0.05;
@@ -146,9 +148,11 @@ pub(super) struct Search<'a> {
     seen: Vec<(Color, f32)>,
     /// Prediction of the known receivers.
     expected: Vec<Option<Color>>,
-    /// The thing's centre and size on the receiver, in metres.
+    /// Centre and size on the receiver of the thing, or of the shadow on it, in metres.
     pub(super) middle: DVec2,
     pub(super) size_m: f64,
+    /// Distance from the centre up to which the thing may reach, in metres.
+    pub(super) reach_m: f64,
     radius_m: f64,
     /// The plane that a depth sensor measured.
     pub(super) measured: Option<Measured>,
@@ -164,17 +168,8 @@ impl<'a> Search<'a> {
         pixels: &[&Compared],
     ) -> Option<Self> {
         let table = receivers.get(GROUND)?;
-        let ground = pixels
-            .iter()
-            .filter_map(|pixel| table.point_at(&level.intrinsics, pixel.at));
-        let ground: Vec<DVec2> = ground
-            .map(|point| table.plane_from_camera.transform_point3(point).xz())
-            .collect();
-        let n = ground.len().max(1) as f64;
-        let middle = ground.iter().sum::<DVec2>() / n;
-        let square = ground.iter().map(|at| at.distance_squared(middle)).sum::<f64>() / n;
-        let size_m = square.sqrt();
-        let search = (size_m > 0.0).then(|| Self {
+        let (middle, size_m) = place_on(table, &level.intrinsics, pixels)?;
+        let search = Self {
             comparison,
             on_plane: OnPlane::new(comparison, (shape, receivers), GROUND, level),
             table,
@@ -185,11 +180,22 @@ impl<'a> Search<'a> {
             expected: Vec::new(),
             middle,
             size_m,
+            reach_m: REACH * size_m,
             radius_m: shape.radius_m,
             measured: None,
             is_mixed: false,
-        })?;
+        };
         Some(search.of_pixels(pixels))
+    }
+
+    /// The same search, about the place of some pixels; `None` if they have none.
+    pub(super) fn about(&self, pixels: &[&Compared]) -> Option<Self> {
+        let (middle, size_m) = place_on(self.table, &self.intrinsics, pixels)?;
+        Some(Self {
+            middle,
+            size_m,
+            ..self.clone()
+        })
     }
 
     /// The same search, with other pixels.
@@ -445,6 +451,21 @@ impl<'a> Search<'a> {
     pub(super) fn ratios(&self, raster: &mut Rasterizer, plane: &SeenReceiver) -> Vec<Option<Color>> {
         self.on_plane.ratios(raster, plane, &self.pixels)
     }
+}
+
+/// Centre of pixels on a receiver and their mean distance from it, as a root mean square, in metres; `None` if
+/// they show less than two places.
+fn place_on(receiver: &SeenReceiver, intrinsics: &Intrinsics, pixels: &[&Compared]) -> Option<(DVec2, f64)> {
+    let points = pixels
+        .iter()
+        .filter_map(|pixel| receiver.point_at(intrinsics, pixel.at));
+    let places: Vec<DVec2> = points
+        .map(|point| receiver.plane_from_camera.transform_point3(point).xz())
+        .collect();
+    let n = places.len().max(1) as f64;
+    let middle = places.iter().sum::<DVec2>() / n;
+    let square = places.iter().map(|at| at.distance_squared(middle)).sum::<f64>() / n;
+    (square > 0.0).then(|| (middle, square.sqrt()))
 }
 
 /// Keeps the marked values.

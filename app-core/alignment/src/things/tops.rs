@@ -74,8 +74,8 @@ fn in_pictures(search: &Search<'_>, outline: &Outline<'_>) -> Option<FoundPlane>
     let by_own = search.best_plane(raster);
     let found = by_own.and_then(|first| clearer(search, first, outline));
     found.or_else(|| {
-        let first = search.best_among_shadows(raster)?;
-        clearer(search, first, outline).filter(|found| found.report.tilt_rad > 0.0)
+        let (about, first) = search.best_among_shadows(raster)?;
+        clearer(&about, first, outline).filter(|found| found.report.tilt_rad > 0.0)
     })
 }
 
