@@ -44,6 +44,9 @@ pub(super) const LEAST_ALONE: usize = 60;
 pub(super) const TOUCH_PX: i32 = 3;
 const ABSORBED: f32 = 10.0;
 
+/// Part of a thing's seeds on known tops and their sides from which on it ends with these.
+const ON_SOLID: f32 = 0.9;
+
 /// Things of a level.
 pub(super) struct Grown {
     size_px: IVec2,
@@ -81,22 +84,22 @@ impl Grown {
     /// Grows from the seeds of a kind; `None` if there are none.
     pub(super) fn from(seeds: &Seeds, kind: Seed, plate: &Codes) -> Option<Self> {
         let place = Place::of(seeds, kind, plate)?;
-        Some(Self::within(place, (seeds, kind), plate, OF_STEP))
+        Some(Self::in_place(place, (seeds, kind), plate, OF_STEP))
     }
 
     /// The same over all of a thing's uniform faces.
     pub(super) fn whole_from(seeds: &Seeds, kind: Seed, plate: &Codes) -> Option<Self> {
         let place = Place::of(seeds, kind, plate)?;
-        Some(Self::within(place, (seeds, kind), plate, OF_OWN_STEP))
+        Some(Self::in_place(place, (seeds, kind), plate, OF_OWN_STEP))
     }
 
     /// What grew from the seeds of a kind, grown over all of a thing's uniform faces.
     pub(super) fn whole(self, seeds: &Seeds, kind: Seed, plate: &Codes) -> Self {
-        Self::within(self.place, (seeds, kind), plate, OF_OWN_STEP)
+        Self::in_place(self.place, (seeds, kind), plate, OF_OWN_STEP)
     }
 
     /// Grows in a place; `of_own` is the cost of a step between colours of the thing.
-    fn within(place: Place, (seeds, kind): (&Seeds, Seed), plate: &Codes, of_own: f32) -> Self {
+    fn in_place(place: Place, (seeds, kind): (&Seeds, Seed), plate: &Codes, of_own: f32) -> Self {
         let colors = seeds.known_colors(kind);
         let of_thing = distances(seeds, (plate, colors), (kind, of_own));
         let both = of_thing.iter().zip(&place.from_receiver);
@@ -120,6 +123,30 @@ impl Grown {
             is_shadow: vec![false; plate.pixels.len()],
             colors: colors.clone(),
         }
+    }
+
+    /// Without the pixels beside known tops and their sides, of things whose seeds are on these: a side of a ramp of stone, on a
+    /// table of the same stone, has grown over that.
+    pub(super) fn within(mut self, is_solid: &[bool], (seeds, kind): (&Seeds, Seed)) -> Self {
+        let mut n_on = vec![0; self.n_seeds.len()];
+        for index in seeds.of(kind).into_iter().filter(|index| is_solid[*index]) {
+            if let Some(thing) = self.thing[index] {
+                n_on[thing as usize] += 1;
+            }
+        }
+        let is_on = |thing: u32| {
+            let [n, n_on] = [&self.n_seeds, &n_on].map(|n| n[thing as usize] as f32);
+            n_on > ON_SOLID * n
+        };
+        let pixels = self.thing.iter().zip(is_solid);
+        let beside: Vec<bool> = pixels
+            .map(|(thing, is_solid)| !is_solid && thing.is_some_and(is_on))
+            .collect();
+        for (index, _) in beside.iter().enumerate().filter(|(_, is_beside)| **is_beside) {
+            self.thing[index] = None;
+            self.nearer[index] = self.nearer[index].min(-OF_STEP);
+        }
+        self
     }
 
     /// Things of known pixels, each with the number of its seeds, in a place of unknown colours.

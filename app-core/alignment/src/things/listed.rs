@@ -1,7 +1,7 @@
 //! Corrects listed planes of things, such as the top of a book that a tracker gave some millimetres
 //! off or larger than it is: height and tilt by the toy's shadow, extents by edges of the plate.
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, DVec4};
 
 use super::extent::{Extent, LEVEL};
 use super::inner::NOISIEST;
@@ -29,41 +29,59 @@ const LEAST_PIXELS: usize = 300;
 /// it is another plane.
 const MOST_M: f64 = 0.006;
 
-/// Largest height in metres between two levels of a thing at which pixels are looked up: the border
-/// hides the gap.
-const STEP_M: f64 = 0.005;
-
 /// Marks of a level's pixels that may show the listed planes of things, or the sides below them;
 /// `None` if there are no such planes.
 pub(crate) fn marks_of_listed(receivers: &[SeenReceiver], level: &Level) -> Option<Vec<Mark>> {
+    let marks = solids(receivers, level, BORDER_M)?.into_iter();
+    let marks = marks.map(|is_shown| if is_shown { Mark::Thing } else { Mark::None });
+    Some(marks.collect())
+}
+
+/// Whether each pixel of a level shows the planes of things, which are a border larger, or the sides below
+/// them; `None` if there are no such planes.
+pub(super) fn solids(receivers: &[SeenReceiver], level: &Level, border_m: f64) -> Option<Vec<bool>> {
     let table = receivers.get(GROUND)?;
     let tops = receivers.iter().skip(GROUND + 1);
     let slices: Vec<SeenReceiver> = tops
-        .filter_map(|top| Some((top, height_m(top, table)?)))
-        .flat_map(|(top, height_m)| slices(top, height_m))
+        .filter(|top| height_m(top, table).is_some())
+        .flat_map(|top| slices(top, table, border_m))
         .collect();
-    let mark = |at| {
-        let is_shown = slices
-            .iter()
-            .any(|slice| slice.point_at(&level.intrinsics, at).is_some());
-        if is_shown { Mark::Thing } else { Mark::None }
+    let is_shown = |at| {
+        let mut slices = slices.iter();
+        slices.any(|slice| slice.point_at(&level.intrinsics, at).is_some())
     };
-    (!slices.is_empty()).then(|| places(level.frame.size_px).map(mark).collect())
+    (!slices.is_empty()).then(|| places(level.frame.size_px).map(is_shown).collect())
 }
 
-/// Parallels of a top, a border larger, from the largest height at which it may be down to the
-/// table.
-fn slices(top: &SeenReceiver, height_m: f64) -> impl Iterator<Item = SeenReceiver> {
+/// The solid below a top, a border larger, from the largest height at which that may be down to the table: the
+/// top lowered towards the table, in as many steps as the border hides the gaps of.
+fn slices(top: &SeenReceiver, table: &SeenReceiver, border_m: f64) -> impl Iterator<Item = SeenReceiver> {
+    let table_from_top = table.own_from_plane(&top.plane_from_camera);
+    let half_m = top.half_extent_m();
+    let along_m = |axis: DVec4, half_m: f64| half_m * axis.y.abs();
+    let middle_m = table_from_top.w_axis.y;
+    let rise_m = along_m(table_from_top.x_axis, half_m.x) + along_m(table_from_top.z_axis, half_m.y);
+    let highest_m = middle_m + rise_m + MOST_M;
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a hundred at most"
     )]
-    let n = ((height_m + MOST_M) / STEP_M).ceil().clamp(1.0, 100.0) as u32;
+    let n = (highest_m / (0.5 * border_m)).ceil().clamp(1.0, 100.0) as u32;
+    let camera_from_table = table.plane_from_camera.inverse();
+    let most = 1.0 + MOST_M / middle_m;
     (0..=n).map(move |index| {
-        let below_m = (height_m + MOST_M) * f64::from(index) / f64::from(n) - MOST_M;
-        let down = DMat4::from_translation(DVec3::Y * below_m);
-        SeenReceiver::of_size(down * top.plane_from_camera, top.half_extent_m() + BORDER_M)
+        let part = most * f64::from(index) / f64::from(n);
+        let lowered = |axis: DVec4| DVec4::new(axis.x, part * axis.y, axis.z, axis.w);
+        let DMat4 {
+            x_axis,
+            z_axis,
+            w_axis,
+            ..
+        } = table_from_top;
+        let table_from_slice = DMat4::from_cols(lowered(x_axis), DVec4::Y, lowered(z_axis), lowered(w_axis));
+        let camera_from_slice = camera_from_table * table_from_slice;
+        SeenReceiver::of_size(camera_from_slice.inverse(), half_m + border_m)
     })
 }
 

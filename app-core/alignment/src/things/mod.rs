@@ -82,6 +82,9 @@ const MOST_PIXELS: i32 = 150_000;
 /// receiver itself.
 const OF_PLANE: f32 = 0.1;
 
+/// Border in metres around a known top and its sides up to which a thing on these may reach.
+const SOLID_BORDER_M: f64 = 0.002;
+
 /// Things beside the toy.
 pub(crate) struct Sighting {
     /// Size of the largest level in pixels.
@@ -240,6 +243,11 @@ impl Sight<'_> {
             None if planes.is_empty() => Grown::whole_from(&seeds, Seed::Thing, plate),
             grown => grown,
         };
+        let solids = listed::solids(self.receivers, level, SOLID_BORDER_M);
+        let grown = grown.map(|grown| match &solids {
+            Some(is_solid) => grown.within(is_solid, (&seeds, Seed::Thing)),
+            None => grown,
+        });
         let evidence = grown.as_ref().map(|grown| (grown, self.needed(grown, level)));
         let before = evidence.as_ref().map_or(Vec::new(), |(grown, needed)| {
             toy.before(grown, (frame, plate), needed)
