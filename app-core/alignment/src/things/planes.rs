@@ -68,8 +68,10 @@ const HEIGHTS: (f64, f64, usize) = (-0.03, 0.03, 24);
 /// Slopes of the first search, and the directions of each.
 const SLOPES: [f64; 2] = [0.1, 0.22];
 const N_SIDES: usize = 8;
-/// Steepest slope, and largest depth of a plane below the receiver, in metres.
+/// Steepest slope, the part of it from which on a search has ended there, and largest depth of a plane below
+/// the receiver, in metres.
 const STEEPEST: f64 = 0.6;
+const AT_STEEPEST: f64 = 0.9;
 const BELOW_M: f64 = 0.004;
 /// Distance from the thing's middle up to which it may reach, over the size of its certain pixels.
 const REACH: f64 = 3.0;
@@ -331,7 +333,8 @@ impl<'a> Search<'a> {
         self.apart * self.pixels.len() >= LEAST_CONTRADICTING && loss > OF_PLANE
     }
 
-    /// Losses of the known receivers and of the plane; `None` if the plane is no clear improvement.
+    /// Losses of the known receivers and of the plane; `None` if the plane is no clear improvement, or as steep
+    /// as the search permits: an upright board in two lights came out so.
     pub(super) fn significant_losses(
         &self,
         raster: &mut Rasterizer,
@@ -355,7 +358,10 @@ impl<'a> Search<'a> {
         } else {
             LEAST_SHADOWED
         };
-        (is_significant && self.is_shown(raster, candidate, least)).then_some([of_receiver, loss])
+        let [_, along_x, along_z] = candidate.heights;
+        let is_steepest = along_x.hypot(along_z) > AT_STEEPEST * STEEPEST * self.size_m;
+        let is_found = is_significant && !is_steepest && self.is_shown(raster, candidate, least);
+        is_found.then_some([of_receiver, loss])
     }
 
     /// Losses of the known receivers and of an upright side; `None` if those, or no shadow at all,
