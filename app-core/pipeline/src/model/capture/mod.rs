@@ -88,12 +88,8 @@ impl CapturePath<'_> {
         let change = delta.change;
         match change {
             Change::Pose => return,
-            Change::Picture => {
-                if !delta.keeps_sharpness {
-                    self.sharpen(recorder);
-                }
-                self.fit_intensities(recorder, false);
-            }
+            Change::Picture if delta.keeps_sharpness => self.fit_intensities(recorder, false),
+            Change::Picture => self.sharpen(recorder),
             Change::View => self.learn_view(recorder),
             Change::Scene => self.learn_scene(recorder),
         }
@@ -131,7 +127,8 @@ impl CapturePath<'_> {
         }
     }
 
-    /// Draws everything that depends on the picture's sharpness, for a known view.
+    /// Draws everything that depends on the picture's sharpness, for a known view, and fits exposure
+    /// and intensities before the plate is estimated by them.
     fn sharpen(&self, recorder: &mut Recorder<'_>) {
         let (passes, of) = (self.passes, &self.captured.by_pass);
         passes
@@ -148,6 +145,7 @@ impl CapturePath<'_> {
             self.soften(recorder);
         }
         self.withhold(recorder);
+        self.fit_intensities(recorder, estimate::is_needed(&self.region.plan));
         self.estimate(recorder);
     }
 
