@@ -300,6 +300,21 @@ fn a_focus_that_breathes_is_no_new_scene() {
     }
 }
 
+/// The colours of a soft picture are mixed in the light of that picture, whose lamps may have been
+/// dimmed since an earlier one: they are unmixed anew in every second picture.
+#[test]
+fn a_soft_picture_is_unmixed_in_its_own_light() {
+    let mut core = core();
+    let first = as_soft_as(&first_frame(&mut core), 2.0);
+    let mut is_unmixed = |input: &FrameInput| {
+        let report = core.frame(input).unwrap();
+        report.ran.iter().any(|run| run.pass == "unmix")
+    };
+    assert!(is_unmixed(&first));
+    let later = [0; 4].map(|_| is_unmixed(&dimmed(&first)));
+    assert!(later == [true, false, true, false] || later == [false, true, false, true]);
+}
+
 /// A small part of the variance changes, but edges along the motion become soft.
 #[test]
 fn a_blur_that_grows_across_a_motion_is_followed() {

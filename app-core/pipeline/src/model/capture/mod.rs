@@ -109,7 +109,8 @@ impl CapturePath<'_> {
         }
         if rim::is_needed(&self.region.plan) {
             passes.rim.encode(recorder, &self.rim_inputs(), &of.rim);
-            if is_view_new || !delta.keeps_sharpness {
+            // The lights' intensities hardly change from one picture to the next.
+            if is_view_new || !delta.keeps_sharpness || !is_residual_next {
                 passes.unmix.encode(recorder, &self.unmix_inputs(), &of.unmix);
             }
         }
