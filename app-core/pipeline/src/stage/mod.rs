@@ -328,12 +328,13 @@ impl Stage {
         }
     }
 
-    /// Encodes one frame.
+    /// Encodes one frame. If its pose or placement is refused, the camera image is shown.
     pub(crate) fn encode(
         &mut self,
         recorder: &mut Recorder<'_>,
         input: &FrameInput,
     ) -> Result<FrameReport, ToyError> {
+        self.effect = None;
         recorder.stages.begin("camera picture");
         self.camera.take(recorder.gpu, &input.image);
         recorder.stages.begin("placement");
@@ -356,16 +357,13 @@ impl Stage {
         };
         recorder.stages.begin("pose and footprint");
         self.take_shadow_style(input);
-        self.effect = match self.footprint(input)? {
-            Err(reason) => {
-                reason.tell(&mut report);
-                None
-            }
+        match self.footprint(input)? {
+            Err(reason) => reason.tell(&mut report),
             Ok(footprint) => {
                 self.encode_region(recorder, input, &footprint, &mut report);
-                Some(input.effect)
+                self.effect = Some(input.effect);
             }
-        };
+        }
         Ok(report)
     }
 
