@@ -87,6 +87,9 @@ pub(crate) struct Stage {
     quality_reductions: Vec<QualityStep>,
     /// The warning for it.
     cost_warning: Option<Warning>,
+    /// Size, in steps, of a region for which the scene is too costly at any quality, as long as
+    /// placement and settings stay the same.
+    refused_steps: Option<UVec2>,
     /// Reach of the clip that was shown last, including the poses shown so far.
     reach: Option<ClipReach>,
     /// Footprint of the latest frame.
@@ -227,6 +230,7 @@ impl Stage {
             quality_reductions: Vec::new(),
             asked_down: Vec::new(),
             cost_warning: None,
+            refused_steps: None,
             reach: None,
             cached_footprint: None,
         })
