@@ -62,7 +62,9 @@ impl Stage {
         footprint: &Footprint,
     ) -> (Change, bool) {
         let sharpness = soft::taken(input.sharpness, self.sharpness);
-        let keeps_sharpness = sharpness == self.sharpness;
+        // The published method knows no softness.
+        let is_published = matches!(self.settings, Settings::Baseline(_));
+        let keeps_sharpness = is_published || sharpness == self.sharpness;
         self.sharpness = sharpness;
         let change = self.update_for(gpu, input, footprint, keeps_sharpness);
         (change, keeps_sharpness)

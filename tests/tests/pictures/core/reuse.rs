@@ -268,6 +268,9 @@ fn a_softness_that_is_not_seen_changes_nothing() {
             published(&first) == published(&as_soft_as(&first, 2.0)),
             "{preset}"
         );
+        // Nor is anything drawn again.
+        let report = core.frame(&as_soft_as(&first, 3.0)).unwrap();
+        assert!(report.ran.is_empty(), "{preset}: {:?}", report.ran);
     }
 }
 
