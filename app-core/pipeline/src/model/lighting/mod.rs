@@ -264,7 +264,7 @@ impl Lighting {
         }
     }
 
-    /// Draws the toy's shadow on itself.
+    /// Draws the toy's shadow on itself, if there are any lights.
     pub(crate) fn encode_self_shadow(
         &self,
         recorder: &mut Recorder<'_>,
@@ -272,6 +272,9 @@ impl Lighting {
         posed: Posed<'_>,
         maps: &LightMaps,
     ) {
+        if self.n_lights == 0 {
+            return;
+        }
         let lights = self.lights.iter().take(self.n_lights);
         let light_points: Vec<&[Vec4]> = lights.map(LightPointsBuffer::in_anchor).collect();
         let inputs = self_shadow::Inputs {
