@@ -131,6 +131,7 @@ impl Stage {
         };
         model.update_coverage_tiles(&self.toy, delta);
         model.encode(&mut recorder, &self.toy, &pictures, delta);
+        self.toy.forget_lists();
         let count = |n: usize| n as f64;
         let by_lights = plan.n_light_points.iter().zip(&covered.by_lights_px);
         let by_lights: f64 = by_lights.map(|(n_points, px)| count(*n_points) * px).sum();
