@@ -248,7 +248,7 @@ fn solve_toy(channel: u32) {
   for (var i = 0u; i < step.n_columns; i++) { solution.toy[i][channel] = unknowns[i]; }
 }
 
-// Without a valid pixel the start values stay.
+// Without a valid pixel the start values stay; receivers after the first get their prior.
 fn solve_channel(channel: u32, energy: f32, is_shadow_known: bool) {
   if step.subject == SUBJECT_INTENSITIES { solution.gain[channel] *= step.exposure_ratio; }
   if step.subject == SUBJECT_TOY {

@@ -6,7 +6,8 @@ use super::model::{Pictures, Region, Solution, centre_px};
 use super::raster::Raster;
 use super::things::{ALPHAS, BEFORE_THING, BEFORE_TOY, THING, Things};
 
-/// Alphas of a pixel that is shown as it is: the least and the most of it is made.
+/// Alphas of the plate between which a pixel is relit: at the first it is shown as it is, at the second all of it
+/// is made.
 pub const RELIT: [f64; 2] = [0.5, 0.75];
 /// Metres per step of a height.
 const HEIGHT_STEP_M: f64 = 1e-5;

@@ -98,7 +98,7 @@ impl Stage {
         }
     }
 
-    /// Counts the work of a scene's first frame.
+    /// Counts the work of a new view, which is less than that of a new scene.
     fn cost(&self, plan: &Plan, footprint: &Footprint, covered: &Covered, divisor: u32) -> Cost {
         let gpu = Gpu::default();
         let globals = globals(&footprint.view, &plan.region, &self.layout())
