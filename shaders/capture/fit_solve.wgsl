@@ -16,6 +16,7 @@
 
 //#import common/accumulated
 //#import common/fit
+//#import common/fit_row
 //#import common/fit_step
 //#import common/receiver_light
 //#import common/no_light
@@ -26,8 +27,6 @@
 // 84 sums for each receiver, followed by those for the toy.
 @group(1) @binding(3) var<storage, read_write> accumulated: array<f32>;
 
-const N_SUMS: u32 = 28u;
-const CLIPPED_SUM: u32 = 27u;
 // Number of sums of the three channels.
 const N_ROW: u32 = 84u;
 // Weight of the priors relative to the energy of the first column.
@@ -105,7 +104,7 @@ fn load_equations(first_channel: u32, n_channels: u32) {
   for (var channel = first_channel; channel < first_channel + n_channels; channel++) {
     var k = channel * N_SUMS;
     for (var i = 0u; i < N_COLUMNS; i++) {
-      unknowns[i] += sums[channel * N_SUMS + 21u + i];
+      unknowns[i] += sums[channel * N_SUMS + RIGHT_SUM + i];
       for (var j = i; j < N_COLUMNS; j++) {
         matrix[i * N_COLUMNS + j] += sums[k];
         if j > i { matrix[j * N_COLUMNS + i] += sums[k]; }
@@ -248,7 +247,7 @@ fn solve_toy(channel: u32) {
   for (var i = 0u; i < step.n_columns; i++) { solution.toy[i][channel] = unknowns[i]; }
 }
 
-// Without a valid pixel the start values stay.
+// Without a valid pixel the start values stay; receivers after the first get their prior.
 fn solve_channel(channel: u32, energy: f32, is_shadow_known: bool) {
   if step.subject == SUBJECT_INTENSITIES { solution.gain[channel] *= step.exposure_ratio; }
   if step.subject == SUBJECT_TOY {

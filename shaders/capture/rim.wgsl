@@ -12,6 +12,7 @@
 
 //#import common/model
 //#import common/cells
+//#import common/position_steps
 //#import common/spread
 //#import common/reflection
 //#import common/fullscreen
@@ -24,8 +25,6 @@
 @group(1) @binding(6) var gbuffer_depth: texture_depth_2d;
 
 const N_POSITIONS: u32 = 64u;
-// Column and row step of the lattice from one position to the next.
-const POSITION_STEPS = vec2u(47u, 53u);
 
 // Part of a pixel of the physical box that shows the toy.
 fn part_of_toy(at: vec2f) -> f32 {

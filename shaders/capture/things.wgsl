@@ -76,9 +76,11 @@ fn rim_code(region_px: vec2f) -> vec2u {
   if all(out == vec2i(0)) { return vec2u(0u); }
   let is_inside = shows_thing(code_at(region_px));
   let steps = rim_steps_of(out, is_inside);
-  let inner = code_at(region_px + vec2f(steps.xy));
+  let within = region_px + vec2f(steps.xy);
+  let inner = code_at(within);
   let beyond = region_px + vec2f(steps.zw);
-  let is_in = all(beyond > vec2f(0.0)) && all(beyond < vec2f(textureDimensions(validity)));
+  // Both are read, and the region ends here.
+  let is_in = all(min(within, beyond) > vec2f(0.0)) && all(max(within, beyond) < vec2f(textureDimensions(validity)));
   if !is_in || !shows_thing(inner) || shows_thing(code_at(beyond)) { return vec2u(0u); }
   let neighbor = u32(3 * (out.y + 1) + out.x + 1);
   let number = neighbor - select(0u, 1u, neighbor > 4u);

@@ -2,7 +2,7 @@
 // the pixel's centre.
 //
 //   frame = spread of (tint x model), so model / (spread of model) x frame is the colour of one surface
-// It depends on no frame, and changes with the spread alone.
+// It depends on no pixel of the frame, but on its spread and on the lights' intensities in it.
 //
 // Reads: gbuffer, fit. Writes: in the physical box, the factor as codes of ten bits.
 // CPU reference: tests/reference/src/unmix.rs.

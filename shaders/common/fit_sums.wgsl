@@ -2,12 +2,9 @@
 // into `rows` of the shader.
 
 //#import common/fit
+//#import common/fit_row
 
 const WORKGROUP: u32 = 256u;
-// Upper triangle of the symmetric matrix row by row, followed by the right-hand side and the
-// clipped pixels' part of the matrix' first element.
-const N_SUMS: u32 = 28u;
-const CLIPPED_SUM: u32 = 27u;
 // Sums are reduced in four parts to stay within 16 KiB of workgroup memory.
 const N_PART: u32 = 7u;
 const N_PARTIAL: u32 = 1792u; // WORKGROUP * N_PART

@@ -193,7 +193,7 @@ fn receiver(
   let kept = mix(darkened(own_color, own, lit * after) + shown + own_beyond, f, is_object);
   let keep = seen * max(is_near, is_outlier);
   let inside = max(inside_border(at), 1.0 - seen);
-  *change = vec4f(lit * (after - before) + (shown - reflection), keep_mixed);
+  *change = vec4f((1.0 - is_object) * (lit * (after - before) + (shown - reflection)), keep_mixed);
   let color = max(mix(f, mix(made, kept, keep), inside), vec3f(0.0));
   if HAS_GRAIN { missing = missing_beside(color, 1.0 - inside * (1.0 - keep), f, b, fit.gain.rgb * (after + residual)); }
   return color;

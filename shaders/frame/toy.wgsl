@@ -146,10 +146,12 @@ fn is_point_shown(low: vec2f, t: vec2f, depth: f32) -> bool {
 // `physical_px` and `depth` with the base colour `base`; alpha is 0 if it is hidden. `is_beside`
 // becomes whether other paint is beside it.
 //
-// Of the four pixels around it only those count that show its surface and material, or lie beyond the
-// outline, with colours from `appearance`. Their mean is relit from their mean light. If the camera saw
-// this point at a similar angle, pixels of other paint count, too: a line of the texture may be thinner
-// than a pixel, and beside the camera's colours the model's own would be a speck.
+// Of the four pixels around it only those count that show its material, on its surface or on one farther
+// away, or lie beyond the outline, with colours from `appearance`. Their mean is relit from their mean
+// light. Less weight for the farther surface makes no difference: the error at a husky's edge is 3.65
+// codes in place of 3.64. If the camera saw this point at a similar angle, pixels of other paint count,
+// too: a line of the texture may be thinner than a pixel, and beside the camera's colours the model's own
+// would be a speck.
 fn camera_color(physical_px: vec2f, depth: f32, base: vec3f, lit: vec3f, expected: vec3f, stretch: f32, is_beside: ptr<function, bool>) -> vec4f {
   let at = physical_px - 0.5;
   let low = floor(at);

@@ -223,7 +223,7 @@ impl Profile {
         frames.map(|(place, _)| place)
     }
 
-    /// The scopes of a thread, with the number of each scope's frame.
+    /// The scopes of a thread, of all frames.
     pub fn scopes(&self, tid: u32) -> impl Iterator<Item = &Event> {
         let of_thread = move |event: &&Event| event.ph == "X" && event.tid == tid;
         self.events.iter().filter(of_thread)

@@ -10,9 +10,9 @@ use super::raster::Raster;
 use super::smoothstep;
 
 /// Change of the model, in plates, up to which a visible pixel keeps all of its own residual.
-const KEEP_ALL: f64 = 0.02;
+pub(super) const KEEP_ALL: f64 = 0.02;
 /// Change of the model, in plates, from which a visible pixel keeps none of its own residual.
-const KEEP_NONE: f64 = 0.15;
+pub(super) const KEEP_NONE: f64 = 0.15;
 /// Change of the model, in plates, at which half of the pooled residual remains.
 const RESIDUAL_HALF: f64 = 0.5;
 /// Pooled residual, in plates, up to which the model explains the pixel.

@@ -24,7 +24,7 @@ pub struct Evidence {
     pub receiver: usize,
     /// The model's remaining light, in plates.
     pub model: DVec3,
-    /// Light that the model does not explain, over the gain.
+    /// Light that neither the model nor a reflection explains, over the gain.
     pub unexplained: DVec3,
     /// The plate, 0 in unreliable channels.
     pub plate: DVec3,
@@ -43,13 +43,15 @@ pub fn evidence(
         let has_evidence = pictures.seen.at(texel) > 0.0 && photographed.at(texel) == 1.0;
         let point = region.receiver_point(at).filter(|_| has_evidence)?;
         let ambient = coarse_at(&pictures.ambient, region, at);
-        let model = solution.receiver_model(region, point, ambient, pictures.visibility.at(texel));
+        let visibility = pictures.visibility.at(texel);
+        let model = solution.receiver_model(region, point, ambient, visibility);
+        let own = pictures.frame.at(texel) / solution.gain - region.reflected(point, visibility);
         let plate = pictures.plate.at(texel);
         let is_dark = plate.cmplt(DVec3::splat(DARKEST_USABLE));
         Some(Evidence {
             receiver: point.receiver,
             model,
-            unexplained: pictures.frame.at(texel) / solution.gain - plate * model,
+            unexplained: own - plate * model,
             plate: DVec3::select(is_dark, DVec3::ZERO, plate),
         })
     })

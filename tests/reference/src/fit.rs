@@ -11,6 +11,8 @@ use super::model::{
     is_clipped,
 };
 use super::raster::Raster;
+use super::receiver_priors::receiver_priors;
+pub use super::receiver_priors::{MAX_BOUNCE, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION};
 
 /// Residual of a receiver, as a fraction of the plate, at which a pixel counts half.
 const CAUCHY_SCALE: f64 = 0.03;
@@ -31,16 +33,8 @@ const LEAST_SHARE: f64 = 0.05;
 /// Weight with which further receivers keep the first one's gain, as a fraction of the first
 /// column's energy.
 const SAME_GAIN_WEIGHT: f64 = 10.0;
-/// Prior of the bounce, as a fraction of the ambient light that the toy blocks: that of a toy of
-/// middle grey.
-pub const PRIOR_BOUNCE: f64 = 0.27;
-/// Prior of the direct share of the plate's radiance, over all lights.
-pub const PRIOR_DIRECT_FRACTION: f64 = 0.5;
 /// Largest direct share of the plate's radiance: some of it is always ambient.
 const MAX_DIRECT_FRACTION: f64 = 0.98;
-/// Largest bounce, as a fraction of the ambient light that the toy blocks; also its prior if no
-/// light is known.
-pub const MAX_BOUNCE: f64 = 1.0;
 /// Smallest fraction of the difference between frame and plate that an ambient shadow must explain
 /// if no light is known.
 const LEAST_EXPLAINED: f64 = 0.1;
@@ -109,8 +103,8 @@ pub fn receiver_samples(region: &Region, pictures: &Pictures, stride_px: u32) ->
     taken.texels().iter().filter_map(sample).collect()
 }
 
-/// Fits gain, bounce and shares of one receiver in `n_steps`, from `start`, which stays without
-/// evidence.
+/// Fits gain, bounce and shares of one receiver in `n_steps`, from `start`. Without evidence it stays
+/// for the first receiver; the others have their priors.
 ///
 /// Receivers are fitted in turn: the first determines the gain and the priors of the others.
 #[must_use]
@@ -136,7 +130,12 @@ pub fn fit_receiver(
             && is_last
             && !is_ambient_shadow_known(&of_channels.each_ref().map(|(e, _)| e));
         for (channel, (equations, clipped)) in of_channels.into_iter().enumerate() {
-            if has_no_shadow {
+            if receiver > 0 && equations.energy(0) <= 0.0 {
+                let priors = receiver_priors(region, receiver, &before, channel);
+                let unknowns: Vec<f64> = iter::once(1.0).chain(priors).collect();
+                store_receiver(&unknowns, receiver, channel, &mut solution);
+                solution.receivers[receiver].clipped[channel] = 0.0;
+            } else if has_no_shadow {
                 take_unshadowed(&equations, receiver, constants, channel, &mut solution);
             } else {
                 let priors = receiver_priors(region, receiver, &before, channel);
@@ -189,48 +188,6 @@ fn receiver_equations(
         equations.observe(&columns, value, weight);
     }
     (equations, of_clipped)
-}
-
-/// Priors of bounce and shares without a visible shadow on the receiver.
-fn receiver_priors(region: &Region, receiver: usize, before: &Solution, channel: usize) -> Vec<f64> {
-    let n_lights = region.lights.len();
-    let irradiance = |plane: &ReceiverPlane, i: usize| {
-        let light = plane.lights[i];
-        let at = DVec3::new(plane.reference_in_plane.x, 0.0, plane.reference_in_plane.y);
-        let to_light = light.truncate() - at * light.w;
-        let falloff = if light.w == 0.0 {
-            1.0
-        } else {
-            to_light.length_squared()
-        };
-        (to_light.normalize().y / falloff).max(0.0)
-    };
-    if receiver == 0 {
-        // All lights count as if they had the same intensity at one metre.
-        let each = (0..n_lights).map(|i| irradiance(&region.receivers[0], i));
-        let total: f64 = each.clone().sum();
-        let direct_fractions = each.map(|one| PRIOR_DIRECT_FRACTION * one / total);
-        let bounce = if n_lights == 0 { MAX_BOUNCE } else { PRIOR_BOUNCE };
-        return iter::once(bounce).chain(direct_fractions).collect();
-    }
-    // The same lights with the same ambient light.
-    let first = &before.receivers[0];
-    let of_first = |i| {
-        let there = irradiance(&region.receivers[0], i);
-        if there > 0.0 {
-            irradiance(&region.receivers[receiver], i) / there
-        } else {
-            0.0
-        }
-    };
-    let of_channel = |i: usize| first.direct_fractions[i][channel];
-    let direct_fractions: Vec<f64> = (0..n_lights).map(|i| of_channel(i) * of_first(i)).collect();
-    let direct: f64 = (0..n_lights).map(of_channel).sum();
-    let total = 1.0 - direct + direct_fractions.iter().sum::<f64>();
-    let direct_fractions = direct_fractions.iter().map(|fraction| fraction / total);
-    iter::once(first.bounce[channel])
-        .chain(direct_fractions)
-        .collect()
 }
 
 /// Whether an ambient shadow explains enough of the difference between frame and plate, without
@@ -297,14 +254,19 @@ fn take_receiver(
         .enumerate()
         .for_each(|(i, prior)| equations.expect(1 + i, *prior, weight));
     let unknowns = equations.solve();
-    let correction = unknowns[0];
-    if correction <= 0.0 {
-        return;
+    if unknowns[0] > 0.0 {
+        store_receiver(unknowns.as_slice(), receiver, channel, solution);
     }
+}
+
+/// Sets a receiver's values from the unknowns of a channel, the first of which is the correction of the
+/// gain.
+fn store_receiver(unknowns: &[f64], receiver: usize, channel: usize, solution: &mut Solution) {
+    let correction = unknowns[0];
     if receiver == 0 {
         solution.gain[channel] *= correction;
     }
-    let direct_fractions = unknowns.as_slice()[2..].iter();
+    let direct_fractions = unknowns[2..].iter();
     let direct_fractions: Vec<f64> = direct_fractions.map(|one| (one / correction).max(0.0)).collect();
     let total: f64 = direct_fractions.iter().sum();
     let scale = if total > MAX_DIRECT_FRACTION {

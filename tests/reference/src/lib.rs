@@ -32,6 +32,7 @@ pub mod pcss;
 pub mod plate;
 pub mod raster;
 pub mod real;
+pub mod receiver_priors;
 pub mod reflection;
 pub mod residual;
 pub mod retarget;

@@ -4,7 +4,6 @@
 use app_pipeline::geometry::rect::{PixelRect, PlaneRect};
 use app_pipeline::geometry::scene_layout::SceneLayout;
 use app_pipeline::geometry::view::View;
-use app_pipeline::passes::globals::globals;
 use app_scene::scene::Light;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4, UVec2};
 
@@ -16,6 +15,8 @@ pub(super) const DARKEST_USABLE: f64 = 0.003_035_27;
 /// Linear value of the 8-bit code 250: brighter ones may be clipped.
 pub(super) const BRIGHTEST_USABLE: f64 = 0.955_973_35;
 
+/// Width of the fade at an edge of the region within the picture, in pixels.
+const BORDER_PX: f64 = 24.0;
 /// Weight of a pixel that may be clipped in both pictures.
 const CLIPPED_WEIGHT: f64 = 1e-3;
 
@@ -34,6 +35,13 @@ pub struct Region {
     pub light_radii: Vec<f64>,
     /// Reflection of the first receiver; `None` if it is matt.
     pub reflection: Option<Reflection>,
+}
+
+/// Width of the fade at each edge of a part of a picture, as in [`Region::border_px`].
+fn border_px(rect: &PixelRect, image_px: UVec2) -> [f64; 4] {
+    let (first, end) = (rect.origin_px, rect.origin_px + rect.size_px);
+    let is_inner = [first.x > 0, first.y > 0, end.x < image_px.x, end.y < image_px.y];
+    is_inner.map(|is_inner| if is_inner { BORDER_PX } else { 0.0 })
 }
 
 /// One receiver as the camera sees it.
@@ -292,7 +300,6 @@ impl Region {
     /// The region `rect` of a camera's picture.
     #[must_use]
     pub fn new(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Self {
-        let globals = globals(view, rect, layout);
         let world_from_anchor = layout.world_from_anchor();
         let lights_in = |space_from_world: &DMat4| {
             let lights = layout.lights.iter();
@@ -312,7 +319,7 @@ impl Region {
         Self {
             receivers: receivers.collect(),
             size_px: rect.size_px,
-            border_px: globals.border_px.map(f64::from),
+            border_px: border_px(rect, view.image_px),
             lights: lights_in(&world_from_anchor.inverse()),
             light_radii: layout.lights.iter().map(Light::radius).collect(),
             reflection: None,

@@ -2,16 +2,16 @@
 
 use glam::{DVec2, DVec3, DVec4, UVec2};
 
+use super::composite::{KEEP_ALL, KEEP_NONE};
 use super::model::{Pictures, Region, Solution, centre_px};
 use super::raster::Raster;
 use super::things::{ALPHAS, BEFORE_THING, BEFORE_TOY, THING, Things};
 
-/// Alphas of a pixel that is shown as it is: the least and the most of it is made.
+/// Alphas of the plate between which a pixel is relit: at the first it is shown as it is, at the second all of it
+/// is made.
 pub const RELIT: [f64; 2] = [0.5, 0.75];
 /// Metres per step of a height.
 const HEIGHT_STEP_M: f64 = 1e-5;
-/// Change, in plates, over which a pixel becomes a made one.
-const KEEP: [f64; 2] = [0.02, 0.15];
 /// Distance of further changes that count.
 const NEARBY_PX: f64 = 3.0;
 
@@ -69,7 +69,7 @@ pub fn on_things(
         left -= share * (1.0 - *intensity * visible(DVec2::ZERO)[1]);
         change += share * *intensity * changes.into_iter().fold(0.0, f64::max);
     }
-    let part = ((change.max_element() - KEEP[0]) / (KEEP[1] - KEEP[0])).clamp(0.0, 1.0);
+    let part = ((change.max_element() - KEEP_ALL) / (KEEP_NONE - KEEP_ALL)).clamp(0.0, 1.0);
     let is_behind_toy = shaded.things.at(centre_px(texel)) == THING;
     let behind_toy = if is_behind_toy { 1.0 - marks.z } else { 0.0 };
     let made = (part * part * (3.0 - 2.0 * part)).max(behind_toy);

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3, DVec4, IVec2, UVec2};
 
 use super::model::{ReceiverPoint, Region, centre_px};
 use super::raster::Raster;
+use super::reflection::Reflection;
 
 /// Distance from a plate's border, in pixels, over which it is blended with another one.
 const FEATHER_PX: f64 = 32.0;
@@ -101,6 +102,7 @@ pub fn choose(view: &Viewpoint, plates: &[PlatePhoto], texel: UVec2) -> DVec4 {
         let weight = weight(one);
         if weight >= LEAST_WEIGHT * best_weight {
             let color = one.plate.gain * sharp(&one.plate.picture, one.px);
+            let color = (color - reflected(view, &one.plate.camera, at)).max(DVec3::ZERO);
             sum += weight * color.extend(1.0);
         }
     }
@@ -109,6 +111,19 @@ pub fn choose(view: &Viewpoint, plates: &[PlatePhoto], texel: UVec2) -> DVec4 {
     } else {
         sum / sum.w
     }
+}
+
+/// Surroundings that a point of a glossy receiver, seen at a place of the view, reflects to another
+/// camera.
+fn reflected(view: &Viewpoint, camera: &Viewpoint, at: DVec2) -> DVec3 {
+    let Some((reflection, point)) = view.region.reflection.zip(view.region.receiver_point(at)) else {
+        return DVec3::ZERO;
+    };
+    let to_camera = Reflection {
+        eye_in_plane: camera.centre_in(0),
+        ..reflection
+    };
+    to_camera.light(point, DVec4::ONE, 1.0)
 }
 
 /// A plate that shows a point, and the point's image.

@@ -50,5 +50,6 @@ pub fn shown_receiver(region: &Region, pictures: &Pictures, learned: &Learned<'_
         .solution
         .receiver_model(region, point, ambient, visibility);
     let (grid, residual) = &learned.residuals[point.receiver];
-    plate * (model + grid.value_at(residual, point.in_plane)).max(DVec3::ZERO)
+    let matt = plate * (model + grid.value_at(residual, point.in_plane)).max(DVec3::ZERO);
+    matt + region.reflected(point, visibility)
 }

@@ -2,6 +2,8 @@
 
 use glam::{DVec3, DVec4, IVec2, UVec2};
 
+use super::composite::{KEEP_ALL, KEEP_NONE};
+use super::model::DARKEST_USABLE;
 use super::on_things::RELIT;
 use super::raster::Raster;
 use super::smoothstep;
@@ -10,10 +12,6 @@ use super::smoothstep;
 const CONTRAST: f64 = 0.003;
 /// Part of a pixel inside the mark that shows the thing, if colours do not tell.
 const INSIDE: f64 = 0.75;
-/// Change of what is beyond over which the frame's own deviation is dropped.
-const KEEP: [f64; 2] = [0.02, 0.15];
-/// Light below which a change is not divided by it: code 10.
-const DARKEST: f64 = 0.003_035_27;
 
 /// Pictures of a region: the frame, and the plate with alpha 1 where it is as photographed.
 #[derive(Clone, Copy, Debug)]
@@ -43,10 +41,10 @@ impl Rims<'_> {
         let along: f64 = rows.iter().map(|(own, all)| own.dot(*all)).sum();
         let whole: f64 = rows.iter().map(|(_, all)| all.length_squared()).sum();
         let part = ((along + CONTRAST * prior) / (whole + CONTRAST)).clamp(0.0, 1.0);
-        let lightest = shown.max(beyond).max_element().max(DARKEST);
+        let lightest = shown.max(beyond).max_element().max(DARKEST_USABLE);
         let change = (shown - beyond).abs().max_element() / lightest;
         let deviation = here - beyond.lerp(within, part);
-        let kept = shown.lerp(within, part) + (1.0 - smoothstep(KEEP[0], KEEP[1], change)) * deviation;
+        let kept = shown.lerp(within, part) + (1.0 - smoothstep(KEEP_ALL, KEEP_NONE, change)) * deviation;
         let kept = kept.max(DVec3::ZERO);
         let alpha = in_plate[1].w;
         if !(RELIT[0]..=RELIT[1]).contains(&alpha) {

@@ -109,7 +109,9 @@ fn rim(things: &Things, size: UVec2, at: DVec2) -> Option<(usize, u8)> {
     let number = DIRECTIONS.iter().position(|direction| *direction == outward)?;
     let code = 1 + number + if shows(at) { 8 } else { 0 };
     let [within, beyond] = rim_steps(code).map(|step| at + step.as_dvec2());
-    let is_in = beyond.cmpgt(DVec2::ZERO).all() && beyond.cmplt(size.as_dvec2()).all();
+    let is_in = [within, beyond]
+        .iter()
+        .all(|at| at.cmpgt(DVec2::ZERO).all() && at.cmplt(size.as_dvec2()).all());
     (is_in && shows(within) && !shows(beyond)).then(|| (code, things.at(within)))
 }
 

@@ -3,13 +3,15 @@
 //!
 //! Source: Gortler et al. 1996, section 3.4, here in a volume.
 
-use app_pipeline::model::state::tints::{TINT_SIDE, TintGrid};
+use app_pipeline::model::state::tints::TintGrid;
 use glam::{DVec3, DVec4, UVec3, Vec3};
 
 use super::model::{BRIGHTEST_USABLE, DARKEST_USABLE};
 
 /// Largest expected linear light of a channel: a photograph is clipped far below.
 const MOST_EXPECTED: f64 = 3.0;
+/// Number of cells along each side of a grid.
+const N_SIDE_CELLS: u32 = 16;
 /// Number of pixels from which a cell has full weight.
 const FULL_PIXELS: f64 = 16.0;
 
@@ -79,7 +81,7 @@ impl Volume {
 /// values.
 #[must_use]
 pub fn tints(grid: &TintGrid, seen: &[SeenPaint]) -> Vec<Volume> {
-    let side = u32::try_from(TINT_SIDE).unwrap_or(u32::MAX);
+    let side = N_SIDE_CELLS;
     let materials = 0..grid.n_materials as usize;
     let last = materials.end - 1;
     materials

@@ -14,9 +14,9 @@ use reference::raster::Raster;
 use crate::composite::check_receiver;
 use crate::device::Device;
 use crate::errors::{Errors, channels};
-use crate::photo::{Photo, truth};
+use crate::photo::{Photo, photograph, truth};
 use crate::run::{Run, runs};
-use crate::setups::{NO_LIGHT, SETUPS};
+use crate::setups::{NO_LIGHT, SETUPS, SIDE, Setup};
 use crate::stand::Stand;
 use crate::toy;
 
@@ -69,6 +69,28 @@ pub(crate) fn check_receivers(run: &Run) {
         // 10^4; and 8 bits of weight in a graphics card's bilinear filter. Measured in software,
         // which filters in 32 bits: 4e-6.
         errors.check_all(&format!("{}, receiver {receiver}", run.stand.setup.name), 1e-3);
+    }
+}
+
+/// A light that only the side of a book sees has no fraction on the table to follow; and from behind,
+/// nothing of that side is in the picture.
+#[test]
+fn receivers_whose_light_no_other_one_tells() {
+    let setup = Setup {
+        lights: &SIDE.lights[1..],
+        ..SIDE
+    };
+    let behind = setup.distance_m * DVec3::new(0.3, 0.6, -0.75).normalize();
+    for (stand, shows_side) in [
+        (Stand::new(setup), true),
+        (Stand::seen_from(setup, behind), false),
+    ] {
+        let pictures = photograph(&stand);
+        let run = Run::new(stand, pictures, &Device::shared().decoded()).unwrap();
+        let samples = receiver_samples(&run.region, &run.pictures, run.plan.fit_stride_px);
+        let is_seen = samples.iter().any(|sample| sample.point.receiver == 2);
+        assert_eq!(is_seen, shows_side);
+        check_receivers(&run);
     }
 }
 

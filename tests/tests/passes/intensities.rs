@@ -4,7 +4,10 @@
 use app_core::core::Core;
 use app_core::preset::Preset;
 use app_core::scene::Image;
+use app_core::sharpness::{Sharpness, Spread};
 use app_pipeline::core::inspect::Inspect;
+use app_pipeline::plan::Change;
+use app_pipeline::readback::Map;
 use app_scene::geometry::color::linear_from_srgb;
 use glam::{DVec3, UVec2};
 use reference::model::centre_px;
@@ -14,7 +17,8 @@ use crate::composite::shows_toy;
 use crate::cores::core_on;
 use crate::errors::Errors;
 use crate::photo::Photo;
-use crate::run::{codes_at, input, scene, solution, texel_of};
+use crate::plates;
+use crate::run::{codes_at, input, plate_of, raster, scene, solution, texel_of};
 use crate::setups::{SETUPS, Setup, WALL};
 use crate::stand::Stand;
 
@@ -147,4 +151,47 @@ fn hidden_sides_of_the_toy_follow_a_light() {
         should.max_element() < 0.9,
         "little of it is in the light: {should}"
     );
+}
+
+/// Mean colours of the part of the plate that no photograph shows.
+fn mean_of_estimated(core: &Core) -> DVec3 {
+    let plate = raster(&core.read_map(Map::Plate).unwrap().unwrap());
+    let estimated = plate.texels().iter().filter(|texel| texel.w < 1.0);
+    let (sum, n) = estimated.fold((DVec3::ZERO, 0.0), |(sum, n), texel| {
+        (sum + texel.truncate(), n + 1.0)
+    });
+    assert!(n > 1000.0, "{n} pixels of the plate are estimated");
+    sum / n
+}
+
+/// The plate that completes a photographed one has no exposure, so a picture whose focus and
+/// exposure are new at once estimates the same plate.
+#[test]
+fn a_new_focus_and_exposure_at_once_estimate_the_same_plate() {
+    let stand = Stand::seen_from(plates::SETUP, plates::HERE);
+    let close = Stand::seen_from(plates::SETUP, 0.6 * plates::HERE);
+    let photo = Photo::plain(2);
+    let plate = plate_of(&close, &photo.plate(&close));
+    let frame = |exposure: f64, deviation_px: f64| {
+        let later = dimmed(&photo, DVec3::splat(exposure), &[1.0, 1.0]);
+        let spread = Spread::round(deviation_px);
+        let focused = Sharpness {
+            plate_spread: spread,
+            outline_spread: spread,
+        };
+        input(&stand, &later.frame(&stand, &stand.physical)).with_sharpness(focused)
+    };
+    let first = frame(1.0, 1.0);
+    let with_plate = scene(&stand, first.image.rgba()).with_plates(vec![plate]);
+    let mut core = core_on(with_plate, Preset::Balanced).unwrap();
+    core.frame(&first).unwrap();
+    let before = mean_of_estimated(&core);
+    for (exposure, deviation_px) in [(0.5, 1.5), (0.7, 0.8)] {
+        let report = core.frame(&frame(exposure, deviation_px)).unwrap();
+        assert_eq!(report.change, Some(Change::Picture));
+        let ratio = mean_of_estimated(&core) / before;
+        eprintln!("exposure {exposure}: estimated plate times {ratio}");
+        // Measured:
+        assert!((ratio - 1.0).abs().max_element() < 0.02, "{exposure}: {ratio}");
+    }
 }

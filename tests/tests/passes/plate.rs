@@ -1,6 +1,7 @@
 //! `plate` compared with its reference: cameras all around a table and a wall, and pictures full of
 //! detail.
 
+use app_core::reflection::Reflection;
 use app_core::scene::MAX_RECEIVERS;
 use app_pipeline::passes::plate::{PlateView, PlateViews};
 use glam::{DMat3, DVec3, DVec4, UVec2};
@@ -14,6 +15,7 @@ use crate::alone::{Bindings, Draw, check_faults, source};
 use crate::device::Device;
 use crate::errors::{Errors, pairs_of};
 use crate::numbers::numbers;
+use crate::run::known_reflection;
 use crate::setups::WALL;
 use crate::stand::Stand;
 
@@ -86,19 +88,39 @@ fn plate_views(here: &Stand, plates: &[(Stand, PlatePhoto)]) -> PlateViews {
 /// Errors of the colours and alpha that `source` makes: for all plates, or for one from the other
 /// side of the wall.
 fn errors(source: &str) -> Errors {
-    let (device, plates) = (Device::shared(), plates());
+    errors_over(None, source)
+}
+
+/// The same over a glossy table.
+fn errors_of_glossy(source: &str) -> Errors {
+    let reflection = Reflection {
+        roughness: 0.15,
+        surroundings: [0.5, 0.7, 0.9],
+        toy_above_surroundings: [0.6, -0.4, -0.8],
+    };
+    errors_over(Some(&reflection), source)
+}
+
+fn errors_over(reflection: Option<&Reflection>, source: &str) -> Errors {
+    let plates = plates();
     let views = [
         (BEFORE, &plates[..]),
         (BEHIND, &plates[..]),
         (BEFORE, &plates[3..]),
         (BEHIND, &plates[..1]),
     ];
-    let of_views = views.map(|(offset, plates)| pairs(device, source, offset, plates));
+    let of_views = views.map(|(offset, plates)| pairs(reflection, source, offset, plates));
     Errors::between(of_views.concat())
 }
 
 /// Actual and expected colours and alpha of a view's plate.
-fn pairs(device: &Device, source: &str, offset: DVec3, plates: &[(Stand, PlatePhoto)]) -> Vec<(f64, f64)> {
+fn pairs(
+    reflection: Option<&Reflection>,
+    source: &str,
+    offset: DVec3,
+    plates: &[(Stand, PlatePhoto)],
+) -> Vec<(f64, f64)> {
+    let device = Device::shared();
     let pictures: Vec<Raster<DVec4>> = plates
         .iter()
         .map(|(_, photo)| photo.picture.map(|color| color.extend(1.0)))
@@ -110,7 +132,11 @@ fn pairs(device: &Device, source: &str, offset: DVec3, plates: &[(Stand, PlatePh
         origin_px: UVec2::new(9, 4),
         size_px: UVec2::new(141, 110),
     };
-    let globals = device.uniform(&here.globals(&rect));
+    let channel = here.setup.lights.len();
+    let globals = here
+        .globals(&rect)
+        .with_reflection(reflection.map(|known| (known, channel)));
+    let globals = device.uniform(&globals);
     let views = device.uniform(&plate_views(&here, plates));
     let shared: Bindings<'_> = vec![(0, globals.as_entire_binding())];
     let own: Bindings<'_> = vec![
@@ -119,7 +145,8 @@ fn pairs(device: &Device, source: &str, offset: DVec3, plates: &[(Stand, PlatePh
     ];
     let draw = Draw::of(source, "fs_choose", rect.size_px);
     let actual = device.draw(draw, [&shared, &own]);
-    let view = viewpoint(&here, &rect);
+    let mut view = viewpoint(&here, &rect);
+    view.region.reflection = reflection.map(|reflection| known_reflection(&here, reflection));
     let expected = Raster::from_fn(rect.size_px, |texel| choose(&view, &photos, texel));
     let n_shown = expected.texels().iter().filter(|texel| texel.w == 1.0).count();
     assert!(
@@ -153,4 +180,25 @@ fn a_fault_in_the_choice_is_found() {
         ("[k].gain.rgb;", "[k].gain.aaa;"),
     ];
     check_faults("plate", &faults, ALLOWED, errors);
+}
+
+/// Each plate is freed of what the table reflects to its own camera.
+#[test]
+fn plates_of_a_glossy_table() {
+    errors_of_glossy(&source("plate")).check_all("plates of a glossy table", ALLOWED);
+    let faults = [
+        (
+            "without_reflection(color, at.xy, views.plates[k].camera_in_plane[0].xyz)",
+            "without_reflection(color, at.xy, views.plates[0].camera_in_plane[0].xyz)",
+        ),
+        (
+            "without_reflection(color, at.xy, views.plates[k].camera_in_plane[0].xyz)",
+            "color",
+        ),
+        (
+            "max(color - reflected_to(camera, point, vec4f(1.0), 1.0), vec3f(0.0))",
+            "(color - reflected_to(camera, point, vec4f(1.0), 1.0))",
+        ),
+    ];
+    check_faults("plate", &faults, ALLOWED, errors_of_glossy);
 }

@@ -64,12 +64,21 @@ fn depth() -> Raster<f64> {
 
 /// In a blurred picture and in one of a motion.
 fn errors(source: &str) -> Errors {
-    let pairs = [spread(), line()].map(|spread| pairs_of_spread(source, spread));
+    errors_over(&Scrambled::new(), source)
+}
+
+/// The same over a glossy table.
+fn errors_of_glossy(source: &str) -> Errors {
+    errors_over(&Scrambled::reflecting(), source)
+}
+
+fn errors_over(scene: &Scrambled, source: &str) -> Errors {
+    let pairs = [spread(), line()].map(|spread| pairs_of_spread(scene, source, spread));
     Errors::between(pairs.concat())
 }
 
-fn pairs_of_spread(source: &str, spread: Spread) -> Vec<(f64, f64)> {
-    let (device, scene, depth) = (Device::shared(), Scrambled::new(), depth());
+fn pairs_of_spread(scene: &Scrambled, source: &str, spread: Spread) -> Vec<(f64, f64)> {
+    let (device, depth) = (Device::shared(), depth());
     let residuals = scene.plane_grids().map(|grid| {
         let values = Raster::from_fn(grid.size, |at| {
             DVec3::from([180, 181, 182].map(|seed| number(at, seed) - 0.7))
@@ -81,8 +90,7 @@ fn pairs_of_spread(source: &str, spread: Spread) -> Vec<(f64, f64)> {
         let slots = cells[grid.first_cell as usize..].iter_mut().zip(values.texels());
         slots.for_each(|(slot, value)| *slot = value.extend(1.0).as_vec4().to_array());
     }
-    let globals = scene.stand.globals(&scene.rect);
-    let globals = globals.with_boxes(&BOX, &BOX).with_spread(spread);
+    let globals = scene.globals().with_boxes(&BOX, &BOX).with_spread(spread);
     let [_, fit] = scene.shared(device);
     let shared = [device.uniform(&globals), fit];
     let place = [
@@ -158,4 +166,15 @@ fn a_fault_in_the_mixture_is_found() {
         ("region_texel(vec2i(position.xy))", "vec2i(position.xy)"),
     ];
     check_faults("rim", &faults, ALLOWED, errors);
+}
+
+#[test]
+fn the_mixture_with_a_glossy_table() {
+    errors_of_glossy(&source("rim")).check_all("rim of a glossy table", ALLOWED);
+    let faults = [
+        (" + reflected(point, v)", ""),
+        ("+ reflected(point, v)", "- reflected(point, v)"),
+        ("+ reflected(point, v)", "+ reflected(point, vec4f(1.0))"),
+    ];
+    check_faults("rim", &faults, ALLOWED, errors_of_glossy);
 }

@@ -7,6 +7,7 @@ use app_core::wgpu;
 use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::model::state::grids::{Grid, Grids, MAX_CELLS};
 use app_pipeline::model::state::solution::{Fit, N_COLUMNS, ReceiverFit};
+use app_pipeline::passes::globals::Globals;
 use glam::{DVec3, DVec4, UVec2};
 use reference::grid::PlaneGrid;
 use reference::model::{Pictures, Region, Solution};
@@ -123,10 +124,13 @@ impl Scrambled {
     /// Globals and fit, the resources of group 0.
     pub(crate) fn shared(&self, device: &Device) -> [wgpu::Buffer; 2] {
         let fit = device.storage(bytemuck::bytes_of(&fit(&self.solution)));
-        let reflection = self.reflection.as_ref();
-        let globals = self.stand.globals(&self.rect);
-        let globals = globals.with_reflection(reflection.map(|known| (known, self.stand.setup.lights.len())));
-        [device.uniform(&globals), fit]
+        [device.uniform(&self.globals()), fit]
+    }
+
+    pub(crate) fn globals(&self) -> Globals {
+        let channel = self.stand.setup.lights.len();
+        let reflection = self.reflection.as_ref().map(|known| (known, channel));
+        self.stand.globals(&self.rect).with_reflection(reflection)
     }
 
     /// The camera's picture, the rest of group 0 for passes that read it.

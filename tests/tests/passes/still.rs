@@ -1,10 +1,11 @@
 //! A still part of the toy beside a part that moves: its pixels are the camera's.
 
 use app_core::preset::Preset;
+use app_core::scene::Image;
 use app_core::sharpness::{Sharpness, Spread};
 use app_core::toy::PosedMesh;
-use glam::{IVec2, UVec2};
-use reference::model::centre_px;
+use glam::{DVec3, IVec2, UVec2};
+use reference::model::{ReceiverPoint, centre_px};
 use reference::raster::texels_of;
 
 use crate::device::Device;
@@ -69,4 +70,55 @@ fn pixels_beside_a_moved_shadow_are_the_cameras() {
     }
     assert!(n_beside > 50, "{n_beside} pixels beside a moved shadow");
     assert!(worst <= 1, "{worst} codes beside a moved shadow");
+}
+
+/// Light of a colour of its own on the table around the toy's feet, in plates.
+fn red_spot(point: ReceiverPoint) -> DVec3 {
+    let from_middle = point.in_plane.length();
+    DVec3::new(0.8, -0.05, 0.0) * f64::from(u8::from(from_middle < 0.09))
+}
+
+/// Pixels of the receiver too near to a still part of the toy to be evidence, and their largest change.
+fn changes_beside_still_toy(run: &Run, frame: &Image) -> Vec<(UVec2, u8)> {
+    let is_same =
+        |at: UVec2| seen(&run.stand, &run.stand.physical, at) == seen(&run.stand, &run.stand.shown, at);
+    let is_free = |at: UVec2| seen(&run.stand, &run.stand.physical, at).is_none();
+    let beside = texels_of(run.region.size_px).filter(|texel| {
+        let at = run.plan.region.origin_px + *texel;
+        run.pictures.seen.at(*texel) == 0.0 && around(at, 1).all(is_free) && around(at, STILL_PX).all(is_same)
+    });
+    let change = |texel: UVec2| {
+        let (own, made) = (
+            texel_of(frame, run.plan.region.origin_px + texel),
+            run.picture.at(texel),
+        );
+        (0..3).map(|c| own[c].abs_diff(made[c])).fold(0, u8::max)
+    };
+    beside.map(|texel| (texel, change(texel))).collect()
+}
+
+/// An object that no model explains has its pixels beside a still toy, too, although the ambient light
+/// there changes with the rest of the toy.
+#[test]
+fn an_unexplained_object_beside_a_still_toy_keeps_its_pixels() {
+    let decoded = Device::shared().decoded();
+    let changes = |unmodelled: fn(ReceiverPoint) -> DVec3| {
+        let stand = Stand::new(SETUPS[0].twice());
+        let photo = Photo {
+            unmodelled,
+            ..Photo::plain(stand.setup.lights.len())
+        };
+        let (plate, frame) = (photo.plate(&stand), photo.frame(&stand, &stand.physical));
+        let run = Run::new(stand, [plate, frame.clone()], &decoded).unwrap();
+        changes_beside_still_toy(&run, &frame)
+    };
+    let (table, object) = (changes(|_| DVec3::ZERO), changes(red_spot));
+    let n_changed = table.iter().filter(|(_, change)| *change >= 2).count();
+    let worst = object.iter().map(|(_, change)| *change).max().unwrap();
+    eprintln!(
+        "{} pixels, {n_changed} of a table change; of an object at most by {worst}",
+        table.len()
+    );
+    assert!(n_changed > 8, "{n_changed} of {} pixels change", table.len());
+    assert!(worst <= 1, "{worst} codes of an object");
 }

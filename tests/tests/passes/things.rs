@@ -124,6 +124,8 @@ fn a_fault_in_marking_things_is_found() {
         ("LEAST_PART: f32 = 0.3827", "LEAST_PART: f32 = 0.5"),
         ("select(0u, 1u, neighbor > 4u)", "0u"),
         ("!shows_thing(inner) || ", ""),
+        ("min(within, beyond)", "beyond"),
+        ("min(within, beyond)", "within"),
         ("|| shows_thing(code_at(beyond))", ""),
         (
             "select(rim_code(position.xy), vec2u(0u), is_second)",

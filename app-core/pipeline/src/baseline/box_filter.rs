@@ -22,7 +22,7 @@ shared_struct! {
 
 /// Needed only if the real shadow is sampled.
 pub(crate) fn is_needed(plan: &BaselinePlan) -> bool {
-    !plan.is_constant
+    plan.is_sampled
 }
 
 pub(crate) struct Pass {

@@ -15,7 +15,7 @@ pub(crate) type SeenSets = [u32; MAX_RECEIVERS];
 
 /// Needed only if the real shadow is sampled.
 pub(crate) fn is_needed(plan: &BaselinePlan) -> bool {
-    !plan.is_constant
+    plan.is_sampled
 }
 
 pub(crate) struct Pass {

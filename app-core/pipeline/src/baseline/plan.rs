@@ -17,8 +17,8 @@ pub(crate) struct BaselinePlan {
     /// Number of non-empty sets of these lights. If the shadows of a set overlap, the overlap has
     /// an appearance of its own.
     pub(crate) n_sets: u32,
-    /// Whether the shadow has a constant strength and is not sampled.
-    pub(crate) is_constant: bool,
+    /// Whether the real shadow is sampled: not if there is none, or for a shadow of constant strength.
+    pub(crate) is_sampled: bool,
     /// Work that the scene does not need.
     pub(crate) skipped: Vec<SkippedWork>,
 }
@@ -26,23 +26,24 @@ pub(crate) struct BaselinePlan {
 impl BaselinePlan {
     /// Plans a scene. Lights beyond the fourth are left out.
     pub(crate) fn new(facts: &SceneFacts, settings: &BaselineSettings) -> Self {
-        let is_constant = settings.constant_ratio.is_some();
-        let mut skipped = Vec::new();
-        if is_constant {
-            skipped.push(SkippedWork {
-                what: "samples of the real shadow",
-                reason: "the preset's shadow is constant",
-            });
-        }
         #[allow(clippy::cast_possible_truncation, reason = "at most four")]
         let n_lights = facts.penumbrae_px.len().min(MAX_LIGHTS) as u32;
+        let not_sampled = match (settings.constant_ratio, n_lights) {
+            (Some(_), _) => Some("the preset's shadow is constant"),
+            (None, 0) => Some("there is no light"),
+            (None, _) => None,
+        };
+        let skipped = not_sampled.map(|reason| SkippedWork {
+            what: "samples of the real shadow",
+            reason,
+        });
         Self {
             region: facts.region,
             n_lights,
             n_receivers: facts.n_receivers,
             n_sets: (1 << n_lights) - 1,
-            is_constant,
-            skipped,
+            is_sampled: not_sampled.is_none(),
+            skipped: skipped.into_iter().collect(),
         }
     }
 }

@@ -25,7 +25,7 @@ const TAPS_FORMAT: TextureFormat = TextureFormat::R16Float;
 
 /// Needed only if the real shadow is sampled.
 pub(crate) fn is_needed(plan: &BaselinePlan) -> bool {
-    !plan.is_constant
+    plan.is_sampled
 }
 
 pub(crate) struct Pass {

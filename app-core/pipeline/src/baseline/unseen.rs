@@ -19,7 +19,7 @@ impl Baseline {
         gpu: &Gpu,
         listed: (&[usize], &[usize]),
     ) -> Result<Vec<Warning>, GpuError> {
-        if self.plan.is_constant || self.plan.n_lights == 0 {
+        if !self.plan.is_sampled {
             return Ok(Vec::new());
         }
         let seen: SeenSets = bytemuck::pod_read_unaligned(&gpu.read_buffer(&self.targets.census.seen_sets)?);

@@ -305,9 +305,9 @@ impl Core {
     /// not have the scene's size, or if the device refuses the work.
     pub fn frame(&mut self, input: &FrameInput) -> Result<FrameReport, CoreError> {
         let stage = self.stage.as_mut().ok_or(CoreError::NoScene)?;
-        drop_preview(&self.gpu, &mut self.preview);
         input.check()?;
         check_size("camera frame", stage.scene(), &input.image)?;
+        drop_preview(&self.gpu, &mut self.preview);
         if let Some(timer) = &mut self.timer {
             timer.start();
         }

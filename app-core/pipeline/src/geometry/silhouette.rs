@@ -109,9 +109,8 @@ pub struct ByCamera {
     pub around_px: f32,
 }
 
-/// Half of the share of its depth by which a point may lie behind a receiver and still count as in
-/// front of it, as in the shaders.
-const ON_RECEIVER: f32 = 0.5e-4;
+/// Share of its depth by which a point may lie behind a receiver and still count as in front of it.
+pub(crate) const ON_RECEIVER: f32 = 1e-4;
 
 impl Projection for ByCamera {
     fn land(&self, in_anchor: Vec3) -> Option<Landing> {
@@ -122,8 +121,9 @@ impl Projection for ByCamera {
         }
         let in_region_px = (clip.xy() / clip.w * Vec2::new(0.5, -0.5) + 0.5) * self.region_size_px;
         let inverse_depth = 1.0 / clip.w;
+        // Half of the shaders' share, since depths are rounded.
         let is_behind =
-            |plane: &Vec3| inverse_depth < plane.dot(in_region_px.extend(1.0)) * (1.0 - ON_RECEIVER);
+            |plane: &Vec3| inverse_depth < plane.dot(in_region_px.extend(1.0)) * (1.0 - 0.5 * ON_RECEIVER);
         Some(Landing {
             at_px: in_region_px - self.origin_px,
             within_px: Vec2::ZERO,

@@ -6,26 +6,19 @@
 //! time that a frame may take.
 //!
 //! - **Down**: if the median load of `WINDOW` frames is above `HIGH`, it takes as many steps at
-//!   once as are expected
-//!   to reduce it to `AIM`.
+//!   once as are expected to reduce it to `AIM`.
 //! - **Up**: one step, if the load that is then expected has been below `AIM` for `UP_FRAMES`
-//!   frames. The gain of a
-//!   step is learned when it is taken. A step up that is taken back within `TRIAL_FRAMES` frames is
-//!   repeated only
-//!   after twice the time, up to `MAX_WAIT_FRAMES`: a load that lies between two steps ends in the
-//!   cheaper one.
+//!   frames. The gain of a step is learned when it is taken. A step up that is taken back within
+//!   `TRIAL_FRAMES` frames is repeated only after twice the time, up to `MAX_WAIT_FRAMES`: a load
+//!   that lies between two steps ends in the cheaper one.
 //! - **Without device times** a frame that is ready early looks like any other, so that only late
-//!   frames are evidence:
-//!   a step down if one in five of `LATE_WINDOW` is late, two if half of them are. A step up is a
-//!   trial
-//!   after `BLIND_UP_FRAMES` frames of which hardly any was late.
+//!   frames are evidence: a step down if one in five of `LATE_WINDOW` is late, two if half of them
+//!   are. A step up is a trial after `BLIND_UP_FRAMES` frames of which hardly any was late.
 //! - **The end**: if all steps are taken and frames are slow for `END_FRAMES[0]` of them, or the
-//!   phone has been too warm
-//!   for `END_FRAMES[1]` since the latest step, [`Governor::exhausted`] reports it: only a cheaper
-//!   preset is left.
+//!   phone has been too warm for `END_FRAMES[1]` since the latest step, [`Governor::exhausted`]
+//!   reports it: only a cheaper preset is left.
 //! - **Heat** reduces the time that a frame may take at once, and restores it only after
-//!   `COOL_FRAMES` frames; there is
-//!   no step up above [`Thermal::Fair`].
+//!   `COOL_FRAMES` frames; there is no step up above [`Thermal::Fair`].
 //!
 //! After a sudden load of twice the time it recovers within 40 frames, whether the gains of steps
 //! are half or one and a half times the expected ones; without device times it needs a window of

@@ -6,6 +6,7 @@ use crate::geometry::anchored::AnchoredReceiver;
 use crate::geometry::rect::{PixelRect, PlaneRect};
 use crate::geometry::scene_layout::SceneLayout;
 use crate::geometry::seen::Caster;
+use crate::geometry::silhouette::ON_RECEIVER;
 use crate::geometry::silhouette::{AROUND_PX, ByCamera, OntoReceiver, Viewers};
 use crate::geometry::view::View;
 use crate::gpu::{Buffer, Mat3Columns, Mirrors, Slot, mirrors, shared_struct};
@@ -21,6 +22,8 @@ pub(crate) const GLOBALS: Mirrors = mirrors!(
     structs: [ReceiverPlane, Globals],
     constants: [MAX_LIGHTS, MAX_RECEIVERS],
 );
+/// WGSL part of the test whether a receiver hides the toy.
+pub(crate) const BEHIND: Mirrors = mirrors!("common/behind", constants: [ON_RECEIVER]);
 /// Slots of passes that read nothing else of the scene.
 pub(crate) const GLOBALS_GROUP: &[Slot] = &[Slot::uniform::<Globals>()];
 

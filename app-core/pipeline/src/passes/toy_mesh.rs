@@ -80,6 +80,12 @@ impl PoseBuffers {
         self.mesh.clone_from(mesh);
         gpu.write(&self.positions, &mesh.positions);
         gpu.write(&self.normals, &mesh.normals);
+        self.forget_lists();
+    }
+
+    /// Has the lists made anew.
+    fn forget_lists(&self) {
+        self.lists.iter().for_each(Lists::forget);
     }
 }
 
@@ -222,10 +228,21 @@ impl ToyMesh {
                 ..self.shape(lod)
             };
         };
+        // A silhouette is searched among the corners.
+        if target.is_none()
+            && let Some(n_facing) = lists.n_facing(lod, points)
+        {
+            return Corners {
+                buffer: &lists.facing,
+                indices: 0..n_facing,
+                is_culled,
+                silhouette: None,
+            };
+        }
         let (closed, open) = self.split_caster(lod);
         let mut facing = viewers.facing(&pose.mesh.positions, closed);
         facing.extend(open);
-        gpu.write(&lists.facing, &facing);
+        lists.write_facing(gpu, (lod, points), &facing);
         let worth_it = target.filter(|target| target.savings.is_worthwhile(facing.len(), self.is_closed));
         let silhouette = worth_it.and_then(|target| {
             let shape = self.small_shape(pose, lod)?;
@@ -239,6 +256,12 @@ impl ToyMesh {
             is_culled,
             silhouette,
         }
+    }
+
+    /// Has all lists made anew, after work that reached no device.
+    pub(crate) fn forget_lists(&self) {
+        self.physical.forget_lists();
+        self.shown.forget_lists();
     }
 
     /// Marks the tiles of a target within `reach_px` of the places where a posed shape may be

@@ -16,7 +16,7 @@ pub enum Map {
     /// r is 1 where the frame shows the receiver alone, g where it shows a single surface of the
     /// toy, b where it shows the receiver far enough from the toy.
     Validity,
-    /// Base colour of the physical toy, linear; alpha is its coverage.
+    /// Base colour of the physical toy, linear; alpha is the part of its surface's view above the horizon.
     GbufferBase,
     /// Cosine to each light times its visibility, on the physical toy, light 0 in r.
     GbufferReceived,

@@ -18,12 +18,16 @@ pub(crate) struct CameraTexture {
     size_px: UVec2,
     /// The picture on the device.
     image: Option<CameraImage>,
+    /// Whether all of it is there; a refused frame may have left it incomplete.
+    is_certain: bool,
     /// The whole picture: one that came as pixels, or one that was decoded on request.
     whole: OnceLock<SrgbTexture>,
     is_whole_there: bool,
     decoder: OnceLock<camera_planes::Pass>,
     /// Own textures for planes, once planes have come as bytes.
     own_planes: Option<Planes>,
+    /// Whether they were made for this picture.
+    are_planes_new: bool,
     /// The platform's planes, as long as they are those of the picture.
     lent: Option<[TextureView; 2]>,
 }
@@ -57,20 +61,24 @@ impl CameraTexture {
         Self {
             size_px,
             image: None,
+            is_certain: false,
             whole: OnceLock::new(),
             is_whole_there: false,
             decoder: OnceLock::new(),
             own_planes: None,
+            are_planes_new: false,
             lent: None,
         }
     }
 
     /// Uploads a picture in its original form, unless it is already there.
     pub(crate) fn take(&mut self, gpu: &Gpu, image: &CameraImage) {
-        if self.image.as_ref().is_some_and(|known| known.is(image)) {
+        if self.is_certain && self.image.as_ref().is_some_and(|known| known.is(image)) {
             return;
         }
-        self.forget();
+        self.is_whole_there = false;
+        self.are_planes_new = false;
+        self.lent = None;
         match image {
             CameraImage::Rgba(image) => {
                 self.whole(gpu).texture.write(gpu, &image.rgba8);
@@ -79,6 +87,7 @@ impl CameraTexture {
             CameraImage::Planes(image) => self.take_planes(gpu, image),
         }
         self.image = Some(image.clone());
+        self.is_certain = true;
     }
 
     fn take_planes(&mut self, gpu: &Gpu, image: &PlanarImage) {
@@ -86,17 +95,28 @@ impl CameraTexture {
         let lent = opened.and_then(|opened| LentTextures::on(image, &opened.device.handle()));
         self.lent = lent.map(|textures| textures.map(|texture| TextureView::of_other(gpu, texture)));
         if self.lent.is_none() {
+            self.are_planes_new = self.own_planes.is_none();
             self.own_planes
                 .get_or_insert_with(|| Planes::new(gpu, image.size_px()))
                 .write(gpu, image);
         }
     }
 
-    /// Treats the picture on the device as unknown.
+    /// Has the next picture uploaded in any case, after refused work. Until then the picture is shown
+    /// as far as it is there; black instead, if the refusal may be that of its textures.
     pub(crate) fn forget(&mut self) {
-        self.image = None;
+        self.is_certain = false;
         self.is_whole_there = false;
-        self.lent = None;
+        if matches!(self.image, Some(CameraImage::Planes(_))) {
+            // An older picture may be in it.
+            self.whole = OnceLock::new();
+        }
+        if self.are_planes_new {
+            self.own_planes = None;
+        }
+        if self.lent.take().is_some() {
+            self.image = None;
+        }
     }
 
     /// The picture in its original form.

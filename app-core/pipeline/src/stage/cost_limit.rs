@@ -98,7 +98,7 @@ impl Stage {
         }
     }
 
-    /// Counts the work of a scene's first frame.
+    /// Counts the work of a new view, which is less than that of a new scene.
     fn cost(&self, plan: &Plan, footprint: &Footprint, covered: &Covered, divisor: u32) -> Cost {
         let gpu = Gpu::default();
         let globals = globals(&footprint.view, &plan.region, &self.layout())
@@ -131,6 +131,7 @@ impl Stage {
         };
         model.update_coverage_tiles(&self.toy, delta);
         model.encode(&mut recorder, &self.toy, &pictures, delta);
+        self.toy.forget_lists();
         let count = |n: usize| n as f64;
         let by_lights = plan.n_light_points.iter().zip(&covered.by_lights_px);
         let by_lights: f64 = by_lights.map(|(n_points, px)| count(*n_points) * px).sum();

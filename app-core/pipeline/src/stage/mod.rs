@@ -87,6 +87,9 @@ pub(crate) struct Stage {
     quality_reductions: Vec<QualityStep>,
     /// The warning for it.
     cost_warning: Option<Warning>,
+    /// Size, in steps, of a region for which the scene is too costly at any quality, as long as
+    /// placement and settings stay the same.
+    refused_steps: Option<UVec2>,
     /// Reach of the clip that was shown last, including the poses shown so far.
     reach: Option<ClipReach>,
     /// Footprint of the latest frame.
@@ -227,6 +230,7 @@ impl Stage {
             quality_reductions: Vec::new(),
             asked_down: Vec::new(),
             cost_warning: None,
+            refused_steps: None,
             reach: None,
             cached_footprint: None,
         })
@@ -328,12 +332,13 @@ impl Stage {
         }
     }
 
-    /// Encodes one frame.
+    /// Encodes one frame. If its pose or placement is refused, the camera image is shown.
     pub(crate) fn encode(
         &mut self,
         recorder: &mut Recorder<'_>,
         input: &FrameInput,
     ) -> Result<FrameReport, ToyError> {
+        self.effect = None;
         recorder.stages.begin("camera picture");
         self.camera.take(recorder.gpu, &input.image);
         recorder.stages.begin("placement");
@@ -356,16 +361,13 @@ impl Stage {
         };
         recorder.stages.begin("pose and footprint");
         self.take_shadow_style(input);
-        self.effect = match self.footprint(input)? {
-            Err(reason) => {
-                reason.tell(&mut report);
-                None
-            }
+        match self.footprint(input)? {
+            Err(reason) => reason.tell(&mut report),
             Ok(footprint) => {
                 self.encode_region(recorder, input, &footprint, &mut report);
-                Some(input.effect)
+                self.effect = Some(input.effect);
             }
-        };
+        }
         Ok(report)
     }
 

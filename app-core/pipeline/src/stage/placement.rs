@@ -36,6 +36,7 @@ impl Stage {
             self.reached_rects.clear();
             self.cached_footprint = None;
             self.lights_inside = None;
+            self.refused_steps = None;
             if let Some(state) = &mut self.state {
                 state.is_placement_outdated = true;
             }

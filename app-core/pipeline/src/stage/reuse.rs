@@ -62,7 +62,9 @@ impl Stage {
         footprint: &Footprint,
     ) -> (Change, bool) {
         let sharpness = soft::taken(input.sharpness, self.sharpness);
-        let keeps_sharpness = sharpness == self.sharpness;
+        // The published method knows no softness.
+        let is_published = matches!(self.settings, Settings::Baseline(_));
+        let keeps_sharpness = is_published || sharpness == self.sharpness;
         self.sharpness = sharpness;
         let change = self.update_for(gpu, input, footprint, keeps_sharpness);
         (change, keeps_sharpness)
@@ -84,7 +86,9 @@ impl Stage {
             self.softened(gpu, reuse)
         } {
             Reuse::Nothing => {
-                self.start(gpu, input, footprint);
+                if self.refused_steps != Some(size_in_steps(footprint.region.size_px)) {
+                    self.start(gpu, input, footprint);
+                }
                 Change::Scene
             }
             Reuse::Targets => {
@@ -163,10 +167,14 @@ impl Stage {
     /// Starts without any state.
     fn start(&mut self, gpu: &Gpu, input: &FrameInput, footprint: &Footprint) {
         self.drop_method(gpu);
+        self.refused_steps = None;
         let method = match self.settings {
             Settings::Model(settings) => match self.plan_within_limit(settings, footprint) {
                 Some(plan) => self.model(gpu, plan, footprint),
-                None => return,
+                None => {
+                    self.refused_steps = Some(size_in_steps(footprint.region.size_px));
+                    return;
+                }
             },
             Settings::Baseline(settings) => {
                 let (plan, globals, uniform) = self.baseline_parts(&settings, footprint.region, footprint);
@@ -266,6 +274,7 @@ impl Stage {
             if let Some(state) = &mut self.state {
                 state.are_settings_outdated = true;
             }
+            self.refused_steps = None;
         }
     }
 
@@ -449,13 +458,20 @@ fn box_in(
 /// The region's size under a moving camera: the current one if it suffices, otherwise the next
 /// step.
 fn moving_size(current_px: UVec2, needed: &PixelRect, image_px: UVec2) -> UVec2 {
-    let step = |side_px: u32| side_px.div_ceil(REGION_STEP_PX) * REGION_STEP_PX;
-    let stepped = UVec2::new(step(needed.size_px.x), step(needed.size_px.y)).min(image_px);
+    let stepped = (REGION_STEP_PX * size_in_steps(needed.size_px)).min(image_px);
     if needed.size_px.cmple(current_px).all() {
         current_px
     } else {
         stepped.max(current_px)
     }
+}
+
+/// Number of steps that contain a region, along each side.
+fn size_in_steps(size_px: UVec2) -> UVec2 {
+    UVec2::new(
+        size_px.x.div_ceil(REGION_STEP_PX),
+        size_px.y.div_ceil(REGION_STEP_PX),
+    )
 }
 
 /// Union of both reaches on each receiver, so that switching between clips does not restart the

@@ -299,3 +299,25 @@ fn a_screen_shows_the_picture_turned_and_cropped() {
         }
     }
 }
+
+/// An input that is refused by name changes nothing that is shown.
+#[test]
+fn a_refused_input_leaves_the_preview() {
+    let (scene, input) = (scene(), first_input());
+    let screen_px = [scene.width_px, scene.height_px];
+    let mut app = App::open();
+    app.core.set_scene(scene, Preset::Balanced).unwrap();
+    app.core.frame(&input).unwrap();
+    let mut dark = input.image.rgba().as_ref().clone();
+    dark.rgba8
+        .chunks_exact_mut(4)
+        .for_each(|pixel| pixel[..3].fill(9));
+    app.core.show_camera(&dark.clone().into()).unwrap();
+    let preview = app.shown(screen_px, Display::default());
+    let mut cut = dark;
+    cut.rgba8.pop();
+    for refused in [input.clone().with_effect(2.0), input.with_image(cut)] {
+        assert!(app.core.frame(&refused).is_err());
+        assert!(app.shown(screen_px, Display::default()) == preview);
+    }
+}

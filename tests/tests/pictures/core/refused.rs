@@ -1,10 +1,13 @@
 //! Wrong inputs from a shell: they are refused by name, and no estimate is lost.
 
 use app_core::CoreError;
+use app_core::camera_frame::CameraImage;
 use app_core::frame::{FrameInput, PassGroup};
 use app_core::preset::Preset;
-use app_core::scene::{Light, Pose};
-use glam::{DMat4, DVec3};
+use app_core::scene::{Image, Light, Pose};
+use app_core::things::{Mark, Things};
+use glam::{DMat4, DVec3, UVec2};
+use measure::planar::{BT601_FULL, planar};
 
 use crate::core::bundled::{core, first_input, picture_of, scene};
 
@@ -119,4 +122,51 @@ fn a_failed_pose_leaves_nothing_half_learned() {
         Err(CoreError::Toy(_))
     ));
     assert!(picture_of(&mut core, &input) == expected);
+}
+
+/// The camera picture of a refused frame is shown as it is, without the region of the frame before.
+#[test]
+fn a_refused_frame_shows_its_camera_picture() {
+    let mut core = core();
+    let input = first_input();
+    core.set_scene(scene(), Preset::Balanced).unwrap();
+    assert!(picture_of(&mut core, &input) != input.image.rgba().rgba8);
+    let mut other = input.image.rgba().as_ref().clone();
+    other.rgba8.chunks_exact_mut(4).for_each(|pixel| pixel[0] /= 2);
+    let shown_pose = Pose::Clip {
+        clip: input.shown_pose.clip().unwrap(),
+        time_secs: f64::NAN,
+    };
+    let refused = input.with_image(other.clone()).with_shown_pose(shown_pose);
+    assert!(matches!(core.frame(&refused), Err(CoreError::Toy(_))));
+    assert!(core.read_picture().unwrap().rgba8 == other.rgba8);
+}
+
+/// Work that the device refuses does not darken the screen until the next frame: the camera picture
+/// that it was about is there.
+#[test]
+fn work_that_the_device_refuses_shows_its_camera_picture() {
+    let mut core = core();
+    let input = first_input();
+    let as_planes = |image: &Image| CameraImage::from(planar(image, BT601_FULL).unwrap());
+    let image = input.image.rgba();
+    let mut other = image.as_ref().clone();
+    other.rgba8.chunks_exact_mut(4).for_each(|pixel| pixel[0] /= 2);
+    let physical_pose = scene().physical_pose;
+    core.set_scene(scene(), Preset::Balanced).unwrap();
+    let later = input.clone().with_image(as_planes(&other));
+    let expected = picture_of(&mut core, &later.clone().with_shown_pose(physical_pose));
+
+    core.set_scene(scene(), Preset::Balanced).unwrap();
+    picture_of(&mut core, &input.clone().with_image(as_planes(image)));
+    // Wider than any texture.
+    let marks = vec![Mark::Thing; 9000];
+    let things = Things::new(UVec2::new(9000, 1), marks, input.camera).unwrap();
+    let refused = core.frame(&later.clone().with_things(Some(things)));
+    assert!(matches!(refused, Err(CoreError::Gpu(_))), "{refused:?}");
+    assert!(core.read_picture().unwrap().rgba8 == expected);
+    assert!(
+        picture_of(&mut core, &later) != expected,
+        "the next frame is made"
+    );
 }

@@ -268,6 +268,9 @@ fn a_softness_that_is_not_seen_changes_nothing() {
             published(&first) == published(&as_soft_as(&first, 2.0)),
             "{preset}"
         );
+        // Nor is anything drawn again.
+        let report = core.frame(&as_soft_as(&first, 3.0)).unwrap();
+        assert!(report.ran.is_empty(), "{preset}: {:?}", report.ran);
     }
 }
 
@@ -298,6 +301,21 @@ fn a_focus_that_breathes_is_no_new_scene() {
         assert_eq!(learned(&mut core, input), Learned::Picture);
         assert!(maps(&core) == *fresh, "{:?}", input.sharpness);
     }
+}
+
+/// The colours of a soft picture are mixed in the light of that picture, whose lamps may have been
+/// dimmed since an earlier one: they are unmixed anew in every second picture.
+#[test]
+fn a_soft_picture_is_unmixed_in_its_own_light() {
+    let mut core = core();
+    let first = as_soft_as(&first_frame(&mut core), 2.0);
+    let mut is_unmixed = |input: &FrameInput| {
+        let report = core.frame(input).unwrap();
+        report.ran.iter().any(|run| run.pass == "unmix")
+    };
+    assert!(is_unmixed(&first));
+    let later = [0; 4].map(|_| is_unmixed(&dimmed(&first)));
+    assert!(later == [true, false, true, false] || later == [false, true, false, true]);
 }
 
 /// A small part of the variance changes, but edges along the motion become soft.

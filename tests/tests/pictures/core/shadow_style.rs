@@ -47,6 +47,24 @@ fn a_style_is_that_of_its_frame() {
     assert!(plain == other);
 }
 
+/// A moving camera and a style that changes make no object on the device, frame by frame.
+#[test]
+fn a_softer_shadow_makes_nothing_on_the_device() {
+    let mut core = core();
+    let input = first_input();
+    core.set_scene(scene(), Preset::Balanced).unwrap();
+    // The widest shadow first: its region contains the others.
+    let mut n_made = |index: usize| {
+        let mut moved = styled(&input, 1.0, [2.0, 1.5, 1.0, 0.5][index % 4]);
+        moved.camera.world_from_camera.w_axis.x += 1e-4 * [0.0, 1.0, 2.0][index % 3];
+        core.frame(&moved).unwrap();
+        core.n_created().map(|(_, n)| n)
+    };
+    let after_first = (0..12).map(&mut n_made).last().unwrap();
+    let after_all = (12..24).map(n_made).last().unwrap();
+    assert_eq!(after_all, after_first);
+}
+
 #[test]
 fn a_toy_that_stands_still_passes_through_with_its_true_shadow_alone() {
     let mut core = core();

@@ -1,8 +1,10 @@
 //! Budgets of frames, tested on the ledger, which has no noise and needs no device.
 
+use std::time::Instant;
+
 use app_core::Core;
 use app_core::camera_frame::Display;
-use app_core::frame::{Change, FrameInput, FrameReport, Warning};
+use app_core::frame::{Change, Clock, FrameInput, FrameReport, Warning};
 use app_core::governor::{BALANCED_QUALITY_LADDER, QualitySetting, QualityStep};
 use app_core::ledger::Ledger;
 use app_core::preset::Preset;
@@ -262,6 +264,30 @@ fn triangles_that_cover_too_much_are_refused_with_the_number() {
     assert!(told.unwrap().to_string().contains(&format!("{covered_px:.2e}")));
     let ran: Vec<&str> = report.ran.iter().map(|run| run.pass).collect();
     assert!(ran.is_empty(), "the camera frame passes through: {ran:?}");
+}
+
+/// The refusal is kept: a scene that is too costly is not planned in each frame.
+#[test]
+fn a_refused_scene_costs_nothing_until_something_changes() {
+    let (scene, input) = scene_of(sheets(6000), 1);
+    let mut core = Core::counting();
+    core.set_scene(scene, Preset::Balanced).unwrap();
+    let begin = Instant::now();
+    core.time_stages(Some(Clock::new(move || 1e3 * begin.elapsed().as_secs_f64())));
+    let mut planned_ms = |input: &FrameInput| {
+        let report = core.frame(input).unwrap();
+        let is_refused = report.warnings.iter().any(is_about_cost);
+        let stages = report.stages.iter().filter(|stage| stage.stage == "reuse");
+        (is_refused, stages.map(|stage| stage.cpu_ms).sum::<f64>())
+    };
+    let (is_refused, first_ms) = planned_ms(&input);
+    let (is_still_refused, later_ms) = planned_ms(&input);
+    assert!(is_refused && is_still_refused);
+    assert!(later_ms < 0.1 * first_ms, "{first_ms} ms, then {later_ms} ms");
+    let mut aside = input;
+    aside.world_from_object.w_axis.x += 0.01;
+    let (_, moved_ms) = planned_ms(&aside);
+    assert!(moved_ms > 10.0 * later_ms, "{later_ms} ms, moved {moved_ms} ms");
 }
 
 fn is_about_cost(warning: &Warning) -> bool {

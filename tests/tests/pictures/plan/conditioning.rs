@@ -31,6 +31,18 @@ fn lights_whose_shadows_fall_together_are_told_by_half() {
     assert_eq!(light_conditioning(&sums_of(&[]), 2), [0.0, 0.0]);
 }
 
+/// A shadow that covers all that is seen of a receiver looks like another gain, and the gain of
+/// receivers after the first is known from that one.
+#[test]
+fn a_shadow_that_covers_a_further_receiver_is_told() {
+    let covered = sums_of(&[[0.6, 0.2, -0.3, 0.0, 0.0, 0.0], [0.8, 0.1, -0.4, 0.0, 0.0, 0.0]]);
+    let first = light_conditioning(&covered, 1);
+    assert!(first[0] < 0.9, "{first:?}");
+    let nothing_seen = vec![0.0; covered.len()];
+    let further = light_conditioning(&[nothing_seen, covered].concat(), 1);
+    assert!(further[0] > 0.9, "{further:?}");
+}
+
 #[test]
 fn each_light_is_told_by_the_receiver_that_shows_most_of_it() {
     // Each row constrains one unknown alone, so that the sums are diagonal: the resolution is a /

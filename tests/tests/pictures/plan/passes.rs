@@ -174,6 +174,24 @@ fn the_published_method_runs_its_passes_in_this_order() {
     );
 }
 
+#[test]
+fn without_lights_no_pass_runs_for_their_shadows() {
+    let session = bundled_session();
+    let mut scene = session.scene().clone();
+    scene.lights.clear();
+    let input = FrameInput::from(&session.frame(0).unwrap());
+    let passes = |preset: Preset| {
+        let mut core = Core::counting();
+        core.set_scene(scene.clone(), preset).unwrap();
+        ran(&mut core, &input)
+    };
+    let learned = "gbuffer validity occlusion plate fit fit_solve residual fill tint tint_fill appearance";
+    let drawn = "occlusion moved_mask toy coverage composite";
+    assert_eq!(passes(Preset::Balanced), expected(Change::Scene, learned, drawn));
+    let (learned, drawn) = ("plate masks pcss eligible", "pcss retarget");
+    assert_eq!(passes(Preset::Paper), expected(Change::Scene, learned, drawn));
+}
+
 /// A new picture changes the colours alone; if the picture is unchanged, too, nothing runs.
 #[test]
 fn a_paused_toy_is_not_drawn_again() {

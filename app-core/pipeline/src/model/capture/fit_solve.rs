@@ -8,12 +8,12 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::{Shader, shader};
 use crate::model::capture::fit::FitStep;
 use crate::model::state::SceneState;
-use crate::model::state::solution::{PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, PRIOR_WEIGHT};
+use crate::model::state::solution::{PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, PRIOR_WEIGHT, SAME_GAIN_WEIGHT};
 use crate::passes::globals::GLOBALS_GROUP;
 pub(crate) use crate::passes::list::NoTargets as Targets;
 
 pub(crate) const SHADER: Shader =
-    shader!("capture/fit_solve", constants: [PRIOR_WEIGHT, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION]);
+    shader!("capture/fit_solve", constants: [PRIOR_WEIGHT, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, SAME_GAIN_WEIGHT]);
 const SLOTS: &[Slot] = &[
     Slot::per_use::<FitStep>(),
     Slot::Read,

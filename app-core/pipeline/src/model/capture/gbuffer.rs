@@ -18,7 +18,7 @@ use crate::passes::materials::MATERIAL_GROUP;
 use crate::passes::toy_mesh::{LOOK_STREAMS, Sided, ToyMesh};
 
 pub(crate) const SHADER: Shader = shader!("capture/gbuffer");
-/// Format of the base colour, whose alpha is the toy's coverage.
+/// Format of the base colour, whose alpha is the part of the surface's view above the horizon.
 pub(crate) const BASE_FORMAT: TextureFormat = TextureFormat::Rgba8UnormSrgb;
 /// Format of the normals.
 const NORMAL_FORMAT: TextureFormat = TextureFormat::Rgba16Float;

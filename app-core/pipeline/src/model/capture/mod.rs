@@ -88,12 +88,8 @@ impl CapturePath<'_> {
         let change = delta.change;
         match change {
             Change::Pose => return,
-            Change::Picture => {
-                if !delta.keeps_sharpness {
-                    self.sharpen(recorder);
-                }
-                self.fit_intensities(recorder, false);
-            }
+            Change::Picture if delta.keeps_sharpness => self.fit_intensities(recorder, false),
+            Change::Picture => self.sharpen(recorder),
             Change::View => self.learn_view(recorder),
             Change::Scene => self.learn_scene(recorder),
         }
@@ -113,7 +109,8 @@ impl CapturePath<'_> {
         }
         if rim::is_needed(&self.region.plan) {
             passes.rim.encode(recorder, &self.rim_inputs(), &of.rim);
-            if is_view_new || !delta.keeps_sharpness {
+            // The lights' intensities hardly change from one picture to the next.
+            if is_view_new || !delta.keeps_sharpness || !is_residual_next {
                 passes.unmix.encode(recorder, &self.unmix_inputs(), &of.unmix);
             }
         }
@@ -131,7 +128,8 @@ impl CapturePath<'_> {
         }
     }
 
-    /// Draws everything that depends on the picture's sharpness, for a known view.
+    /// Draws everything that depends on the picture's sharpness, for a known view, and fits exposure
+    /// and intensities before the plate is estimated by them.
     fn sharpen(&self, recorder: &mut Recorder<'_>) {
         let (passes, of) = (self.passes, &self.captured.by_pass);
         passes
@@ -148,6 +146,7 @@ impl CapturePath<'_> {
             self.soften(recorder);
         }
         self.withhold(recorder);
+        self.fit_intensities(recorder, estimate::is_needed(&self.region.plan));
         self.estimate(recorder);
     }
 

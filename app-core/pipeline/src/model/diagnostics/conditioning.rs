@@ -2,13 +2,14 @@
 //! prior, determines.
 //!
 //! The fit of a receiver solves (A + w I) x = b + w prior, where A are the sums of the normal
-//! equations. The diagonal of its resolution matrix, 1 - w (A + w I)^-1, is 1 for an unknown that
-//! the sums alone determine and 0 for one that the prior determines: for two lights whose shadows
-//! always coincide, only the sum is constrained.
+//! equations; on receivers after the first, the gain of the first one counts as a sum of its own. The
+//! diagonal of its resolution matrix, 1 - w (A + w I)^-1, is 1 for an unknown that the sums alone
+//! determine and 0 for one that the prior determines: for two lights whose shadows always coincide,
+//! only the sum is constrained.
 //!
 //! Source: Backus and Gilbert 1968 (resolution of an inverse problem).
 
-use crate::model::state::solution::{N_CHANNELS, N_COLUMNS, N_FIT_SUMS, PRIOR_WEIGHT};
+use crate::model::state::solution::{N_CHANNELS, N_COLUMNS, N_FIT_SUMS, PRIOR_WEIGHT, SAME_GAIN_WEIGHT};
 use app_scene::scene::MAX_RECEIVERS;
 
 type Matrix = [[f64; N_COLUMNS]; N_COLUMNS];
@@ -18,10 +19,12 @@ type Matrix = [[f64; N_COLUMNS]; N_COLUMNS];
 #[must_use]
 pub fn light_conditioning(sums: &[f32], n_lights: usize) -> Vec<f64> {
     let mut most = vec![0.0_f64; n_lights];
-    for receiver in sums.chunks_exact(N_CHANNELS * N_FIT_SUMS).take(MAX_RECEIVERS) {
-        let channels = receiver.chunks_exact(N_FIT_SUMS);
+    let receivers = sums.chunks_exact(N_CHANNELS * N_FIT_SUMS).take(MAX_RECEIVERS);
+    for (receiver, sums) in receivers.enumerate() {
+        let gain_weight = if receiver > 0 { SAME_GAIN_WEIGHT } else { 0.0 };
+        let channels = sums.chunks_exact(N_FIT_SUMS);
         let resolved: Vec<_> = channels
-            .map(|sums| channel_resolution(sums, 2 + n_lights))
+            .map(|sums| channel_resolution(sums, 2 + n_lights, gain_weight.into()))
             .collect();
         for (light, most) in most.iter_mut().enumerate() {
             let sum: f64 = resolved.iter().map(|columns| columns[2 + light]).sum();
@@ -31,8 +34,9 @@ pub fn light_conditioning(sums: &[f32], n_lights: usize) -> Vec<f64> {
     most
 }
 
-/// Resolution of each column; 0 without any pixel.
-fn channel_resolution(sums: &[f32], n_columns: usize) -> [f64; N_COLUMNS] {
+/// Resolution of each column; 0 without any pixel. The gain is known with a weight, relative to the energy
+/// of its column.
+fn channel_resolution(sums: &[f32], n_columns: usize, gain_weight: f64) -> [f64; N_COLUMNS] {
     let energy = f64::from(sums[0]);
     if energy <= 0.0 {
         return [0.0; N_COLUMNS];
@@ -45,6 +49,7 @@ fn channel_resolution(sums: &[f32], n_columns: usize) -> [f64; N_COLUMNS] {
         matrix[j][i] = f64::from(*sum);
     }
     (0..N_COLUMNS).for_each(|i| matrix[i][i] += weight);
+    matrix[0][0] += gain_weight * energy;
     inverse_diagonal(matrix, n_columns).map(|inverse| (1.0 - weight * inverse).max(0.0))
 }
 

@@ -70,8 +70,8 @@ impl Evidence {
     fn add(&mut self, pixel: &PixelEvidence, gain: &[f32; 4]) {
         let [seen, of_toy, _, kept] = pixel.validity;
         let [r, g, b, alpha] = pixel.plate;
-        // Also if the shadow is withheld from all but the first fit.
-        if seen > 0.0 || kept < 1.0 {
+        // Also if the shadow is withheld from all but the first fit; things have no such mark.
+        if seen > 0.0 || is_withheld(kept) {
             self.hidden += f64::from(1.0 - pixel.visibility);
         }
         if alpha < 1.0 {
@@ -182,6 +182,13 @@ impl Spread {
         let mean = self.sum / n;
         Some((self.sum_of_squares / n - mean * mean).max(0.0).sqrt())
     }
+}
+
+/// Whether alpha of `validity` is that of a pixel that `withhold` took out: 0, or a half beside the
+/// toy, which is a whole code.
+fn is_withheld(alpha: f32) -> bool {
+    const HALF_A_CODE: f32 = 0.5 / 255.0;
+    alpha < HALF_A_CODE || (alpha - 0.5).abs() < 1.5 * HALF_A_CODE
 }
 
 fn is_readable(color: [f32; 3]) -> bool {

@@ -18,11 +18,16 @@ use crate::passes::toy_mesh::{CasterLod, Savings, SeenToy, Side, SilhouetteTarge
 
 /// Count of a pixel's covered positions.
 pub(crate) const COVERED: Mirrors = mirrors!("common/covered", constants: [N_POSITIONS, COVERED_CODES]);
+/// The lattice of these positions, for the background of an outline.
+pub(crate) const BEHIND_OUTLINE: Mirrors =
+    mirrors!("common/behind_outline", constants: [OUTLINE_ROW_STEP]);
 pub(crate) const SHADER: Shader = shader!("frame/coverage", structs: [Positions]);
 const SLOTS: &[Slot] = &[Slot::per_use::<Positions>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Number of lattice positions within a pixel at which the toy's coverage is sampled.
 pub(crate) const N_POSITIONS: u32 = 32;
+/// Rows from one column's position to the next.
+const OUTLINE_ROW_STEP: u32 = 9;
 /// Format of the count, in whole codes.
 const COUNT_FORMAT: TextureFormat = TextureFormat::R8Unorm;
 /// Increment per covered position, in 8-bit codes.
@@ -41,7 +46,7 @@ shared_struct! {
 /// multisample positions have 0.092.
 const ALL: Positions = Positions {
     n: N_POSITIONS,
-    row_step: 9,
+    row_step: OUTLINE_ROW_STEP,
 };
 const HALF: Positions = Positions {
     n: N_POSITIONS / 2,

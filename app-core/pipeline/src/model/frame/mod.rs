@@ -93,13 +93,13 @@ impl FramePath<'_> {
         passes.composite.encode(recorder, &inputs, &of.composite);
     }
 
-    /// Draws the picture of the physical scene, in linear light.
+    /// Draws the latest frame's picture once more, in linear light.
     pub(crate) fn encode_light(&self, recorder: &mut Recorder<'_>, target: &Texture) {
         let inputs = self.composite_inputs();
         self.passes.composite.encode_light(recorder, &inputs, target);
     }
 
-    /// Draws the layers of the physical scene.
+    /// Draws the layers of that picture.
     pub(crate) fn encode_layers(
         &self,
         recorder: &mut Recorder<'_>,

@@ -30,8 +30,10 @@ pub(crate) struct LightMaps {
     pub(crate) self_shadow: self_shadow::Targets,
     /// Replaces the visibility of the lights that the passes compute.
     pub(crate) injected: Option<InjectedLights>,
-    /// Points from which the shadow on receivers is drawn, if these are not the lights' own.
-    softened: Option<Vec<LightPointsBuffer>>,
+    /// Points from which the shadow on receivers is drawn, if these are not the lights' own. They stay
+    /// for the next such shadow, since a bind group with a new buffer would be kept for each.
+    softened: Vec<LightPointsBuffer>,
+    is_softened: bool,
 }
 
 /// Visibility of the lights, as given by the caller.
@@ -67,10 +69,27 @@ impl LightMaps {
     /// Sets the points of each light, receiver by receiver, from which the shadow on receivers is
     /// drawn; `None` selects the lights' own.
     pub(crate) fn soften(&mut self, gpu: &Gpu, plan: &Plan, points: Option<Vec<Vec<Vec4>>>) {
-        let on_device = |(light, points)| {
-            LightPointsBuffer::new(gpu, points, plan.n_receivers, PartOfMap::of_light(plan, light))
-        };
-        self.softened = points.map(|points| points.into_iter().enumerate().map(on_device).collect());
+        self.is_softened = points.is_some();
+        let Some(points) = points else { return };
+        let n_receivers = plan.n_receivers;
+        if points.len() == self.softened.len() {
+            for (light, points) in self.softened.iter_mut().zip(points) {
+                light.write(gpu, points, n_receivers);
+            }
+            return;
+        }
+        self.softened = points
+            .into_iter()
+            .enumerate()
+            .map(|(light, points)| {
+                LightPointsBuffer::new(gpu, points, n_receivers, PartOfMap::of_light(plan, light))
+            })
+            .collect();
+    }
+
+    /// Points from which the shadow on receivers is drawn, of lights whose own are given.
+    fn points<'a>(&'a self, own: &'a [LightPointsBuffer]) -> &'a [LightPointsBuffer] {
+        if self.is_softened { &self.softened } else { own }
     }
 
     pub(crate) fn new(gpu: &Gpu, plan: &Plan) -> Self {
@@ -78,7 +97,8 @@ impl LightMaps {
             visibility: occlusion::Targets::new(gpu, plan),
             self_shadow: self_shadow::Targets::new(gpu, plan),
             injected: None,
-            softened: None,
+            softened: Vec::new(),
+            is_softened: false,
         }
     }
 }
@@ -142,7 +162,7 @@ impl Lighting {
         if let Some(injected) = &maps.injected {
             tiles.join(&injected.shadowed);
         }
-        for light in maps.softened.as_ref().unwrap_or(&self.lights) {
+        for light in maps.points(&self.lights) {
             for (receiver, points) in light.by_receiver().enumerate() {
                 // A light behind a receiver casts no shadow on it.
                 if points.iter().all(|point| point.y <= 0.0) {
@@ -207,8 +227,8 @@ impl Lighting {
         if self.lights.is_empty() {
             return;
         }
-        let lights = maps.softened.as_ref().unwrap_or(&self.lights);
-        let lights: Vec<_> = lights
+        let lights: Vec<_> = maps
+            .points(&self.lights)
             .iter()
             .enumerate()
             .map(|(index, points)| Light {
@@ -244,7 +264,7 @@ impl Lighting {
         }
     }
 
-    /// Draws the toy's shadow on itself.
+    /// Draws the toy's shadow on itself, if there are any lights.
     pub(crate) fn encode_self_shadow(
         &self,
         recorder: &mut Recorder<'_>,
@@ -252,6 +272,9 @@ impl Lighting {
         posed: Posed<'_>,
         maps: &LightMaps,
     ) {
+        if self.n_lights == 0 {
+            return;
+        }
         let lights = self.lights.iter().take(self.n_lights);
         let light_points: Vec<&[Vec4]> = lights.map(LightPointsBuffer::in_anchor).collect();
         let inputs = self_shadow::Inputs {

@@ -32,6 +32,8 @@ pub const N_FIT_SUMS: usize = N_COLUMNS * (N_COLUMNS + 1) / 2 + N_COLUMNS + 1;
 pub(crate) const N_CHANNELS: usize = 3;
 /// Weight of the fit's priors relative to the energy of its first column.
 pub(crate) const PRIOR_WEIGHT: f32 = 1e-4;
+/// Weight of the first receiver's gain as the prior of the others', relative to the same energy.
+pub(crate) const SAME_GAIN_WEIGHT: f32 = 10.0;
 /// Prior of the toy's bounce.
 pub(crate) const PRIOR_BOUNCE: f32 = 0.27;
 /// Prior of the sum of all lights' direct fractions.

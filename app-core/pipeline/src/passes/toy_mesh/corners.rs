@@ -2,23 +2,33 @@
 //! silhouette.
 
 use std::ops::Range;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 use wgpu::BufferUsages;
 
 use crate::geometry::rect::PixelRect;
 use crate::geometry::silhouette::{Projection, Silhouette};
 use crate::gpu::{Buffer, Gpu, Render};
-use crate::passes::toy_mesh::PoseBuffers;
+use crate::passes::toy_mesh::{CasterLod, PoseBuffers};
 
 /// The lists that the processor makes of a posed shape for a set of viewers.
 pub(super) struct Lists {
     /// Triangles that face the viewers.
     pub(super) facing: Buffer,
+    /// What these were found for.
+    found: Mutex<Option<Facing>>,
     /// Triangles that meet tiles near a silhouette.
     silhouette: Buffer,
     /// These tiles: two triangles per run, in pixels of the region.
     tiles: Buffer,
+}
+
+/// A shape and viewpoints, and the number of corners that face one of them.
+struct Facing {
+    lod: CasterLod,
+    points: Vec<Vec4>,
+    n_corners: u32,
 }
 
 /// Maximum number of runs of tiles in a list.
@@ -39,6 +49,7 @@ impl Lists {
         let no_tiles = vec![Vec3::ZERO; N_RUN_CORNERS * MAX_TILE_RUNS];
         Self {
             facing: indices("facing indices", n_corners),
+            found: Mutex::new(None),
             silhouette: indices("silhouette indices", n_corners.min(MAX_SILHOUETTE_CORNERS)),
             tiles: gpu.buffer(
                 "silhouette tiles",
@@ -46,6 +57,34 @@ impl Lists {
                 BufferUsages::VERTEX,
             ),
         }
+    }
+
+    /// Number of corners in `facing`, if they were found for this shape and these viewpoints.
+    pub(super) fn n_facing(&self, lod: CasterLod, points: &[Vec4]) -> Option<u32> {
+        let found = self.found();
+        let same = found
+            .as_ref()
+            .filter(|found| found.lod == lod && found.points == points);
+        same.map(|found| found.n_corners)
+    }
+
+    /// Writes the corners that face viewpoints.
+    pub(super) fn write_facing(&self, gpu: &Gpu, (lod, points): (CasterLod, &[Vec4]), facing: &[u32]) {
+        gpu.write(&self.facing, facing);
+        *self.found() = Some(Facing {
+            lod,
+            points: points.to_vec(),
+            n_corners: n(facing),
+        });
+    }
+
+    /// Has the corners found anew, for another pose.
+    pub(super) fn forget(&self) {
+        *self.found() = None;
+    }
+
+    fn found(&self) -> MutexGuard<'_, Option<Facing>> {
+        self.found.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Writes the triangles that must be drawn once per viewpoint.
