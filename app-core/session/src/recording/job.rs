@@ -186,7 +186,7 @@ impl RecordingJob {
 
 fn ending_of(error: WriteError) -> Ending {
     match error {
-        WriteError::Stopped(Stop::Size { .. }) => Ending::TooLarge,
+        WriteError::Stopped(Stop::Size { .. } | Stop::Index { .. }) => Ending::TooLarge,
         WriteError::Stopped(Stop::Space { .. } | Stop::Full) => Ending::NoRoom,
         error => Ending::Failed(error.to_string()),
     }
