@@ -100,6 +100,8 @@ impl Platform {
                 vec![ShellEvent::Toy(read)]
             }
             Happening::Saved(saved) => vec![ShellEvent::Saved(saved)],
+            Happening::Filmed(filmed) => vec![ShellEvent::Filmed(filmed)],
+            Happening::PictureFails => vec![ShellEvent::PictureFailed("planted".to_owned())],
             Happening::RecordingEnds(is_last) => {
                 let place = if is_last {
                     self.recordings.len().checked_sub(1)
