@@ -227,7 +227,10 @@ impl Shell {
             match outcome {
                 Outcome::Tell(event) => self.inbox.tell(event),
                 Outcome::Written(file) => into_photos(&file),
-                Outcome::Share(files) => self.shared = files,
+                Outcome::Share(files) => {
+                    self.shared = files;
+                    self.worker.shared()(true);
+                }
                 Outcome::Scan(scan) => self.session.recognise(scan.as_deref()),
             }
         }
