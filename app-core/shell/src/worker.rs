@@ -91,6 +91,8 @@ pub struct Worker {
     /// The thread that writes the latest recording, and its file.
     recording: Option<JoinHandle<()>>,
     recorded: Option<PathBuf>,
+    /// The outcome of writing the latest files to share.
+    written: Saved,
     n_files: u128,
     outcomes: (Sender<Outcome>, Receiver<Outcome>),
     /// Time of the last check of the free space.
@@ -121,6 +123,7 @@ impl Worker {
             video: None,
             recording: None,
             recorded: None,
+            written: Saved::Done,
             n_files: 0,
             looked: None,
             n_warm_ups: 0,
@@ -358,24 +361,24 @@ impl Worker {
         });
     }
 
-    fn share(&self, live: &Live) {
+    fn share(&mut self, live: &Live) {
         let Some(folder) = &self.folders.shared else {
             return self.tell(ShellEvent::Saved(Saved::NotAllowed));
         };
         let (saved, files) = record::share(live, folder, self.recorded.as_deref());
-        if saved != Saved::Done {
+        self.written = saved;
+        if files.is_empty() {
             self.tell(ShellEvent::Saved(saved));
-        }
-        if !files.is_empty() {
+        } else {
             send(&self.outcomes.0, Outcome::Share(files));
         }
     }
 
     /// To be called, on any thread, with whether other apps get the files of an [`Outcome::Share`].
     pub fn shared(&self) -> impl FnOnce(bool) + Send + use<> {
-        let outcomes = self.outcomes.0.clone();
+        let (outcomes, written) = (self.outcomes.0.clone(), self.written);
         move |is_shared| {
-            let saved = if is_shared { Saved::Done } else { Saved::NotShared };
+            let saved = if is_shared { written } else { Saved::NotShared };
             send(&outcomes, Outcome::Tell(ShellEvent::Saved(saved)));
         }
     }

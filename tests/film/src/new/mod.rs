@@ -219,7 +219,11 @@ fn check_keys(toy: &Toy, keys: &[Key]) -> anyhow::Result<()> {
         let (name, time_secs) = &key.moment;
         let clip = toy.find_clip(name).with_context(named)?;
         let (end_secs, is_beyond) = toy.clamp_time(clip, *time_secs)?;
-        anyhow::ensure!(!is_beyond, "{}: the clip {name:?} ends at {end_secs:.3} s", named());
+        anyhow::ensure!(
+            !is_beyond,
+            "{}: the clip {name:?} ends at {end_secs:.3} s",
+            named()
+        );
     }
     Ok(())
 }
