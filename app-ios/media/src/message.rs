@@ -19,8 +19,8 @@ impl Message {
         label.setText(Some(&NSString::from_str(words)));
         label.setNumberOfLines(0);
         label.setTextAlignment(NSTextAlignment::Center);
-        label.setTextColor(Some(&UIColor::whiteColor()));
-        label.setBackgroundColor(Some(&UIColor::blackColor()));
+        // The label's own colour stands out from it, by day and by night.
+        label.setBackgroundColor(Some(&UIColor::systemBackgroundColor()));
         label.setAutoresizingMask(UIViewAutoresizing::FlexibleWidth | UIViewAutoresizing::FlexibleHeight);
         label.setFrame(window.bounds());
         window.addSubview(&label);
