@@ -198,11 +198,12 @@ fn a_ghost_that_is_a_little_off_becomes_a_toy_that_moves() {
 #[test]
 fn the_toy_of_a_session_is_there_while_the_app_expects_it() {
     let mut feed = Feed::of_stored(Stored::open(BUNDLED_SESSION).unwrap()).unwrap();
-    let there = Step::ALL.map(|step| {
+    let mut there = |step| {
         feed.follow(step);
         feed.is_toy_there
-    });
-    assert_eq!(there, [false, false, false, true, true, true]);
+    };
+    assert_eq!(Step::ALL.map(&mut there), [false, false, false, true, true, true]);
+    assert!(!there(Step::TakePlate), "it is taken off for another photograph");
 }
 
 #[test]
