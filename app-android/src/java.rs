@@ -230,8 +230,12 @@ impl Phone for Activity {
         self.on_thread(move |env, activity| media_store::copy(env, activity, &file).map(drop));
     }
 
-    fn share(&mut self, files: Vec<PathBuf>) {
-        self.on_thread(move |env, activity| media_store::share(env, activity, &files));
+    fn share(&mut self, files: Vec<PathBuf>, tell: impl FnOnce(bool) + Send + 'static) {
+        self.on_thread(move |env, activity| {
+            let shared = media_store::share(env, activity, &files);
+            tell(shared.is_ok());
+            shared
+        });
     }
 
     fn own_folder(&self) -> Option<PathBuf> {

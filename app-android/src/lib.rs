@@ -9,8 +9,8 @@
 //! `java`, the camera's permission and the system's settings through JNI. Videos are encoded, and
 //! files copied to places where other apps find them, by the `android_media` package.
 //!
-//! None of this has run on a phone. Not implemented: a description for people who cannot see the
-//! screen. Recordings are JPEG pictures by this project's own code: Android's encoders make video
+//! None of this has run on a phone. TalkBack says the words of each step; not implemented: buttons
+//! that it finds. Recordings are JPEG pictures by this project's own code: Android's encoders make video
 //! streams, which no program on the desktop reads without a C library. Photos, videos, recordings,
 //! the log and times are written into the app's own folder, from which the gallery and the
 //! receivers of shared files get copies; toys of the person's own are read from there. ARCore

@@ -31,8 +31,8 @@ pub trait Phone: JavaHost {
     fn folder(&self) -> Option<PathBuf>;
     /// Adds a copy of a photo or a video to the gallery.
     fn show_in_gallery(&mut self, file: PathBuf);
-    /// Opens the share sheet for files.
-    fn share(&mut self, files: Vec<PathBuf>);
+    /// Opens the share sheet for files, and tells whether other apps get them.
+    fn share(&mut self, files: Vec<PathBuf>, tell: impl FnOnce(bool) + Send + 'static);
     /// Folder for the app's own files.
     fn own_folder(&self) -> Option<PathBuf>;
 }

@@ -233,7 +233,7 @@ impl<P: Phone> Shell<P> {
         match outcome {
             Outcome::Tell(event) => self.tell(event),
             Outcome::Written(file) => self.phone.show_in_gallery(file),
-            Outcome::Share(files) => self.phone.share(files),
+            Outcome::Share(files) => self.phone.share(files, self.worker.shared()),
             Outcome::Scan(Some(_)) => eprintln!("app-android: ARCore recognises no objects by a scan"),
             Outcome::Scan(None) => {}
         }

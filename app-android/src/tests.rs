@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use app_core::Core;
 use app_core::app::{
-    Language, Notice, Permission, Saved, ShellCommand, ShellEvent, Step, Thermal, UserAction, WorkCommand,
+    GraphicsState, Language, Notice, Permission, Saved, ShellCommand, ShellEvent, Step, Thermal, UserAction,
+    WorkCommand,
 };
 use app_core::interface::{Insets, TouchPhase};
 use app_core::live::Live;
@@ -93,8 +94,9 @@ impl Phone for Desk {
         self.shown.push(name(&file));
     }
 
-    fn share(&mut self, files: Vec<PathBuf>) {
+    fn share(&mut self, files: Vec<PathBuf>, tell: impl FnOnce(bool) + Send + 'static) {
         self.shared.extend(files.iter().map(|file| name(file)));
+        tell(false);
     }
 
     fn own_folder(&self) -> Option<PathBuf> {
@@ -156,6 +158,8 @@ fn from_the_first_button_to_a_table() {
     assert_eq!(shell.phone().n_knocks, 0);
     shell.tick();
     assert_eq!(shell.phone().n_knocks, 1, "a table was found");
+    // A touch counts when nothing is in its way, such as the preparation of graphics.
+    shell.tell(ShellEvent::Graphics(GraphicsState::Ready));
     shell.tell(ShellEvent::User(UserAction::Tap(DVec2::new(2.0, 1.0))));
     assert_eq!(shell.live().app().step(), Step::TakePlate);
     assert!(calls().contains("planes=0"), "planes are looked for no longer");

@@ -193,6 +193,11 @@ impl Shell {
         self.begins_anew = self.panics.begins_anew(self.start.elapsed().as_secs_f64());
     }
 
+    /// Handles an error, after which only the person begins anew.
+    pub(crate) fn stop(&mut self) {
+        self.begins_anew = false;
+    }
+
     /// Whether a panic requires a new app.
     pub(crate) fn begins_anew(&self) -> bool {
         self.begins_anew
@@ -227,7 +232,10 @@ impl Shell {
             match outcome {
                 Outcome::Tell(event) => self.inbox.tell(event),
                 Outcome::Written(file) => into_photos(&file),
-                Outcome::Share(files) => self.shared = files,
+                Outcome::Share(files) => {
+                    self.shared = files;
+                    self.worker.shared()(true);
+                }
                 Outcome::Scan(scan) => self.session.recognise(scan.as_deref()),
             }
         }

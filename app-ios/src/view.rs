@@ -4,7 +4,8 @@ use std::cell::{Cell, OnceCell, RefCell};
 use std::rc::Rc;
 
 use app_core::app::ShellEvent;
-use app_core::interface::{Insets, Screen, Touch, TouchPhase};
+use app_core::interface::{Insets, Screen, Touch, TouchPhase, of_stopped};
+use ios_media::message::Message;
 use ios_media::voice_over::VoiceOver;
 use objc2::rc::{Retained, autoreleasepool};
 use objc2::runtime::{AnyClass, NSObject};
@@ -20,6 +21,7 @@ use objc2_ui_kit::{
 use crate::convert::size_px;
 use crate::hand_on::show_sheet;
 use crate::inbox::Inbox;
+use crate::person;
 use crate::shell::Shell;
 use crate::stage::StageError;
 use app_shell::guard::guarded;
@@ -31,6 +33,8 @@ pub(crate) struct ViewState {
     in_foreground: Cell<bool>,
     /// Retains the view, too.
     voice_over: RefCell<Option<VoiceOver>>,
+    /// Shown while there is no app, and after a touch there is another.
+    message: RefCell<Option<Message>>,
     /// Frame rate of the clock.
     frames_per_s: Cell<u32>,
     /// Retains the view, as the view retains it: [`MetalView::retire`] breaks the circle.
@@ -109,6 +113,7 @@ impl MetalView {
             inbox,
             in_foreground: Cell::new(false),
             voice_over: RefCell::default(),
+            message: RefCell::default(),
             frames_per_s: Cell::default(),
             display_link: OnceCell::new(),
         };
@@ -210,6 +215,10 @@ impl MetalView {
 
     /// Stores touches for the app, in pixels of the screen.
     fn touch(&self, touches: &NSSet<UITouch>, phase: TouchPhase) {
+        let is_stopped = self.ivars().message.borrow().is_some();
+        if is_stopped && phase == TouchPhase::Began {
+            return self.run("a new start", |shell| self.fit(shell));
+        }
         let pixels_per_point = self.pixels_per_point();
         for touch in touches {
             let at_points = touch.locationInView(Some(self));
@@ -251,6 +260,7 @@ impl MetalView {
             Some(screen) if self.ivars().in_foreground.get() => {
                 // VoiceOver's places are computed with it.
                 self.setContentScaleFactor(screen.pixels_per_point);
+                self.ivars().message.take();
                 shell.fit(&self.layer(), screen.size_px)
             }
             // The view is in the background or has no layout yet: layoutSubviews will bring a size.
@@ -258,9 +268,9 @@ impl MetalView {
         }
     }
 
-    /// Lets `act` work on the shell. After an error the app is dropped, and the next layout or
-    /// return to the foreground starts a new one; after a panic the next picture does, unless
-    /// panics follow one another. Until then the view keeps its last picture.
+    /// Lets `act` work on the shell. After an error the app is dropped, and a touch, the next layout
+    /// or the return to the foreground starts a new one; after a panic the next picture does, unless
+    /// panics follow one another. Until then a message covers the last picture.
     fn run(&self, callback: &str, act: impl FnOnce(&mut Shell) -> Result<(), StageError>) {
         let Ok(mut shell) = self.ivars().shell.try_borrow_mut() else {
             // UIKit laid the view out while the shell was at work; the size is read again at the next layout.
@@ -269,9 +279,16 @@ impl MetalView {
         let outcome = guarded(callback, || act(&mut shell));
         match outcome {
             Some(Ok(())) => return,
-            Some(Err(error)) => eprintln!("app-ios: {callback:?}: {error}"),
+            Some(Err(error)) => {
+                eprintln!("app-ios: {callback:?}: {error}");
+                shell.stop();
+            }
             None => shell.panicked(),
         }
         guarded("dropping the app", || shell.clear());
+        if !shell.begins_anew() {
+            let words = of_stopped(person::language());
+            self.ivars().message.replace(Message::over(self, words));
+        }
     }
 }

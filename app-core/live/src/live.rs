@@ -3,6 +3,7 @@
 //! A shell owns one [`Live`]. It passes on the platform's reports and touches, requests a picture
 //! whenever the screen wants one, and executes the returned commands.
 
+mod preset;
 mod profiler;
 mod screen_reader;
 
@@ -10,12 +11,11 @@ use std::sync::Arc;
 
 use wgpu::LoadOp;
 
-use crate::app::{App, GraphicsState, ShellCommand, ShellEvent, Show, Translated, WorkCommand};
+use crate::app::{App, ShellCommand, ShellEvent, Show, Translated};
 use crate::interface::{Interface, Painter, Painting, Screen, Touch};
-use crate::self_test;
 use app_pipeline::core::{Canvas, Core, CoreError, WarmUp};
 use app_pipeline::frame::{Clock, Warning};
-use app_pipeline::governor::{BALANCED_QUALITY_LADDER, Exhausted, Governor, LATE, Measured, Thermal};
+use app_pipeline::governor::{Exhausted, Governor};
 use app_pipeline::gpu::ShaderTexts;
 use app_pipeline::preset::Preset;
 use app_pipeline::profile::{About, Profile};
@@ -41,6 +41,8 @@ pub struct Live {
     scene: Option<Arc<Scene>>,
     display: Display,
     warnings: Vec<Warning>,
+    /// Commands of pictures that failed: the shell gets them with the next call.
+    owed: Vec<ShellCommand>,
     /// Target frame rate.
     target_fps: Option<u32>,
     governor: Option<Governor>,
@@ -55,9 +57,6 @@ pub struct Live {
     /// Time of the latest picture.
     time_s: f64,
 }
-
-/// Time for which a phone must be cool before it gets back a preset for which it was too warm.
-const COOL_S: f64 = 120.0;
 
 impl Live {
     /// An app that draws with `core`, and with an initial toy.
@@ -74,6 +73,7 @@ impl Live {
             scene: None,
             display: Display::default(),
             warnings: Vec::new(),
+            owed: Vec::new(),
             target_fps: None,
             governor: None,
             lowered: None,
@@ -139,7 +139,9 @@ impl Live {
         if let ShellEvent::Frame(frame) = &event {
             self.profiler.deliver(frame);
         }
-        self.app.event(event)
+        let mut commands = std::mem::take(&mut self.owed);
+        commands.extend(self.app.event(event));
+        commands
     }
 
     /// Processes a touch, or a mouse in its place.
@@ -153,19 +155,21 @@ impl Live {
     }
 
     /// Draws on the core's surface at `time_s`, which must increase from call to call, and returns
-    /// the resulting commands.
+    /// the resulting commands. If the toy's picture fails for another reason than a loss, the
+    /// camera's is drawn, and the person is told.
     ///
     /// # Errors
-    /// If the surface or the device is lost: a shell then reports [`GraphicsState::Lost`] and
-    /// supplies another core.
+    /// If the surface or the device is lost: a shell then reports
+    /// [`GraphicsState::Lost`](crate::app::GraphicsState::Lost) and supplies another core. The
+    /// commands come with the next call.
     pub fn present(&mut self, screen: &Screen, time_s: f64) -> Result<Vec<ShellCommand>, CoreError> {
-        let (commands, painting) = self.prepare(screen, time_s)?;
+        let painting = self.prepare(screen, time_s)?;
         let (painter, interface) = (&mut self.painter, &mut self.interface);
         self.core.present_with(self.display, |canvas| {
             paint(painter, interface, canvas, &painting, LoadOp::Load);
         })?;
         self.profiler.presented();
-        Ok(commands)
+        Ok(std::mem::take(&mut self.owed))
     }
 
     /// The same on a target of the caller's, whose format stores sRGB codes unchanged.
@@ -178,7 +182,7 @@ impl Live {
         screen: &Screen,
         time_s: f64,
     ) -> Result<Vec<ShellCommand>, CoreError> {
-        let (commands, painting) = self.prepare(screen, time_s)?;
+        let painting = self.prepare(screen, time_s)?;
         let below = match self.core.draw_on(target, self.display) {
             Ok(()) => LoadOp::Load,
             Err(CoreError::NoScene) => LoadOp::Clear(wgpu::Color::BLACK),
@@ -188,7 +192,7 @@ impl Live {
         if let Some(canvas) = self.core.canvas(target) {
             paint(&mut self.painter, &mut self.interface, &canvas, &painting, below);
         }
-        Ok(commands)
+        Ok(std::mem::take(&mut self.owed))
     }
 
     /// The same on an off-screen target, whose picture is returned.
@@ -204,9 +208,9 @@ impl Live {
             .core
             .hidden_screen(screen.size_px)
             .ok_or(CoreError::NoScene)?;
-        let commands = self.draw_on(&target, screen, time_s)?;
+        self.owed = self.draw_on(&target, screen, time_s)?;
         let image = self.core.read_screen(&target)?;
-        Ok((image, commands))
+        Ok((image, std::mem::take(&mut self.owed)))
     }
 
     /// The finished picture without the interface.
@@ -225,7 +229,7 @@ impl Live {
             return Some(Vec::new());
         }
         let action = self.app.back()?;
-        Some(self.app.event(ShellEvent::User(action)))
+        Some(self.event(ShellEvent::User(action)))
     }
 
     /// Shows this text on the first screen, as required by the terms of the platform's services.
@@ -277,133 +281,41 @@ impl Live {
         &self.warnings
     }
 
-    /// Processes the person's input to the interface, and makes the picture below it.
-    fn prepare(&mut self, screen: &Screen, time_s: f64) -> Result<(Vec<ShellCommand>, Painting), CoreError> {
+    /// Processes the person's input to the interface, and makes the picture below it. The commands
+    /// are owed to the shell.
+    fn prepare(&mut self, screen: &Screen, time_s: f64) -> Result<Painting, CoreError> {
         self.profiler.begin_picture();
-        let mut commands = self.follow_preset();
-        commands.extend(self.compile_next()?);
+        let commands = self.follow_preset();
+        self.owed.extend(commands);
+        self.compile_next()?;
         let profile = self.profile();
         let (actions, painting) = self.interface.run(&self.app, screen, time_s, &profile);
         for action in actions {
-            commands.extend(self.app.event(ShellEvent::User(action)));
+            let commands = self.app.event(ShellEvent::User(action));
+            self.owed.extend(commands);
         }
-        self.govern(time_s)?;
-        if self.make_picture()? {
-            commands.extend(self.app.drawn().map(ShellCommand::from));
+        let made = self.govern(time_s).and_then(|()| self.make_picture());
+        match made {
+            Ok(true) => self.owed.extend(self.app.drawn().map(ShellCommand::from)),
+            Ok(false) => {}
+            Err(error) if error.is_loss() => return Err(error),
+            Err(error) => self.show_camera_for(&error)?,
         }
-        Ok((commands, painting))
+        Ok(painting)
     }
 
-    fn compile_next(&mut self) -> Result<Vec<ShellCommand>, CoreError> {
-        let Some(left) = &mut self.warm_up else {
-            return Ok(Vec::new());
-        };
-        if let Some(compiled) = left.next() {
-            compiled?;
-            return Ok(Vec::new());
+    /// Draws the camera's picture in place of the toy's, which failed on a device that works.
+    fn show_camera_for(&mut self, error: &CoreError) -> Result<(), CoreError> {
+        if matches!(error, CoreError::Gpu(_)) {
+            // It may have been refused in the middle of its work.
+            self.scene = None;
         }
-        self.warm_up = None;
-        self.n_warm_ups = self.n_warm_ups.saturating_add(1);
-        let mut commands: Vec<_> = self.test_device().map(ShellCommand::from).into_iter().collect();
-        commands.extend(self.app.event(ShellEvent::Graphics(GraphicsState::Ready)));
-        Ok(commands)
-    }
-
-    /// Changes to another preset if the app wants one.
-    fn follow_preset(&mut self) -> Vec<ShellCommand> {
-        let is_same_toy = |toy: &Arc<Toy>| Arc::ptr_eq(toy, self.app.toy());
-        if self.lowered == Some(Exhausted::Slow) && !self.lowered_toy.as_ref().is_some_and(is_same_toy) {
-            // Another toy may be cheaper.
-            self.lowered = None;
-            self.govern_preset();
-        }
-        let is_exchanged = self.lowered.is_some() && !self.app.is_for_engineers();
-        let is_lowered = is_exchanged && self.chosen == Preset::Balanced;
-        let preset = self
-            .app
-            .preset(if is_lowered { Preset::Fast } else { self.chosen });
-        if preset == self.preset {
-            return Vec::new();
-        }
-        self.preset = preset;
-        self.warm_up = Some(self.core.warm_up(preset));
-        self.scene = None;
-        self.govern_preset();
-        self.app.event(ShellEvent::Graphics(GraphicsState::Starting))
-    }
-
-    /// Creates the governor of the preset in use.
-    fn govern_preset(&mut self) {
-        let target_fps = self.target_fps.filter(|_| self.preset == Preset::Balanced);
-        self.governor = target_fps.map(|fps| Governor::new(BALANCED_QUALITY_LADDER, fps));
-    }
-
-    /// Makes the device draw its test picture, once for each driver and version of this crate.
-    fn test_device(&mut self) -> Option<WorkCommand> {
-        let version = env!("CARGO_PKG_VERSION");
-        let device = format!("{version} {} {}", self.preset, self.core.adapter_name());
-        let is_usual = self.core.device().is_some() && self.core.has_built_in_shaders();
-        if !is_usual || !self.app.wants_self_test(&device) {
-            return None;
-        }
-        let tested = self_test::run(&mut self.core, self.preset);
-        self.scene = None;
-        let words = match &tested {
-            Ok(off) => format!(
-                "{:.2} codes off in its worst block, {:.3} on average",
-                off.worst_codes, off.mean_codes
-            ),
-            Err(error) => error.to_string(),
-        };
-        self.app.note_self_test(&words);
-        let outcome = tested.map(|_| ()).map_err(|error| error.to_string());
-        self.app.self_tested(&device, outcome)
-    }
-
-    /// Reduces or restores settings by the duration of pictures while the toy moves.
-    fn govern(&mut self, time_s: f64) -> Result<(), CoreError> {
-        let interval_ms = 1e3 * (time_s - self.time_s);
-        self.cool_down(time_s - self.time_s);
-        self.time_s = time_s;
-        let shown_fps = self
-            .app
-            .frames_per_s()
-            .min(self.frames_per_s().unwrap_or(u32::MAX));
-        // The device may be fast although not all pictures of the camera are shown.
-        let is_late = self.profiler.has_dropped() && interval_ms > LATE * 1e3 / f64::from(shown_fps.max(1));
-        let is_moving = self.scene.is_some() && matches!(self.app.show(), Show::Toy { .. });
-        let Some(governor) = self.governor.as_mut().filter(|_| is_moving) else {
-            return Ok(());
-        };
-        let turned = governor.take(&Measured {
-            gpu_ms: self.profiler.gpu_ms(),
-            // A shell that draws one picture per camera picture waits for the camera; that time is
-            // not the device's.
-            interval_ms: self
-                .profiler
-                .busy_ms()
-                .filter(|_| !is_late)
-                .unwrap_or(interval_ms),
-            thermal: self.app.thermal(),
-        });
-        if let Some(exhausted) = governor.exhausted().filter(|_| self.lowered.is_none()) {
-            self.lowered = Some(exhausted);
-            self.lowered_toy = Some(Arc::clone(self.app.toy()));
-            self.app.note_lowered(exhausted);
-        }
-        if turned.is_some() {
-            self.core.set_quality_reductions(governor.quality_reductions())?;
-        }
-        Ok(())
-    }
-
-    /// Returns to the chosen preset, if heat alone has lowered it and has passed.
-    fn cool_down(&mut self, elapsed_s: f64) {
-        let is_cooling = self.lowered == Some(Exhausted::Warm) && self.app.thermal() == Thermal::Nominal;
-        self.cool_s = if is_cooling { self.cool_s + elapsed_s } else { 0.0 };
-        if self.cool_s >= COOL_S {
-            self.lowered = None;
-            self.cool_s = 0.0;
+        let commands = self.app.event(ShellEvent::PictureFailed(error.to_string()));
+        self.owed.extend(commands);
+        match self.make_picture() {
+            Err(error) if error.is_loss() => Err(error),
+            // Not even the camera's picture can be drawn: the interface is.
+            Ok(_) | Err(_) => Ok(()),
         }
     }
 
@@ -423,6 +335,7 @@ impl Live {
             } => {
                 self.display = display;
                 if !self.scene.as_ref().is_some_and(|set| Arc::ptr_eq(set, scene)) {
+                    self.scene = None;
                     self.core.set_scene(Arc::clone(scene), self.preset)?;
                     self.scene = Some(Arc::clone(scene));
                     if let Some(governor) = &self.governor {

@@ -6,7 +6,7 @@ use image::codecs::{jpeg::JpegDecoder, png::PngDecoder};
 use image::{ColorType, DynamicImage, ImageDecoder, Limits};
 
 use super::error::PictureError;
-use super::tags::{JPEG_MAGIC, PNG_MAGIC};
+use super::tags::{JPEG_MAGIC, PNG_MAGIC, jpeg_has_end};
 use app_scene::depth::Depth;
 use app_scene::people::People;
 use app_scene::scene::{Image, check};
@@ -227,27 +227,4 @@ fn check_size(decoder: &impl ImageDecoder, size: PictureSize) -> Result<(), Pict
         });
     }
     Ok(())
-}
-
-/// Walks a JPEG's segments to its end marker. Previews in its metadata have their own end markers,
-/// so a search for the marker's bytes would not do.
-fn jpeg_has_end(bytes: &[u8]) -> bool {
-    const STUFFED: u8 = 0x00;
-    const FILL: u8 = 0xff;
-    const END: u8 = 0xd9;
-    let mut at = 2;
-    while let Some(&[first, code]) = bytes.get(at..at + 2) {
-        at += match (first, code) {
-            (0xff, END) => return true,
-            (0xff, STUFFED | 0xd0..=0xd7) => 2,
-            (0xff, FILL) => 1,
-            (0xff, _) => match bytes.get(at + 2..at + 4) {
-                Some(&[high, low]) => 2 + usize::from(u16::from_be_bytes([high, low])),
-                _ => return false,
-            },
-            // A byte of compressed data.
-            _ => 1,
-        };
-    }
-    false
 }

@@ -1,4 +1,4 @@
-//! Metadata of picture files: the chunks of a PNG, and EXIF's orientation.
+//! The structure of picture files: the chunks of a PNG, a JPEG's end, and EXIF's orientation.
 
 use std::io::Cursor;
 
@@ -39,4 +39,28 @@ pub fn exif_orientation(bytes: &[u8]) -> u8 {
             .and_then(|(_, data)| Orientation::from_exif_chunk(data))
     };
     orientation.map_or(1, Orientation::to_exif)
+}
+
+/// Whether a JPEG has its end; decoders fill what is cut off with grey. Walks the segments: previews in its metadata have their own end markers,
+/// so a search for the marker's bytes would not do.
+#[must_use]
+pub fn jpeg_has_end(bytes: &[u8]) -> bool {
+    const STUFFED: u8 = 0x00;
+    const FILL: u8 = 0xff;
+    const END: u8 = 0xd9;
+    let mut at = 2;
+    while let Some(&[first, code]) = bytes.get(at..at + 2) {
+        at += match (first, code) {
+            (0xff, END) => return true,
+            (0xff, STUFFED | 0xd0..=0xd7) => 2,
+            (0xff, FILL) => 1,
+            (0xff, _) => match bytes.get(at + 2..at + 4) {
+                Some(&[high, low]) => 2 + usize::from(u16::from_be_bytes([high, low])),
+                _ => return false,
+            },
+            // A byte of compressed data.
+            _ => 1,
+        };
+    }
+    false
 }

@@ -1,5 +1,6 @@
-//! Small files of the app's own that are stored between starts, each completely or not at all.
+//! Files that are stored completely or not at all, such as those that the app keeps between starts.
 
+use std::ffi::OsStr;
 use std::path::Path;
 use std::{fs, io};
 
@@ -13,11 +14,16 @@ pub fn text(folder: &Path, name: &str) -> Option<String> {
 ///
 /// # Errors
 /// If the file cannot be written.
-pub fn store(folder: &Path, name: &str, bytes: &[u8]) -> io::Result<()> {
+pub fn store(folder: &Path, name: impl AsRef<OsStr>, bytes: &[u8]) -> io::Result<()> {
     fs::create_dir_all(folder)?;
-    let whole = folder.join(name).with_extension("new");
-    fs::write(&whole, bytes)?;
-    fs::rename(whole, folder.join(name))
+    let path = folder.join(name.as_ref());
+    let whole = path.with_extension("new");
+    let stored = fs::write(&whole, bytes).and_then(|()| fs::rename(&whole, &path));
+    if stored.is_err() {
+        // A part of it, if the device is full: the first reason is the one to report.
+        let _ = fs::remove_file(&whole);
+    }
+    stored
 }
 
 /// The same; a failure is reported on standard error, and nothing is stored.

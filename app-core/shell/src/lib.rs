@@ -9,6 +9,7 @@
 mod avi;
 mod encoder;
 pub mod folders;
+mod gallery;
 pub mod guard;
 pub mod kept;
 pub mod losses;

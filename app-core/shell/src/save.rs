@@ -1,11 +1,12 @@
 //! Files for the person.
 
-use std::fs;
 use std::io;
 use std::path::Path;
 
 use app_core::app::Saved;
 use app_core::scene::Image;
+
+use crate::kept;
 
 /// Writes a picture as PNG, into a folder that is created if it is missing.
 #[must_use]
@@ -25,11 +26,12 @@ pub fn picture(path: &Path, picture: &Image) -> Saved {
     }
 }
 
-/// Writes a file, into a folder that is created if it is missing.
+/// Writes a file, completely or not at all, into a folder that is created if it is missing.
 #[must_use]
 pub fn bytes(path: &Path, bytes: &[u8]) -> Saved {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    outcome(fs::create_dir_all(folder).and_then(|()| fs::write(path, bytes)))
+    let (folder, name) = (path.parent(), path.file_name());
+    let folder = folder.unwrap_or(Path::new(""));
+    outcome(kept::store(folder, name.unwrap_or_default(), bytes))
 }
 
 /// The message about a file that was written, or was not.
@@ -44,6 +46,8 @@ pub(crate) fn outcome(written: io::Result<()>) -> Saved {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]
@@ -61,6 +65,12 @@ mod tests {
         // A file is not a folder.
         assert_eq!(picture(&path.join("photo.png"), &photo), Saved::Failed);
         assert_eq!(bytes(&path.join("log.txt"), b""), Saved::Failed);
+        // Nor can it take a folder's place: nothing is left of what was written.
+        let taken = folder.join("taken.png");
+        fs::create_dir(&taken).expect("a folder");
+        assert_ne!(picture(&taken, &photo), Saved::Done);
+        let left = fs::read_dir(&folder).expect("a folder").count();
+        assert_eq!(left, 2, "the photo and the folder");
         fs::remove_dir_all(&folder).expect("a folder");
     }
 }

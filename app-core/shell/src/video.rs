@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
-use app_core::app::Saved;
+use app_core::app::{Filmed, Saved, VideoEnding};
 use app_core::scene::Image;
 
 pub use crate::encoder::{BeginVideo, HZ, VideoEncoder};
@@ -52,22 +52,26 @@ pub struct Video {
 
 impl Video {
     /// Begins a video with the first of `formats` that works, whose extension is added to `stem`;
-    /// the thread passes the result to `done`, with the file if there is one.
+    /// the thread passes the result to `done`, with the file if there is one. It ends by itself,
+    /// too, if the file can be no larger.
     ///
     /// # Errors
     /// If there is no thread for it.
     pub fn begin(
         stem: PathBuf,
         formats: &'static [VideoFormat],
-        done: impl FnOnce(Saved, Option<PathBuf>) + Send + 'static,
+        done: impl FnOnce(Filmed, Option<PathBuf>) + Send + 'static,
     ) -> io::Result<Self> {
         let (pictures, taken) = sync_channel(N_WAITING);
         thread::Builder::new().name("video".to_owned()).spawn(move || {
-            match guarded("the video's thread", || write(&stem, formats, &taken)) {
-                Some(Ok(Some(file))) => done(Saved::Done, Some(file)),
-                Some(Err(error)) => done(outcome(Err(error)), None),
-                Some(Ok(None)) | None => done(Saved::Failed, None),
-            }
+            let written = guarded("the video's thread", || write(&stem, formats, &taken));
+            let (saved, ending, file) = match written {
+                Some(Ok(Some((file, ending)))) => (Saved::Done, ending, Some(file)),
+                Some(Ok(None)) => (Saved::Failed, VideoEnding::Asked, None),
+                Some(Err(error)) => (outcome(Err(error)), VideoEnding::Broken, None),
+                None => (Saved::Failed, VideoEnding::Broken, None),
+            };
+            done(Filmed { saved, ending }, file);
         })?;
         let due_s = f64::NEG_INFINITY;
         Ok(Self { pictures, due_s })
@@ -111,13 +115,13 @@ impl Timeline {
     }
 }
 
-/// Encodes pictures until there are no more. A video without a picture leaves no file; a failed one
+/// Encodes pictures until there are no more, or until the file can be no larger. A video without a picture leaves no file; a failed one
 /// is removed.
 fn write(
     stem: &Path,
     formats: &[VideoFormat],
     pictures: &Receiver<(Image, f64)>,
-) -> io::Result<Option<PathBuf>> {
+) -> io::Result<Option<(PathBuf, VideoEnding)>> {
     let Ok((first, begin_s)) = pictures.recv() else {
         return Ok(None);
     };
@@ -130,7 +134,7 @@ fn write(
         // It has failed already: the first reason is the one to report.
         let _ = fs::remove_file(&file);
     }
-    encoded.map(|()| Some(file))
+    encoded.map(|ending| Some((file, ending)))
 }
 
 /// Begins with the first format that works; the error is the last one's.
@@ -158,22 +162,29 @@ fn encode(
     mut encoder: Box<dyn VideoEncoder>,
     (first, begin_s): (&Image, f64),
     pictures: &Receiver<(Image, f64)>,
-) -> io::Result<()> {
+) -> io::Result<VideoEnding> {
     let size_px = [first.width_px, first.height_px];
     let mut timeline = Timeline {
         last_s: begin_s,
         since_s: 0.0,
     };
     let mut has_room = encoder.add(first, 0.0)?;
-    while has_room && let Ok((picture, time_s)) = pictures.recv() {
+    let ending = loop {
+        if !has_room {
+            break VideoEnding::TooLarge;
+        }
+        let Ok((picture, time_s)) = pictures.recv() else {
+            break VideoEnding::Asked;
+        };
         if [picture.width_px, picture.height_px] != size_px {
-            break;
+            break VideoEnding::Broken;
         }
         if let Some(since_s) = timeline.advance(time_s) {
             has_room = encoder.add(&picture, since_s)?;
         }
-    }
-    encoder.finish(timeline.since_s + 1.0 / f64::from(HZ))
+    };
+    encoder.finish(timeline.since_s + 1.0 / f64::from(HZ))?;
+    Ok(ending)
 }
 
 #[cfg(test)]
@@ -181,6 +192,18 @@ mod tests {
     use std::sync::mpsc::channel;
 
     use super::*;
+
+    const DONE: Filmed = Filmed {
+        saved: Saved::Done,
+        ending: VideoEnding::Asked,
+    };
+
+    const fn broken(saved: Saved) -> Filmed {
+        Filmed {
+            saved,
+            ending: VideoEnding::Broken,
+        }
+    }
 
     fn picture(code: u8, size_px: [u32; 2]) -> Image {
         Image {
@@ -220,11 +243,11 @@ mod tests {
     }
 
     /// Result for pictures with their times.
-    fn video(name: &str, formats: &'static [VideoFormat], pictures: &[(u8, f64)]) -> (Saved, Vec<Vec<u8>>) {
+    fn video(name: &str, formats: &'static [VideoFormat], pictures: &[(u8, f64)]) -> (Filmed, Vec<Vec<u8>>) {
         let folder = std::env::temp_dir().join(format!("app-shell-{name}-{}", std::process::id()));
         let (done, saved) = channel();
-        let mut video = Video::begin(folder.join("video"), formats, move |saved, file| {
-            drop(done.send((saved, file)))
+        let mut video = Video::begin(folder.join("video"), formats, move |filmed, file| {
+            drop(done.send((filmed, file)))
         })
         .expect("a thread");
         for (code, time_s) in pictures {
@@ -233,21 +256,21 @@ mod tests {
             }
         }
         drop(video);
-        let (saved, file) = saved.recv().expect("an end");
+        let (filmed, file) = saved.recv().expect("an end");
         let entries = fs::read_dir(&folder).into_iter().flatten().flatten();
         let paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
         assert_eq!(paths, Vec::from_iter(file), "what is there is what is told");
         let files = paths.iter().map(|path| fs::read(path).expect("a file")).collect();
         let _ = fs::remove_dir_all(&folder);
-        (saved, files)
+        (filmed, files)
     }
 
     #[test]
     fn pictures_stand_as_long_as_they_were_shown() {
         // The second is shown for three periods, the third is in the same one as the fourth.
         let shown = [(10, 5.0), (60, 5.033), (110, 5.13), (160, 5.135), (210, 5.166)];
-        let (saved, files) = video("video", &[MOTION_JPEG], &shown);
-        assert_eq!(saved, Saved::Done);
+        let (filmed, files) = video("video", &[MOTION_JPEG], &shown);
+        assert_eq!(filmed, DONE);
         assert_eq!(files.len(), 1);
         let expected = [10, 60, 60, 60, 160, 210];
         let greys = greys(&files[0]);
@@ -260,23 +283,27 @@ mod tests {
 
     #[test]
     fn times_that_make_no_sense_do_not_fill_the_disc() {
-        let (saved, files) = video(
+        let (filmed, files) = video(
             "times",
             &[MOTION_JPEG],
             &[(10, 1.0), (20, 1e9), (30, f64::NAN), (40, -5.0)],
         );
-        assert_eq!(saved, Saved::Done);
+        assert_eq!(filmed, DONE);
         assert_eq!(greys(&files[0]).len(), 61);
     }
 
     #[test]
     fn without_a_picture_there_is_no_file_and_without_a_folder_it_is_told() {
-        let (saved, files) = video("none", &[MOTION_JPEG], &[]);
-        assert_eq!((saved, files.len()), (Saved::Failed, 0));
+        let (filmed, files) = video("none", &[MOTION_JPEG], &[]);
+        let failed = Filmed {
+            saved: Saved::Failed,
+            ..DONE
+        };
+        assert_eq!((filmed, files.len()), (failed, 0));
         let file = std::env::temp_dir().join(format!("app-shell-no-folder-{}", std::process::id()));
         fs::write(&file, b"").expect("a file");
         let (done, saved) = channel();
-        let tell = move |saved, _| done.send(saved).expect("a receiver");
+        let tell = move |filmed: Filmed, _| done.send(filmed.saved).expect("a receiver");
         let mut video = Video::begin(file.join("video"), &[MOTION_JPEG], tell).expect("a thread");
         assert!(video.is_due(0.0));
         assert!(video.add(picture(1, [16, 8]), 0.0));
@@ -312,10 +339,10 @@ mod tests {
                 Err(io::ErrorKind::Unsupported.into())
             },
         };
-        let (saved, files) = video("refuses", &[REFUSES, MOTION_JPEG], &[(10, 0.0)]);
-        assert_eq!((saved, greys(&files[0]).len()), (Saved::Done, 1));
-        let (saved, files) = video("none-can", &[REFUSES], &[(10, 0.0)]);
-        assert_eq!((saved, files.len()), (Saved::Failed, 0));
+        let (filmed, files) = video("refuses", &[REFUSES, MOTION_JPEG], &[(10, 0.0)]);
+        assert_eq!((filmed, greys(&files[0]).len()), (DONE, 1));
+        let (filmed, files) = video("none-can", &[REFUSES], &[(10, 0.0)]);
+        assert_eq!((filmed, files.len()), (broken(Saved::Failed), 0));
     }
 
     #[test]
@@ -327,7 +354,38 @@ mod tests {
                 Ok(Box::new(Breaks(0)))
             },
         };
-        let (saved, files) = video("breaks", &[BREAKS], &[(10, 0.0), (10, 0.1), (10, 0.2)]);
-        assert_eq!((saved, files.len()), (Saved::NoRoom, 0));
+        let (filmed, files) = video("breaks", &[BREAKS], &[(10, 0.0), (10, 0.1), (10, 0.2)]);
+        assert_eq!((filmed, files.len()), (broken(Saved::NoRoom), 0));
+    }
+
+    /// Has room for two pictures.
+    struct Fills(u32);
+
+    impl VideoEncoder for Fills {
+        fn add(&mut self, _picture: &Image, _since_s: f64) -> io::Result<bool> {
+            self.0 += 1;
+            Ok(self.0 < 2)
+        }
+
+        fn finish(self: Box<Self>, _until_s: f64) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_video_that_can_be_no_larger_ends_by_itself_and_is_told() {
+        const FILLS: VideoFormat = VideoFormat {
+            extension: "mp4",
+            begin: |path, _| {
+                fs::write(path, b"begun")?;
+                Ok(Box::new(Fills(0)))
+            },
+        };
+        let (filmed, files) = video("fills", &[FILLS], &[(10, 0.0), (10, 0.1)]);
+        let full = Filmed {
+            ending: VideoEnding::TooLarge,
+            ..DONE
+        };
+        assert_eq!((filmed, files.len()), (full, 1));
     }
 }

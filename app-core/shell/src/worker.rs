@@ -7,9 +7,9 @@
 //! | `Align` | on a thread | `Aligned` |
 //! | `Watch` | on a thread | `Watched` |
 //! | `SavePhoto` | read the picture, and write it on a thread | `Saved`, and the file for the gallery |
-//! | `Video` | pass each drawn picture to a thread, until the video ends | `Saved`, and the file for the gallery |
+//! | `Video` | pass each drawn picture to a thread, until the video ends | `Filmed`, and the file for the gallery |
 //! | `Record` | on a thread, until the recording ends | `Recorded` |
-//! | `Share` | write the log and the times | `Saved`, and the files to share |
+//! | `Share` | write the log and the times | the files to share; `Saved` when they are, or if they cannot be written |
 //! | `PickToy` | list the folder | `ToyFiles` |
 //! | `ReadToy` | on a thread | `Toy` |
 //! | `Remember` | write the text at once | none |
@@ -23,11 +23,12 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use app_core::app::{AlignJob, Recorded, Saved, ShellEvent, ToyRefusal, WorkCommand};
+use app_core::app::{AlignJob, Filmed, Recorded, Saved, ShellEvent, ToyRefusal, VideoEnding, WorkCommand};
 use app_core::live::Live;
 use app_core::recording::{PictureCodec, RecordingJob, RecordingOutcome};
 
 use crate::folders::{self, Folders};
+use crate::gallery::Gallery;
 use crate::guard::guarded;
 use crate::toys::{self, ToyFile};
 use crate::video::{Video, VideoFormat};
@@ -48,8 +49,8 @@ pub struct Platform {
     pub videos: &'static [VideoFormat],
     /// Encodes the pictures of recordings.
     pub codec: Arc<dyn Fn() -> PictureCodec + Send + Sync>,
-    /// Keeps the app from being suspended until the returned value is dropped, so that a video is
-    /// complete.
+    /// Keeps the app from being suspended until the returned value is dropped, so that a file is
+    /// complete. Called on the worker's own thread.
     pub keep_running: fn() -> Box<dyn Send>,
 }
 
@@ -86,9 +87,12 @@ pub struct Worker {
     /// Alignments that wait for their run.
     waiting: Vec<AlignJob>,
     video: Option<Video>,
+    gallery: Gallery,
     /// The thread that writes the latest recording, and its file.
     recording: Option<JoinHandle<()>>,
     recorded: Option<PathBuf>,
+    /// The outcome of writing the latest files to share.
+    written: Saved,
     n_files: u128,
     outcomes: (Sender<Outcome>, Receiver<Outcome>),
     /// Time of the last check of the free space.
@@ -100,20 +104,27 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// A worker without any work.
+    /// A worker without any work, except that of an earlier start.
     #[must_use]
     pub fn new(platform: Platform, folders: Folders) -> Self {
+        let gallery = Gallery::kept_in(&folders);
+        let outcomes = channel();
+        for file in gallery.waiting() {
+            send(&outcomes.0, Outcome::Written(file));
+        }
         Self {
             platform,
             folders,
+            gallery,
+            outcomes,
             pace: Pace::Live,
             toy_file: ToyFile::default(),
             waiting: Vec::new(),
             video: None,
             recording: None,
             recorded: None,
+            written: Saved::Done,
             n_files: 0,
-            outcomes: channel(),
             looked: None,
             n_warm_ups: 0,
             logged: None,
@@ -220,7 +231,11 @@ impl Worker {
                 .into_iter()
                 .for_each(|free| self.tell(ShellEvent::FreeSpace(free)));
         }
-        self.outcomes.1.try_recv().ok()
+        let outcome = self.outcomes.1.try_recv().ok();
+        if let Some(Outcome::Written(file)) = &outcome {
+            self.gallery.remove(file);
+        }
+        outcome
     }
 
     /// Stores the driver's compiled pipelines once they are complete.
@@ -287,30 +302,40 @@ impl Worker {
         let Ok(picture) = live.read_picture() else {
             return self.tell(ShellEvent::Saved(Saved::Failed));
         };
+        let (gallery, kept_running) = (self.gallery.clone(), (self.platform.keep_running)());
         self.run("photo", ShellEvent::Saved(Saved::Failed), move |outcomes| {
             let path = stem.with_extension("png");
             let saved = save::picture(&path, &picture);
             if saved == Saved::Done {
+                gallery.add(&path);
                 send(outcomes, Outcome::Written(path));
             }
+            drop(kept_running);
             ShellEvent::Saved(saved)
         });
     }
 
     fn begin_video(&mut self) {
-        let Some(stem) = self.stem("video") else {
-            return self.tell(ShellEvent::Saved(Saved::NotAllowed));
+        let refused = |saved| {
+            let ending = VideoEnding::Broken;
+            ShellEvent::Filmed(Filmed { saved, ending })
         };
-        let (outcomes, kept_running) = (self.outcomes.0.clone(), (self.platform.keep_running)());
-        let done = move |saved, file: Option<PathBuf>| {
-            file.into_iter()
-                .for_each(|file| send(&outcomes, Outcome::Written(file)));
-            send(&outcomes, Outcome::Tell(ShellEvent::Saved(saved)));
+        let Some(stem) = self.stem("video") else {
+            return self.tell(refused(Saved::NotAllowed));
+        };
+        let (outcomes, gallery) = (self.outcomes.0.clone(), self.gallery.clone());
+        let kept_running = (self.platform.keep_running)();
+        let done = move |filmed, file: Option<PathBuf>| {
+            if let Some(file) = file {
+                gallery.add(&file);
+                send(&outcomes, Outcome::Written(file));
+            }
+            send(&outcomes, Outcome::Tell(ShellEvent::Filmed(filmed)));
             drop(kept_running);
         };
         match Video::begin(stem, self.platform.videos, done) {
             Ok(video) => self.video = Some(video),
-            Err(_) => self.tell(ShellEvent::Saved(Saved::Failed)),
+            Err(_) => self.tell(refused(Saved::Failed)),
         }
     }
 
@@ -327,21 +352,35 @@ impl Worker {
         });
         self.recorded = Some(path.clone());
         let (platform, toy) = (self.platform.clone(), self.toy_file.bytes());
+        let kept_running = (self.platform.keep_running)();
         self.recording = self.spawn("record", died, move |_| {
             let codec = (platform.codec)();
-            ShellEvent::Recorded(record::write(job, (platform.app, &toy), codec, &path))
+            let recorded = record::write(job, (platform.app, &toy), codec, &path);
+            drop(kept_running);
+            ShellEvent::Recorded(recorded)
         });
     }
 
-    fn share(&self, live: &Live) {
+    fn share(&mut self, live: &Live) {
         let Some(folder) = &self.folders.shared else {
             return self.tell(ShellEvent::Saved(Saved::NotAllowed));
         };
         let (saved, files) = record::share(live, folder, self.recorded.as_deref());
-        if !files.is_empty() {
+        self.written = saved;
+        if files.is_empty() {
+            self.tell(ShellEvent::Saved(saved));
+        } else {
             send(&self.outcomes.0, Outcome::Share(files));
         }
-        self.tell(ShellEvent::Saved(saved));
+    }
+
+    /// To be called, on any thread, with whether other apps get the files of an [`Outcome::Share`].
+    pub fn shared(&self) -> impl FnOnce(bool) + Send + use<> {
+        let (outcomes, written) = (self.outcomes.0.clone(), self.written);
+        move |is_shared| {
+            let saved = if is_shared { written } else { Saved::NotShared };
+            send(&outcomes, Outcome::Tell(ShellEvent::Saved(saved)));
+        }
     }
 
     fn remember(&self, text: &str) {

@@ -4,10 +4,9 @@ use std::path::Path;
 
 use anyhow::{Context, ensure};
 use app_core::session::{Files, Folder};
-use app_core::toy::packed;
+use app_core::toy::{MAX_FILE_BYTES, packed};
 
-/// Limit for a toy's size.
-const MAX_BYTES: u64 = 256 << 20;
+const MAX_BYTES: u64 = MAX_FILE_BYTES as u64;
 
 /// The bytes of one binary glTF: those of the file, with the files that it refers to included.
 ///

@@ -9,6 +9,7 @@ pub mod inbetween;
 pub mod length;
 pub mod new;
 pub mod photograph;
+pub mod quoted;
 pub mod sheet;
 pub mod small;
 pub mod thumbnail;

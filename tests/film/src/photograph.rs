@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use app_core::scene::Image;
 use app_core::scene::check::MAX_PICTURE_PIXELS;
-use app_core::session::tags::{exif_orientation, png_chunks};
+use app_core::session::tags::{exif_orientation, jpeg_has_end, png_chunks};
 use app_scene::geometry::color::{code_of_linear, linear_of_codes};
 use exif::{In, Tag, Value};
 use image::codecs::{jpeg::JpegDecoder, png::PngDecoder};
@@ -63,6 +63,9 @@ pub enum PhotographReason {
     /// The file is damaged.
     #[error("cannot be decoded: {0}")]
     Damaged(#[from] image::ImageError),
+    /// The end of the file is missing; decoders would fill the rest with grey.
+    #[error("is cut short: copy it again")]
+    CutShort,
     /// The colour profile cannot be converted to sRGB.
     #[error("its colour profile cannot be converted ({0}): export it in sRGB")]
     Profile(String),
@@ -164,6 +167,9 @@ fn decode(bytes: &[u8]) -> Result<Decoded, PhotographReason> {
     } else if bytes.starts_with(b"\xff\xd8\xff") {
         let mut decoder = JpegDecoder::new(Cursor::new(bytes))?;
         decoder.set_limits(limits)?;
+        if !jpeg_has_end(bytes) {
+            return Err(PhotographReason::CutShort);
+        }
         decoded(decoder, bytes)
     } else {
         Err(

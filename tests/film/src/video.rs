@@ -38,7 +38,13 @@ impl Video {
     pub fn open(path: &Path, folder: &Path, n_most: u32) -> anyhow::Result<Self> {
         let named = || path.display().to_string();
         ensure!(path.is_file(), "{}: is no file", named());
-        fs::create_dir(folder).with_context(|| folder.display().to_string())?;
+        match fs::create_dir(folder) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => bail!(
+                "{}: another run works there, or was interrupted: remove it in that case",
+                folder.display()
+            ),
+            made => made.with_context(|| folder.display().to_string())?,
+        }
         let mut video = Self {
             folder: folder.to_owned(),
             pictures: Vec::new(),

@@ -7,7 +7,7 @@ use app_core::scene::Light;
 use app_core::session::{Capture, Session};
 use desk::files::{BUNDLED_SESSION, Folder};
 use film::length::metres;
-use film::new::{DRAWING, NewError, View, Wanted, new};
+use film::new::{DRAWING, Key, NewError, View, Wanted, new};
 use film::photograph::{Photograph, PhotographReason};
 use glam::{DMat4, DVec3};
 use harness::temporary::Temporary;
@@ -58,7 +58,12 @@ fn sphere(capture: &Capture) -> DVec3 {
 fn a_plate_and_a_photograph_become_the_session_that_they_are_of() {
     let out = Temporary::new("new");
     let out = out.0.join("session");
-    new(&wanted(&["background_0000.png", "frame_0000.png"]), &out).unwrap();
+    new(
+        &wanted(&["background_0000.png", "frame_0000.png"]),
+        &out,
+        &mut |_| {},
+    )
+    .unwrap();
     assert!(out.join(DRAWING).is_file());
     let made = Capture::open(Folder::open(&out).unwrap()).unwrap();
     let recorded = Capture::open(Folder::open(BUNDLED_SESSION).unwrap()).unwrap();
@@ -87,7 +92,12 @@ fn a_plate_and_a_photograph_become_the_session_that_they_are_of() {
 fn what_shows_no_toy_is_refused_and_nothing_is_written() {
     let out = Temporary::new("new-without");
     let out = out.0.join("session");
-    let error = new(&wanted(&["background_0000.png", "background_0000.png"]), &out).unwrap_err();
+    let error = new(
+        &wanted(&["background_0000.png", "background_0000.png"]),
+        &out,
+        &mut |_| {},
+    )
+    .unwrap_err();
     let reason = error.downcast_ref::<NewError>().unwrap();
     assert!(matches!(reason, NewError::NotFound { .. }), "{error}");
     assert!(!out.exists());
@@ -98,8 +108,21 @@ fn a_lens_that_nothing_states_is_asked_for() {
     let out = Temporary::new("new-lens");
     let mut wanted = wanted(&["background_0000.png", "frame_0000.png"]);
     wanted.focal_35mm = None;
-    let error = new(&wanted, &out.0.join("session")).unwrap_err();
+    let error = new(&wanted, &out.0.join("session"), &mut |_| {}).unwrap_err();
     assert!(error.to_string().contains("--focal-35mm"), "{error}");
+}
+
+#[test]
+fn a_key_beyond_the_end_of_its_clip_is_refused_like_a_pose() {
+    let out = Temporary::new("new-key");
+    let mut wanted = wanted(&["background_0000.png", "frame_0000.png"]);
+    let moment = ("Look".to_owned(), 99.0);
+    wanted.keys = vec![Key {
+        path: bundled("frame_0000.png"),
+        moment,
+    }];
+    let error = new(&wanted, &out.0.join("session"), &mut |_| {}).unwrap_err();
+    assert!(error.to_string().contains("\"Look\" ends at"), "{error}");
 }
 
 /// EXIF with an orientation and a 35 mm equivalent focal length, as a segment of a JPEG.

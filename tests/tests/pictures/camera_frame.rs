@@ -2,8 +2,8 @@
 //! screen.
 
 use app_core::camera_frame::{
-    Arrival, Arrivals, CameraImage, CodeRange, Display, Fade, Fit, LumaCoefficients, PlanarImage, Plane,
-    PlaneError, Planes, Stamp, YcbcrEncoding,
+    Arrival, Arrivals, CameraImage, CodeRange, Display, Fade, Fit, LONGEST_GAP_S, LumaCoefficients,
+    PlanarImage, Plane, PlaneError, Planes, Stamp, YcbcrEncoding,
 };
 use glam::{DVec2, DVec3};
 use reference::camera_planes::{chroma_at, decoded};
@@ -230,7 +230,9 @@ fn frames_that_come_late_twice_or_after_a_gap_have_a_stated_result() {
         next(arrive(7, -867, 0), 33.0),
         "what was not taken does not count"
     );
-    assert!(matches!(arrive(8, 0, 0), Arrival::AfterGap { elapsed_s } if (elapsed_s - 0.867).abs() < 1e-9));
+    let late = arrive(8, 0, 0);
+    assert!(matches!(late, Arrival::AfterGap { elapsed_s } if (elapsed_s - 0.867).abs() < 1e-9));
+    assert_eq!([late.filtered_s(), late.counted_s()], [0.0, LONGEST_GAP_S]);
     assert_eq!(arrive(9, -500, 1), Arrival::NewWorld, "its clock may begin anew");
     assert_eq!(arrive(10, 33, 0), Arrival::Late, "of the world before");
     assert!(next(arrive(11, -467, 1), 33.0));

@@ -113,7 +113,10 @@ impl Desk {
                 // No platform here recognises anything.
                 Outcome::Scan(_) => {}
                 Outcome::Written(file) => println!("{}", file.display()),
-                Outcome::Share(files) => files.iter().for_each(|file| println!("{}", file.display())),
+                Outcome::Share(files) => {
+                    files.iter().for_each(|file| println!("{}", file.display()));
+                    self.worker.shared()(true);
+                }
             }
         }
     }

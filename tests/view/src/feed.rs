@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use app_core::app::Step;
 use app_core::camera_frame::{
     Anchor, CameraFrame, CameraImage, Display, Exposure, FoundPlane, Stamp, Tracking,
 };
 use app_core::card::card_from_lens;
 use app_core::scene::{Camera, ProbeShape, Scene};
-use app_core::session::{Capture, Files, Session, SessionError, SessionFrame};
+use app_core::session::{Capture, Files, MAX_INDEX_BYTES, Session, SessionError, SessionFrame};
+use app_core::toy::MAX_FILE_BYTES;
 use glam::{DMat4, DVec2, DVec3};
 use serde::Deserialize;
 
@@ -17,9 +19,9 @@ use desk::stored::Stored;
 /// Cosine of 10 degrees, the largest inclination of a level receiver.
 const LEVEL: f64 = 0.985;
 
-/// The format's limit.
-const MAX_INDEX_BYTES: u64 = 16 << 20;
-const MAX_TOY_BYTES: u64 = 256 << 20;
+const MAX_TOY_BYTES: u64 = MAX_FILE_BYTES as u64;
+/// Limit for the decoded pictures that are kept, in bytes: a session's loop is then decoded once.
+const MOST_KEPT_BYTES: usize = 1 << 30;
 
 /// The part of the index with the name of the toy's file.
 #[derive(Deserialize)]
@@ -35,7 +37,9 @@ struct ToyEntry {
 /// A session as a camera delivers it.
 pub struct Feed {
     scene: Scene,
-    frames: Vec<SessionFrame>,
+    session: Arc<dyn Session>,
+    /// The decoded frames from the first on; those of a long recording are decoded as they come.
+    kept: Vec<SessionFrame>,
     planes: Arc<[FoundPlane]>,
     toy_file: Arc<[u8]>,
     /// Whether the toy is in the picture.
@@ -60,11 +64,24 @@ impl Feed {
     ///
     /// # Errors
     /// When one cannot be read.
-    pub fn of(session: &impl Session) -> Result<Self, SessionError> {
-        let frames = (0..session.n_frames()).map(|index| session.frame(index));
+    pub fn of(session: Arc<dyn Session>) -> Result<Self, SessionError> {
+        Self::keeping(session, MOST_KEPT_BYTES)
+    }
+
+    /// The same, with at most so many bytes of decoded pictures, or one picture.
+    ///
+    /// # Errors
+    /// As [`Feed::of`].
+    pub fn keeping(session: Arc<dyn Session>, most_kept_bytes: usize) -> Result<Self, SessionError> {
         let scene = session.scene().clone();
+        let n_frames = session.n_frames();
+        let frame_bytes = 4 * scene.width_px as usize * scene.height_px as usize;
+        let n_kept = n_frames.min((most_kept_bytes / frame_bytes.max(1)).max(1));
+        session.check_pictures(n_kept..n_frames)?;
+        let kept = (0..n_kept).map(|index| session.frame(index));
         Ok(Self {
-            frames: frames.collect::<Result<_, _>>()?,
+            kept: kept.collect::<Result<_, _>>()?,
+            session,
             planes: level_planes(&scene),
             toy_file: Arc::new([]),
             scene,
@@ -89,7 +106,7 @@ impl Feed {
         let toy_file = stored.read(&index.toy.file, MAX_TOY_BYTES)?;
         Ok(Self {
             toy_file: toy_file.into(),
-            ..Self::of(&Capture::open(stored)?)?
+            ..Self::of(Arc::new(Capture::open(stored)?))?
         })
     }
 
@@ -99,13 +116,30 @@ impl Feed {
         Arc::clone(&self.toy_file)
     }
 
+    /// Follows the app's step: the person puts the toy onto the session's empty place, and takes it
+    /// off for another photograph of that.
+    pub fn follow(&mut self, step: Step) {
+        self.is_toy_there = step >= Step::PlaceToy;
+    }
+
+    /// A frame of the session; the first one if a file was damaged since its head was checked.
+    fn recorded(&self, index: usize) -> SessionFrame {
+        if let Some(kept) = self.kept.get(index) {
+            return kept.clone();
+        }
+        self.session.frame(index).unwrap_or_else(|error| {
+            eprintln!("{error}");
+            self.kept[0].clone()
+        })
+    }
+
     /// The next frame, `elapsed_s` after the one before.
     pub fn next(&mut self, elapsed_s: f64) -> CameraFrame {
         #[allow(clippy::cast_possible_truncation, reason = "within a session")]
         let elapsed_ns = (elapsed_s * 1e9) as i64;
         self.time_ns += elapsed_ns;
         self.n_delivered += 1;
-        let frame = &self.frames[self.next];
+        let frame = &self.recorded(self.next);
         let plate = self.scene.plates.first().filter(|_| !self.is_toy_there);
         let (image, camera) = plate.map_or((&frame.image, &frame.camera), |plate| {
             (&plate.image, &plate.camera)
@@ -119,7 +153,7 @@ impl Feed {
             None => self.frame((Arc::clone(image).into(), frame.exposure), camera, frame),
         };
         if self.is_toy_there {
-            self.next = (self.next + 1) % self.frames.len();
+            self.next = (self.next + 1) % self.session.n_frames();
         }
         taken
     }
@@ -174,7 +208,7 @@ impl Feed {
     /// Pose of the real toy, and the first camera that shows it.
     #[must_use]
     pub fn toy(&self) -> (&DMat4, &Camera) {
-        let frame = &self.frames[0];
+        let frame = &self.kept[0];
         (&frame.world_from_object, &frame.camera)
     }
 

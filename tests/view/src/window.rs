@@ -146,8 +146,7 @@ impl Shell {
         let elapsed = self.last_frame.map_or(FRAME, |last| now - last);
         if elapsed >= FRAME || self.last_frame.is_none() {
             self.last_frame = Some(now);
-            // The session's own empty place ends when the person puts the toy there.
-            desk.feed.is_toy_there |= desk.live.app().step() == app_core::app::Step::PlaceToy;
+            desk.feed.follow(desk.live.app().step());
             desk.tick(elapsed.as_secs_f64());
         }
         let screen = Screen {
@@ -157,7 +156,8 @@ impl Shell {
             text_scale: self.options.text_scale,
         };
         let time_s = (now - self.start).as_secs_f64();
-        if desk.present(&screen, time_s).is_err() {
+        if let Err(error) = desk.present(&screen, time_s) {
+            eprintln!("nothing is drawn: {error}");
             desk.tell(ShellEvent::Graphics(GraphicsState::Lost));
         }
         Ok(())

@@ -4,7 +4,8 @@ use glam::DVec2;
 
 use super::App;
 use super::event::{
-    ArSession, GraphicsState, Permission, PlatformCommand, Saved, ShellCommand, UserAction, WorkCommand,
+    ArSession, Filmed, GraphicsState, Permission, PlatformCommand, Saved, ShellCommand, UserAction,
+    VideoEnding, WorkCommand,
 };
 use super::ghost::{Ghost, point_at};
 use super::language::Translated;
@@ -15,13 +16,21 @@ use super::step::{Cause, Step};
 use super::table::table_at;
 use app_scene::scene::Camera;
 
+/// Time in seconds within which a second loss of the graphics device is put down to the toy's
+/// picture: drawing it again would lose the device again.
+const LOST_AGAIN_S: f64 = 10.0;
+/// Number of consecutive pictures that fail before the toy is given up: a platform may report one
+/// frame with values that make no sense.
+const MOST_FAILED_PICTURES: u32 = 3;
+
 impl App {
     pub(super) fn act(&mut self, action: UserAction, commands: &mut Vec<ShellCommand>) {
         let is_on_picture = matches!(
             action,
             UserAction::Tap(_) | UserAction::TapReticle | UserAction::Drag { .. } | UserAction::Twist(_)
         );
-        if is_on_picture && self.phone_check.is_some() {
+        // While there is an obstacle, the app does not know what a pixel of the picture shows.
+        if is_on_picture && (self.phone_check.is_some() || self.obstacle().is_some()) {
             return;
         }
         match action {
@@ -145,21 +154,27 @@ impl App {
         if self.step != Step::PlaceToy {
             return;
         }
-        if let (Some(ghost), Some(camera)) = (&mut self.ghost, &self.camera) {
-            change(ghost, camera);
+        let camera = self.seen_by();
+        if let (Some(ghost), Some(camera)) = (&mut self.ghost, camera) {
+            change(ghost, &camera);
         }
         if !matches!(self.placing(), Placing::Waiting { .. } | Placing::Looking) {
             self.search.give_up();
         }
     }
 
+    /// The camera of the picture that the person touches; `None` if its pose is unknown.
+    fn seen_by(&self) -> Option<Camera> {
+        self.latest.as_ref()?.camera()
+    }
+
     fn tap(&mut self, pixel: DVec2) {
-        match (self.step, &self.camera, &self.latest) {
+        match (self.step, self.seen_by(), &self.latest) {
             (Step::FindTable, Some(camera), Some(latest)) => {
-                let Some(plane) = table_at(latest, camera, pixel) else {
+                let Some(plane) = table_at(latest, &camera, pixel) else {
                     return self.tell(Notice::NoTableThere);
                 };
-                self.ghost = Ghost::at(&self.toy, &plane, (camera, pixel)).ok().flatten();
+                self.ghost = Ghost::at(&self.toy, &plane, (&camera, pixel)).ok().flatten();
                 self.table = Some(plane);
                 self.go(Cause::TableChosen);
             }
@@ -171,7 +186,7 @@ impl App {
     /// Moves the ghost to a tapped pixel, and searches there unless the person turns the ghost.
     fn tap_toy(&mut self, pixel: DVec2) {
         let has_ring = self.placing() == Placing::ByHand;
-        let (Some(camera), Some(table)) = (&self.camera, &self.table) else {
+        let (Some(camera), Some(table)) = (&self.seen_by(), &self.table) else {
             return;
         };
         match &mut self.ghost {
@@ -205,9 +220,39 @@ impl App {
     pub(super) fn graphics(&mut self, state: GraphicsState, commands: &mut Vec<ShellCommand>) {
         let was = std::mem::replace(&mut self.platform.graphics, state);
         match (was, state) {
-            (_, GraphicsState::Lost) => commands.push(PlatformCommand::ReopenDevice.into()),
-            (GraphicsState::Lost, GraphicsState::Ready) => self.tell(Notice::DeviceRestarted),
+            (_, GraphicsState::Lost) => {
+                commands.push(PlatformCommand::ReopenDevice.into());
+                let before_s = self.device_lost_s.replace(self.time_s);
+                if before_s.is_some_and(|before_s| self.time_s - before_s < LOST_AGAIN_S) {
+                    self.give_up_picture();
+                }
+            }
+            (GraphicsState::Lost, GraphicsState::Ready) if self.notice() != Some(&Notice::PictureFailed) => {
+                self.tell(Notice::DeviceRestarted);
+            }
             _ => {}
+        }
+    }
+
+    /// Handles a picture that failed for a reason that another device does not change. The reason
+    /// is logged once: without the toy, the camera's own picture may fail as often as it comes.
+    pub(super) fn picture_failed(&mut self, reason: String) {
+        if self.picture_failure.as_ref() != Some(&reason) {
+            self.note(&("no picture", &reason));
+            self.picture_failure = Some(reason);
+        }
+        self.n_failed_pictures = self.n_failed_pictures.saturating_add(1);
+        if self.n_failed_pictures >= MOST_FAILED_PICTURES {
+            self.give_up_picture();
+        }
+    }
+
+    /// Shows the camera's picture and the ghost in place of a toy that cannot be drawn.
+    fn give_up_picture(&mut self) {
+        self.n_failed_pictures = 0;
+        if self.step == Step::Play {
+            self.go(Cause::Replace);
+            self.tell(Notice::PictureFailed);
         }
     }
 
@@ -235,12 +280,18 @@ impl App {
         }
     }
 
-    pub(super) fn saved(&mut self, saved: Saved) {
-        if saved != Saved::Done {
-            // A video that cannot be written need not go on.
+    /// Handles the end of a video, which also ends by itself.
+    pub(super) fn filmed(&mut self, filmed: Filmed) {
+        if filmed.ending != VideoEnding::Asked {
             self.captures.video = false;
         }
-        self.tell(Notice::Saved(saved));
+        self.tell(match filmed {
+            Filmed {
+                saved: Saved::Done,
+                ending: VideoEnding::TooLarge,
+            } => Notice::VideoTooLarge,
+            Filmed { saved, .. } => Notice::Saved(saved),
+        });
     }
 
     pub(super) fn tell(&mut self, notice: Notice) {

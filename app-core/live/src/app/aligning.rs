@@ -20,11 +20,13 @@ use app_scene::sharpness::Sharpness;
 /// Largest distance between the outlines of a found toy and the picture, root mean square in
 /// pixels: exact poses reach 1.2 if a shadow hides a part of the outline, and a picture without a
 /// toy gives 2.
-const FOUND_PX: f64 = 1.5;
+pub(super) const FOUND_PX: f64 = 1.5;
 /// Number of consecutive pictures without the toy at its place after which it counts as lost.
 const N_MISSES: u32 = 2;
 /// Number of consecutive pictures without grain after which none is drawn.
 const N_CLEAN: u32 = 2;
+/// Number of consecutive threads that did not end normally after which the next would not either.
+pub(super) const N_DEAD: u32 = 2;
 /// Time between the starts of two alignments, in seconds: trackers drift by millimetres in some
 /// seconds.
 const PERIOD_S: f64 = 1.0;
@@ -125,6 +127,8 @@ pub(super) struct Place {
     aligner: Option<Aligner>,
     started_s: Option<f64>,
     n_misses: u32,
+    /// Number of consecutive alignments whose thread did not end normally.
+    n_dead: u32,
     /// The platform's anchor when the toy was placed, and its latest pose: trackers correct their
     /// worlds.
     world_from_anchor: DMat4,
@@ -172,6 +176,7 @@ impl Place {
             aligner: Some(Aligner::new(Arc::clone(&scene))),
             started_s: None,
             n_misses: 0,
+            n_dead: 0,
             world_from_anchor: rigid(&scene.world_from_object),
             anchor: PoseFilter::new(PoseNoise::default(), DVec3::ZERO),
             world_from_anchored: DMat4::IDENTITY,
@@ -254,22 +259,31 @@ impl Place {
         })
     }
 
-    /// Adopts the result of an alignment of this place. Returns whether there was one.
-    pub(super) fn take(&mut self, done: AlignedJob) -> bool {
+    /// Adopts the result of an alignment of this place. Returns the verdict, unless there was no
+    /// result: one thread that died is ignored, more in a row are an alignment that failed.
+    pub(super) fn take(&mut self, done: AlignedJob) -> Option<Verdict> {
         if done.place != self.number {
-            return false;
+            return None;
         }
-        let has_result = done.result.is_some();
+        self.n_dead = match done.result {
+            Some(_) => 0,
+            None => self.n_dead.saturating_add(1),
+        };
         match done.result {
             Some(Ok(alignment)) => self.apply(&done.given, &done.aligner, alignment),
-            Some(Err(reason)) => {
-                self.watch.forget();
-                self.verdict = Some(Verdict::Failed(reason.to_string()));
-            }
+            Some(Err(reason)) => self.fail(reason.to_string()),
+            None if self.n_dead >= N_DEAD => self.fail("its thread ended again and again".to_owned()),
             None => self.watch.forget(),
         }
         self.aligner = Some(done.aligner);
-        has_result
+        self.verdict
+            .clone()
+            .filter(|_| !(1..N_DEAD).contains(&self.n_dead))
+    }
+
+    fn fail(&mut self, reason: String) {
+        self.watch.forget();
+        self.verdict = Some(Verdict::Failed(reason));
     }
 
     /// Gives the toy's estimated pose and the lights to a recording.

@@ -69,8 +69,30 @@ pub enum Saved {
     NoRoom,
     /// The place is not writable.
     NotAllowed,
+    /// It is in the app's own folder, but no other app gets it.
+    NotShared,
     /// It failed for another reason.
     Failed,
+}
+
+/// The reason why a video has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum VideoEnding {
+    /// [`WorkCommand::Video`] ended it.
+    Asked,
+    /// The file is as large as its format allows.
+    TooLarge,
+    /// It could not begin or go on.
+    Broken,
+}
+
+/// A video that has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Filmed {
+    /// The outcome of saving it.
+    pub saved: Saved,
+    /// The reason why it ended.
+    pub ending: VideoEnding,
 }
 
 /// A recording that has ended.
@@ -189,8 +211,13 @@ pub enum ShellEvent {
     ToyFiles(Vec<String>),
     /// A toy was read, or could not be read for this reason.
     Toy(Result<Arc<Toy>, ToyRefusal>),
-    /// The outcome of saving a photo, a video or files to share.
+    /// The toy's picture could not be made for this reason, on a device that works.
+    /// [`Live`](crate::live::Live) reports it.
+    PictureFailed(String),
+    /// The outcome of saving a photo or files to share.
     Saved(Saved),
+    /// The video of [`WorkCommand::Video`] has ended, or could not begin.
+    Filmed(Filmed),
     /// The recording of [`WorkCommand::Record`] has ended.
     Recorded(Recorded),
     /// Free space at the recordings' place, in bytes; once a second.

@@ -27,10 +27,7 @@ impl App {
         if !arrival.is_taken() {
             return;
         }
-        let elapsed_s = match arrival {
-            Arrival::Next { elapsed_s } => elapsed_s,
-            _ => 0.0,
-        };
+        let elapsed_s = arrival.counted_s();
         self.time_s += elapsed_s;
         if self.is_of_another_place(&frame, arrival) {
             self.go(Cause::WorldLost);
@@ -47,7 +44,7 @@ impl App {
         self.follow_table(&frame);
         self.place_check(&frame);
         if let Some(place) = &mut self.place {
-            place.follow_anchor(&frame.anchors, elapsed_s);
+            place.follow_anchor(&frame.anchors, arrival.filtered_s());
         }
         self.follow_reticle(commands);
         self.follow_scan(&frame);
@@ -209,9 +206,12 @@ impl App {
     pub(super) fn input(&self, effect: f64) -> Option<FrameInput> {
         let (latest, place) = (self.latest.as_ref()?, self.place.as_ref()?);
         let camera = latest.camera().or(self.camera)?;
+        // A platform's estimate may be invalid; without it, nothing else of the frame is lost.
+        let estimate = latest.light_estimate;
+        let estimate = estimate.filter(|estimate| estimate.check("light_estimate").is_ok());
         let input = FrameInput::new(latest.image.clone(), camera, place.scene.world_from_object)
             .with_exposure(self.exposure_of(latest))
-            .with_light_estimate(latest.light_estimate)
+            .with_light_estimate(estimate)
             .with_people(latest.people.clone())
             .with_depth(latest.depth.clone())
             .with_shown_pose(self.playback.pose())
@@ -221,9 +221,8 @@ impl App {
 
     pub(super) fn aligned(&mut self, done: AlignedJob, commands: &mut Vec<ShellCommand>) {
         let Some(place) = &mut self.place else { return };
-        if place.take(done) {
-            let verdict = place.verdict.clone();
-            if let (Some(recorder), Some(Verdict::Found { .. })) = (&self.recorder, &verdict) {
+        if let Some(verdict) = place.take(done) {
+            if let (Some(recorder), Verdict::Found { .. }) = (&self.recorder, &verdict) {
                 place.tell(recorder);
             }
             self.note(&verdict);
@@ -231,21 +230,18 @@ impl App {
         }
     }
 
-    fn judge(&mut self, verdict: Option<Verdict>, commands: &mut Vec<ShellCommand>) {
+    fn judge(&mut self, verdict: Verdict, commands: &mut Vec<ShellCommand>) {
         if self.step != Step::Align {
             return;
         }
-        let outline_px = match verdict {
-            Some(Verdict::Found {
-                outline_px: Some(_), ..
-            }) => {
-                self.knock_for_toy(commands);
-                return self.go(Cause::ToyFound);
-            }
-            Some(Verdict::Missed { outline_px }) => Some(outline_px),
-            Some(Verdict::Found { outline_px: None, .. } | Verdict::Failed(_)) | None => None,
-        };
+        if let Verdict::Found {
+            outline_px: Some(_), ..
+        } = verdict
+        {
+            self.knock_for_toy(commands);
+            return self.go(Cause::ToyFound);
+        }
         self.go(Cause::ToyMissed);
-        self.tell(Notice::ToyMissed { outline_px });
+        self.tell(Notice::ToyMissed(verdict));
     }
 }

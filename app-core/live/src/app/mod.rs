@@ -58,8 +58,8 @@ pub use aligning::{AlignJob, AlignedJob, Verdict};
 pub use app_alignment::plate_taker::{PlateRefusal, PlateShot, PlateStep, PlateTaker};
 pub use app_alignment::pose_filter::{PoseFilter, PoseNoise, PoseStep};
 pub use event::{
-    ArSession, GraphicsState, Permission, PlatformCommand, Recorded, Saved, ShellCommand, ShellEvent,
-    Thermal, UserAction, WorkCommand,
+    ArSession, Filmed, GraphicsState, Permission, PlatformCommand, Recorded, Saved, ShellCommand, ShellEvent,
+    Thermal, UserAction, VideoEnding, WorkCommand,
 };
 pub use language::{Language, Translated};
 pub use launch_history::{LaunchHistory, MAX_FAILED_LAUNCHES, N_GOOD_FRAMES, Simplified};
@@ -107,8 +107,14 @@ pub struct App {
     /// The check of a new phone, while it runs.
     phone_check: Option<PhoneCheck>,
     arrivals: Arrivals,
-    /// Sum of the seconds between accepted frames.
+    /// Sum of the seconds between accepted frames; a pause counts as the
+    /// [longest gap](app_scene::camera_frame::LONGEST_GAP_S).
     time_s: f64,
+    /// Time of the latest loss of the graphics device.
+    device_lost_s: Option<f64>,
+    /// The reason why the latest picture that failed did so.
+    picture_failure: Option<String>,
+    n_failed_pictures: u32,
     fade: Fade,
     latest: Option<Arc<CameraFrame>>,
     /// The latest reliable camera.
@@ -163,6 +169,9 @@ impl App {
             phone_check: None,
             arrivals: Arrivals::default(),
             time_s: 0.0,
+            device_lost_s: None,
+            picture_failure: None,
+            n_failed_pictures: 0,
             fade: Fade::default(),
             latest: None,
             camera: None,
@@ -210,7 +219,9 @@ impl App {
             ShellEvent::Watched(done) => self.watched(*done),
             ShellEvent::ToyFiles(files) => self.toy_files = Some(files),
             ShellEvent::Toy(read) => self.take_toy(read),
-            ShellEvent::Saved(saved) => self.saved(saved),
+            ShellEvent::PictureFailed(reason) => self.picture_failed(reason),
+            ShellEvent::Saved(saved) => self.tell(Notice::Saved(saved)),
+            ShellEvent::Filmed(filmed) => self.filmed(filmed),
             ShellEvent::Recorded(recorded) => self.recorded(recorded),
             ShellEvent::FreeSpace(free_bytes) => self.free_space(free_bytes),
             ShellEvent::Started(history) => self.started(history),

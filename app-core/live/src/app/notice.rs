@@ -1,5 +1,6 @@
 //! Notices for the person, which are shown for some seconds.
 
+use super::aligning::Verdict;
 use super::event::{Recorded, Saved};
 use super::launch_history::Simplified;
 use super::toy_refusal::ToyRefusal;
@@ -23,11 +24,10 @@ pub enum LensFailure {
 pub enum Notice {
     /// There is no table where the person tapped.
     NoTableThere,
-    /// The toy is not at its ghost's place; with the distance, if it is known.
-    ToyMissed {
-        /// Distance from the outline to the picture, in pixels.
-        outline_px: Option<f64>,
-    },
+    /// The toy is not known to be at its ghost's place, according to this alignment.
+    ToyMissed(Verdict),
+    /// The empty place could not be photographed.
+    NoPlate,
     /// The lens was photographed and shows this number of lights.
     LensTaken(usize),
     /// It was not photographed; with the reason.
@@ -42,8 +42,12 @@ pub enum Notice {
     DeviceRestarted,
     /// A panic ended the app, and it started again.
     Restarted,
+    /// The toy's picture could not be made; the log has the reason.
+    PictureFailed,
     /// A photo, a video or a shared file was saved.
     Saved(Saved),
+    /// A video has ended and is saved, since its file can be no larger.
+    VideoTooLarge,
     /// A recording has ended.
     Recorded(Recorded),
     /// A recording has ended without a frame.

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::App;
 use super::event::{PlatformCommand, ShellCommand, WorkCommand};
 use super::ghost::Ghost;
+use super::notice::Notice;
 use super::plates::PlatedJob;
 use super::search::{Placing, SearchedJob};
 use super::step::{Cause, Step};
@@ -127,11 +128,20 @@ impl App {
         commands.extend(job.map(|job| WorkCommand::Plate(Box::new(job)).into()));
     }
 
+    /// Handles a plate's thread that did not end normally. Another one may succeed, but not for
+    /// ever: then it goes on without a plate.
+    fn plate_died(&mut self) {
+        if self.plating.begins_after_death() {
+            return;
+        }
+        self.go(Cause::PlateSkipped);
+        self.tell(Notice::NoPlate);
+    }
+
     /// Adopts the result of a shot; `None` if its thread did not end normally.
     pub(super) fn plated(&mut self, done: Option<Box<PlatedJob>>) {
         let Some(done) = done else {
-            // Another thread may succeed.
-            return self.plating.begin();
+            return self.plate_died();
         };
         let plate = done.plate();
         if !self.plating.take(*done) || self.step != Step::TakePlate {

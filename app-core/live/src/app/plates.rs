@@ -1,5 +1,6 @@
 //! The photograph of the empty place, made on another thread, which also decodes its pictures.
 
+use super::aligning::N_DEAD;
 use app_alignment::plate_taker::{PlateShot, PlateStep, PlateTaker};
 use app_scene::camera_frame::CameraFrame;
 use app_scene::scene::Plate;
@@ -45,6 +46,8 @@ pub(super) struct Plating {
     taker: Option<PlateTaker>,
     /// Seconds since the previous shot.
     waited_s: f64,
+    /// Number of threads of this plate that did not end normally.
+    n_dead: u32,
     pub(super) step: Option<PlateStep>,
 }
 
@@ -66,6 +69,14 @@ impl Plating {
             taker: Some(PlateTaker::default()),
             ..Self::default()
         };
+    }
+
+    /// Starts anew after a thread that did not end normally; returns false if that is in vain.
+    pub(super) fn begins_after_death(&mut self) -> bool {
+        let n_dead = self.n_dead + 1;
+        self.begin();
+        self.n_dead = n_dead;
+        n_dead < N_DEAD
     }
 
     /// A shot of `frame`, if no other is being examined.

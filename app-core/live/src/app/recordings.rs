@@ -49,10 +49,6 @@ impl App {
         let is_seen = self.step == Step::Play && frame.camera().is_some();
         let live = self.place.as_ref().filter(|_| is_seen).and_then(|place| {
             let input = place.anchored(self.input(1.0)?);
-            // A platform's estimate may be invalid; values that readers refuse are left out.
-            let estimate = input.light_estimate;
-            let estimate = estimate.filter(|estimate| estimate.check("light_estimate").is_ok());
-            let input = input.with_light_estimate(estimate);
             input.check().ok()?;
             Some(LiveFrame {
                 image: input.image.kept(),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec2, DVec3, UVec2};
 
+use super::aligning::FOUND_PX;
 use app_alignment::{NewObject, StandingPose, StandingSearch, TableChange};
 use app_scene::frame::FrameInput;
 use app_scene::scene::Scene;
@@ -21,8 +22,6 @@ const GONE_SHARE: f64 = 0.5;
 const N_EMPTY: u32 = 2;
 /// Waiting time after which the person gets more advice.
 const LONG_S: f64 = 6.0;
-/// Largest distance between the outlines of a found pose and the picture, in pixels.
-const FOUND_PX: f64 = 1.5;
 
 /// State of the question about the toy's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -111,6 +111,7 @@ impl App {
 
     /// Counts a drawn picture of the moving toy; returns the commands.
     pub fn drawn(&mut self) -> Option<WorkCommand> {
+        self.n_failed_pictures = 0;
         let start = self.start.as_mut()?;
         start.n_good_frames = start.n_good_frames.saturating_add(1);
         (start.n_good_frames == N_GOOD_FRAMES).then(|| {

@@ -87,8 +87,20 @@ pub(super) fn beside<'a>(
     let mut others: Vec<(f64, &FoundPlane)> = others.map(|plane| (distance_m(plane), plane)).collect();
     others.retain(|(distance_m, _)| *distance_m < REACH * size_m);
     others.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-    let nearest = others.into_iter().map(|(_, plane)| plane);
-    nearest.take(MAX_RECEIVERS - 1).collect()
+    let mut nearest: Vec<&FoundPlane> = Vec::new();
+    for (_, plane) in others {
+        // A plane that a platform has merged into another is listed once more, with its shape.
+        let is_listed = nearest.iter().any(|other| is_of_same_shape(other, plane));
+        if !is_listed && nearest.len() < MAX_RECEIVERS - 1 {
+            nearest.push(plane);
+        }
+    }
+    nearest
+}
+
+fn is_of_same_shape(one: &FoundPlane, other: &FoundPlane) -> bool {
+    let shape = |plane: &FoundPlane| (plane.world_from_plane, plane.half_extent_m);
+    shape(one) == shape(other)
 }
 
 fn around_card(world_from_card: &DMat4) -> FoundPlane {

@@ -24,7 +24,7 @@ use crate::app::{App, Step, UserAction};
 pub use egui::accesskit;
 pub use input::{Insets, Screen, Touch, TouchPhase};
 pub(crate) use painter::Painter;
-pub use text::{announced, of_closed, of_no_graphics};
+pub use text::{announced, of_closed, of_no_graphics, of_stopped};
 pub use words::all_words;
 
 /// A font of 18 KB: Roboto Medium, Copyright 2015 Google, Apache License 2.0, reduced to Latin

@@ -73,7 +73,7 @@ fn ghost(ui: &Ui, silhouette: &Silhouette, at: impl Fn(DVec2) -> Pos2) {
     }));
 }
 
-/// The latest silhouette as a texture, which exists as long as a silhouette is shown.
+/// The latest silhouette as a texture, which is kept as long as the interface.
 fn texture(ui: &Ui, silhouette: &Silhouette) -> TextureHandle {
     let id = egui::Id::unique("ghost");
     let [columns, rows] = silhouette.size.map(|side| side as usize);

@@ -68,7 +68,12 @@ pub(super) fn of_obstacle(obstacle: Obstacle) -> (Words, Words) {
 pub(super) fn of_notice(notice: &Notice, language: Language) -> String {
     let words = match notice {
         Notice::NoTableThere => NO_TABLE_THERE,
-        Notice::ToyMissed { .. } => TOY_MISSED,
+        Notice::ToyMissed(Verdict::Missed { .. }) => TOY_MISSED,
+        Notice::ToyMissed(Verdict::Found { .. }) => TOY_CUT_OFF,
+        Notice::ToyMissed(Verdict::Failed(_)) => NOT_FITTED,
+        Notice::NoPlate => NO_PLATE,
+        Notice::PictureFailed => PICTURE_FAILED,
+        Notice::VideoTooLarge => VIDEO_TOO_LARGE,
         Notice::LensTaken(1) => ONE_LIGHT,
         Notice::LensTaken(n_lights) => return N_LIGHTS.filled(language, &[n_lights]),
         Notice::LensFailed(LensFailure::NotDark) => LENS_NOT_DARK,
@@ -82,6 +87,7 @@ pub(super) fn of_notice(notice: &Notice, language: Language) -> String {
         Notice::Saved(Saved::Done) => SAVED,
         Notice::Saved(Saved::NoRoom) => SAVED_NO_ROOM,
         Notice::Saved(Saved::NotAllowed) => SAVED_NOT_ALLOWED,
+        Notice::Saved(Saved::NotShared) => SAVED_NOT_SHARED,
         Notice::Saved(Saved::Failed) => SAVED_FAILED,
         Notice::Recorded(recorded) => return of_recorded(recorded, language),
         Notice::NothingRecorded => NOTHING_RECORDED,
@@ -114,6 +120,12 @@ pub fn of_closed(language: Language) -> &'static str {
     CLOSED.in_language(language)
 }
 
+/// The same if the person can begin anew by a touch.
+#[must_use]
+pub fn of_stopped(language: Language) -> &'static str {
+    STOPPED.in_language(language)
+}
+
 /// The file, the kind of the reason, and the way out; the log has the reason itself.
 fn of_refusal(refusal: &ToyRefusal, language: Language) -> String {
     let file = &refusal.file;
@@ -140,18 +152,24 @@ fn of_recorded(recorded: &Recorded, language: Language) -> String {
         ..
     } = &recorded.outcome;
     let why = match ending {
-        Ending::Asked => String::new(),
+        Ending::Asked | Ending::Died => String::new(),
         Ending::NoRoom => ENDED_NO_ROOM.filled(language, &[]),
         Ending::TooLarge => ENDED_TOO_LARGE.filled(language, &[]),
         Ending::NotAllowed => ENDED_NOT_ALLOWED.filled(language, &[]),
         // The log has the reason.
         Ending::Failed(_) => ENDED_FAILED.filled(language, &[]),
     };
+    if *ending == Ending::Died {
+        return RECORDING_DIED.filled(language, &[&recorded.file]);
+    }
     let lacks = match n_dropped {
         0 => String::new(),
         n_dropped => RECORDED_LACKS.filled(language, &[n_dropped]),
     };
-    RECORDED.filled(language, &[&why, n_frames, &lacks, &recorded.file])
+    match n_frames {
+        1 => RECORDED_ONE.filled(language, &[&why, &lacks, &recorded.file]),
+        n_frames => RECORDED.filled(language, &[&why, n_frames, &lacks, &recorded.file]),
+    }
 }
 
 /// Accuracy of the toy's pose, and missing knowledge.

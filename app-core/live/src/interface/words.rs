@@ -20,9 +20,12 @@ impl Words {
 
     /// The text with its parts inserted in order.
     pub(super) fn filled(self, language: Language, parts: &[&dyn Display]) -> String {
-        let mut text = self.in_language(language).to_owned();
-        for part in parts {
-            text = text.replacen("{}", &part.to_string(), 1);
+        // A part may contain braces of its own, such as the name of a file.
+        let mut between = self.in_language(language).split("{}");
+        let mut text = between.next().unwrap_or_default().to_owned();
+        for (part, after) in parts.iter().zip(between) {
+            text.push_str(&part.to_string());
+            text.push_str(after);
         }
         text
     }
@@ -91,6 +94,9 @@ words! {
     RELOCALISING_HINT: "Point the phone at the table again.", "Richte das Telefon wieder auf den Tisch.";
     NO_TABLE_THERE: "No table was found there yet. Show more of it, then tap again.", "Dort ist noch kein Tisch gefunden. Zeig mehr davon und tippe noch einmal.";
     TOY_MISSED: "Not quite. Turn it or move it a little.", "Nicht ganz. Dreh oder verschiebe es ein wenig.";
+    TOY_CUT_OFF: "Too little of the toy is in the picture. Show all of it, then try again.", "Vom Spielzeug ist zu wenig im Bild. Zeig es ganz und versuche es noch einmal.";
+    NO_PLATE: "The empty place could not be photographed. It goes on without that.", "Der leere Platz ließ sich nicht fotografieren. Es geht ohne weiter.";
+    PICTURE_FAILED: "This toy cannot be drawn here. Move it, or choose another; log.txt has the reason.", "Dieses Spielzeug lässt sich hier nicht zeichnen. Stell es um oder wähle ein anderes; der Grund steht in log.txt.";
     ONE_LIGHT: "The lens shows one light.", "Die Linse zeigt ein Licht.";
     N_LIGHTS: "The lens shows {} lights.", "Die Linse zeigt {} Lichter.";
     LENS_NOT_DARK: "This camera cannot be darkened for the lens. Lights are found by the shadow.", "Diese Kamera lässt sich für die Linse nicht abdunkeln. Der Schatten zeigt die Lichter.";
@@ -110,21 +116,26 @@ words! {
     DEVICE_RESTARTED: "Graphics were set up again.", "Die Grafik wurde neu eingerichtet.";
     RESTARTED: "Something went wrong inside the app, so it started again. Recordings are kept.", "In der App ging etwas schief, also beginnt sie neu. Aufgenommenes bleibt erhalten.";
     SAVED: "Saved.", "Gesichert.";
+    VIDEO_TOO_LARGE: "The video is as large as it may be: it was ended and saved.", "Das Video ist so groß wie erlaubt: Es wurde beendet und gesichert.";
     SAVED_NO_ROOM: "Not saved: there is no room left.", "Nicht gesichert: Es ist kein Platz mehr frei.";
     SAVED_NOT_ALLOWED: "Not saved: the system does not allow it.", "Nicht gesichert: Das System erlaubt es nicht.";
+    SAVED_NOT_SHARED: "Saved in this app's folder, but it cannot be handed on here.", "Im Ordner der App gesichert, lässt sich hier aber nicht weitergeben.";
     SAVED_FAILED: "Not saved: writing failed.", "Nicht gesichert: Das Schreiben schlug fehl.";
     NOTHING_RECORDED: "Nothing was recorded: no frame came with a place.", "Nichts aufgenommen: Kein Bild kam mit einem Ort.";
     RECORDING_DROPS: "Writing is too slow: the recording lacks some frames.", "Das Schreiben ist zu langsam: Der Aufnahme fehlen Bilder.";
     NO_ROOM_TO_RECORD: "Nothing is recorded: there is too little room left.", "Nichts wird aufgenommen: Es ist zu wenig Platz frei.";
     PHONE_CHECKED: "{} of {} are as they should be. The answers are in log.txt, among this app's files.", "{} von {} sind, wie sie sein sollen. Die Antworten stehen in log.txt bei den Dateien der App.";
-    MEMORY_LOW: "Memory is short: the recording was ended and saved.", "Der Speicher ist knapp: Die Aufnahme wurde beendet und gesichert.";
+    MEMORY_LOW: "Memory is short: video and recording end here, and are saved.", "Der Speicher ist knapp: Video und Aufnahme enden hier und werden gesichert.";
     FAILED_LAUNCHES: "The app ended unexpectedly, so it uses a simple shadow. The full one is in the menu.", "Die App endete unerwartet, daher ein einfacher Schatten. Der volle ist im Menü.";
     SELF_TEST_FAILED: "This phone's graphics fail a test, so the shadow is a simple one. The full one is in the menu.", "Die Grafik dieses Telefons besteht einen Test nicht, daher ein einfacher Schatten. Der volle ist im Menü.";
     DRIVER_FAULT: "This app cannot run here: this phone's graphics driver has a known fault.", "Diese App läuft hier nicht: Der Grafiktreiber dieses Telefons hat einen bekannten Fehler.";
     NO_VULKAN: "This app cannot run here: it needs graphics with Vulkan 1.1.", "Diese App läuft hier nicht: Sie braucht Grafik mit Vulkan 1.1.";
     GRAPHICS_FAILED: "The app was closed: this phone's graphics failed.", "Die App wurde geschlossen: Die Grafik dieses Telefons fiel aus.";
     CLOSED: "The app was closed: something went wrong again and again.", "Die App wurde geschlossen: Immer wieder ging etwas schief.";
+    STOPPED: "The app has stopped: something went wrong again and again. Touch the screen to begin anew.", "Die App steht still: Immer wieder ging etwas schief. Tippe auf den Bildschirm, um neu zu beginnen.";
     RECORDED: "{}{} frames are recorded{}: {}", "{}{} Bilder sind aufgenommen{}: {}";
+    RECORDED_ONE: "{}One frame is recorded{}: {}", "{}Ein Bild ist aufgenommen{}: {}";
+    RECORDING_DIED: "Recording ended unexpectedly. Except for the last second, everything is in {}", "Die Aufnahme brach ab. Bis auf die letzte Sekunde ist alles in {}";
     RECORDED_LACKS: ", {} are missing", ", fehlend: {}";
     ENDED_NO_ROOM: "There is no room left. ", "Es ist kein Platz mehr frei. ";
     ENDED_TOO_LARGE: "It is as large as it may be. ", "Sie ist so groß wie erlaubt. ";

@@ -49,3 +49,12 @@ pub enum CoreError {
     #[error(transparent)]
     Input(#[from] InputError),
 }
+
+impl CoreError {
+    /// Whether device or surface is lost, so that others have to be opened. After any other error
+    /// they work on, and the same call would fail again on others.
+    #[must_use]
+    pub fn is_loss(&self) -> bool {
+        matches!(self, Self::Gpu(error) if !matches!(error, GpuError::Refused { .. }))
+    }
+}

@@ -1,7 +1,8 @@
 //! Selects the camera frames to use, and measures the time between them.
 
-/// Gap after which state filtered over frames is no longer valid.
-const LONGEST_GAP_S: f64 = 0.25;
+/// Gap in seconds after which state filtered over frames is no longer valid, and the most that a
+/// pause counts for clocks.
+pub const LONGEST_GAP_S: f64 = 0.25;
 /// A picture that is older than this at delivery was timed by another clock.
 const OLDEST_NS: i64 = 1_000_000_000;
 
@@ -64,6 +65,25 @@ impl Arrival {
     #[must_use]
     pub fn is_taken(self) -> bool {
         !matches!(self, Self::Again | Self::Late)
+    }
+
+    /// Seconds by which filtered state goes on; 0 if it begins anew.
+    #[must_use]
+    pub fn filtered_s(self) -> f64 {
+        match self {
+            Self::Next { elapsed_s } => elapsed_s,
+            _ => 0.0,
+        }
+    }
+
+    /// Seconds by which clocks go on, such as that of a clip: the person has seen the last picture
+    /// for all of a gap, but a pause is not made up for.
+    #[must_use]
+    pub fn counted_s(self) -> f64 {
+        match self {
+            Self::Next { elapsed_s } | Self::AfterGap { elapsed_s } => elapsed_s.min(LONGEST_GAP_S),
+            _ => 0.0,
+        }
     }
 }
 

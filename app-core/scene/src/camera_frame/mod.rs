@@ -9,7 +9,7 @@ mod image;
 mod planar_image;
 mod planes;
 
-pub use arrival::{Arrival, Arrivals, Stamp};
+pub use arrival::{Arrival, Arrivals, LONGEST_GAP_S, Stamp};
 pub use display::{Display, Fit};
 pub use encoding::{CodeRange, LumaCoefficients, YcbcrEncoding};
 pub use fade::Fade;

@@ -5,8 +5,8 @@
 
 use std::ops::RangeInclusive;
 
-/// Limit for the size of a toy's file.
-pub(super) const MAX_FILE_BYTES: usize = 256 << 20;
+/// Limit for the size of a toy's file, in bytes.
+pub const MAX_FILE_BYTES: usize = 256 << 20;
 /// Limit for its JSON text without data URIs: three bytes can become a node of some hundred.
 pub(super) const MAX_JSON_BYTES: usize = 16 << 20;
 /// Vertices of all drawn surfaces together.

@@ -64,6 +64,7 @@ pub use clip::{Clip, ClipId};
 pub use container::binary_gltf;
 pub use error::{ToyError, ToyProblem};
 pub use graph::Trs;
+pub use limits::MAX_FILE_BYTES;
 pub use material::{Material, MaterialTexture, Wrap};
 pub use moment::{NodeId, NodePose, Pose};
 pub use packed::packed;

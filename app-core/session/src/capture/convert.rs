@@ -18,7 +18,7 @@ use app_scene::scene::{Intrinsics, Pose, Scene, check};
 use app_scene::toy::{self, Toy};
 use glam::DMat4;
 
-const MAX_TOY_BYTES: u64 = 256 << 20;
+const MAX_TOY_BYTES: u64 = toy::MAX_FILE_BYTES as u64;
 const MAX_PLACE_MESH_BYTES: u64 = 64 << 20;
 
 /// Checks every value, then reads the files that all frames share: the toy, the plates, the probe.

@@ -12,6 +12,12 @@ pub enum Stop {
         /// The limit.
         max_bytes: u64,
     },
+    /// The index of the frames has reached the size that readers accept.
+    #[error("the index of its frames would be larger than the limit of {max_bytes} bytes")]
+    Index {
+        /// The limit.
+        max_bytes: u64,
+    },
     /// The device has reached its limit of free space.
     #[error("less than {min_free_bytes} bytes would be left free on the device")]
     Space {

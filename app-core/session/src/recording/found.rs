@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use super::error::Loss;
+use super::index::IndexSize;
 use super::inflate::Compression;
 use super::maps::{MAP_TOPICS, Maps, N_MAPS};
 use super::message::{FrameMessage, NamedPictures, SessionMessage};
@@ -126,8 +127,9 @@ pub(super) struct Found {
     /// Numbers of the chunks that were found.
     chunks: BTreeSet<u32>,
     channels: BTreeMap<u16, Option<Topic>>,
-    /// Number of bytes of the texts of frames, and of notes.
-    n_frame_bytes: u64,
+    /// Size of the index so far, which limits the memory for texts of frames.
+    index_size: IndexSize,
+    /// Number of bytes of the texts of notes.
     n_note_bytes: u64,
     n_frames_left_out: u32,
     n_notes_left_out: u32,
@@ -217,11 +219,10 @@ impl Found {
                 pictures.numbered.push((message.sequence, home.span(file)));
             }
             Read::Frame(frame) => {
-                self.n_frame_bytes += frame.entry.len() as u64;
-                if self.n_frame_bytes > MAX_INDEX_BYTES {
-                    self.n_frames_left_out += 1;
-                } else {
+                if self.index_size.add("", &frame.entry) {
                     self.frames.push(frame);
+                } else {
+                    self.n_frames_left_out += 1;
                 }
             }
             Read::Note(text) => {
@@ -281,6 +282,16 @@ impl Found {
         of_frames.filter_map(|frame| self.spans_of(frame)).flatten()
     }
 
+    /// Leaves out frames for which the index has no room beside the session, which only the last
+    /// chunk tells.
+    fn fit_index(&mut self) {
+        let session = self.session.as_ref().map_or("", |session| session.session.get());
+        let (n_frames, mut size) = (self.frames.len(), IndexSize::default());
+        self.frames.retain(|frame| size.add(session, &frame.entry));
+        let n_left_out = u32::try_from(n_frames - self.frames.len()).unwrap_or(u32::MAX);
+        self.n_frames_left_out = self.n_frames_left_out.saturating_add(n_left_out);
+    }
+
     /// Adds the losses that only the whole shows: missing chunks and files, missing pictures of
     /// frames, texts beyond the limits.
     pub(super) fn tell_losses(&mut self) {
@@ -306,6 +317,7 @@ impl Found {
             let n_frames = u32::try_from(n_frames - self.frames.len()).unwrap_or(u32::MAX);
             self.losses.push(Loss::Pictures { n_frames });
         }
+        self.fit_index();
         for (n_messages, max_bytes) in [
             (self.n_frames_left_out, MAX_INDEX_BYTES),
             (self.n_notes_left_out, MAX_NOTE_BYTES),

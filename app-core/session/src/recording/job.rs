@@ -58,6 +58,8 @@ pub enum Ending {
     NotAllowed,
     /// Writing failed, for this reason.
     Failed(String),
+    /// The thread panicked; the file has all frames that were flushed, whose number is unknown.
+    Died,
 }
 
 /// The outcome of a recording.
@@ -82,7 +84,7 @@ impl RecordingOutcome {
             number,
             n_frames: 0,
             n_dropped: 0,
-            ending: Ending::Failed("its thread ended".to_owned()),
+            ending: Ending::Died,
         }
     }
 }
@@ -186,7 +188,7 @@ impl RecordingJob {
 
 fn ending_of(error: WriteError) -> Ending {
     match error {
-        WriteError::Stopped(Stop::Size { .. }) => Ending::TooLarge,
+        WriteError::Stopped(Stop::Size { .. } | Stop::Index { .. }) => Ending::TooLarge,
         WriteError::Stopped(Stop::Space { .. } | Stop::Full) => Ending::NoRoom,
         error => Ending::Failed(error.to_string()),
     }

@@ -3,14 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 
-use serde_json::value::RawValue;
-
 use super::error::{Loss, RecordingError};
-use super::found::{Found, Note, Packed, Span};
+use super::found::{Note, Packed, Span};
+use super::index::assembled;
 use super::inflate::inflate;
 use super::scan::scan;
 use super::source::Source;
-use crate::{FileError, Files, INDEX_FILE, MAX_INDEX_BYTES, check_path};
+use crate::{FileError, Files, INDEX_FILE, check_path};
 
 /// A readable recording: its files are those of a session's folder, with `capture.json` assembled
 /// from its messages.
@@ -46,7 +45,8 @@ impl Recording {
         let Some(session) = found.session.take() else {
             return Err(RecordingError::NoSession { losses: found.losses });
         };
-        let Some(index) = index_of(&session.session, &found) else {
+        let entries = found.frames.iter().map(|frame| frame.entry.as_str());
+        let Some(index) = assembled(&session.session, entries) else {
             return Err(RecordingError::NoSession { losses: found.losses });
         };
         let pictures: Vec<(String, Span)> = found.picture_spans().collect();
@@ -145,14 +145,4 @@ impl Files for Recording {
             .map_err(|error| FileError::Io(error.to_string()))?;
         Ok(bytes)
     }
-}
-
-/// The session's index with the found frames, as they were written.
-fn index_of(session: &RawValue, found: &Found) -> Option<Vec<u8>> {
-    let mut keys: BTreeMap<String, &RawValue> = serde_json::from_str(session.get()).ok()?;
-    let entries: Vec<&str> = found.frames.iter().map(|frame| frame.entry.as_str()).collect();
-    let frames = RawValue::from_string(format!("[\n{}\n]", entries.join(",\n"))).ok()?;
-    keys.insert("frames".to_owned(), &frames);
-    let index = serde_json::to_vec(&keys).ok()?;
-    (index.len() as u64 <= 2 * MAX_INDEX_BYTES).then_some(index)
 }

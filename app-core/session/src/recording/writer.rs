@@ -7,6 +7,8 @@ use serde_json::value::RawValue;
 
 use super::chunk::{MAX_CHUNK_BYTES, OpenChunk};
 use super::error::{Stop, WriteError};
+use super::index::IndexSize;
+use super::json::{json_error, object, session_without_frames};
 use super::maps::{MAP_TOPICS, Maps, N_MAPS};
 use super::message::{FrameMessage, SessionMessage};
 use super::summary::{FileEntry, Written, media_type};
@@ -97,6 +99,7 @@ pub struct Writer<W> {
     stop: Option<Stop>,
     chunk: Option<OpenChunk>,
     written: Written,
+    index_size: IndexSize,
     n_bytes: u64,
     n_frames: u32,
     n_pictures: u32,
@@ -130,6 +133,7 @@ impl<W: Write> Writer<W> {
             stop: None,
             chunk: None,
             written: Written::default(),
+            index_size: IndexSize::default(),
             n_bytes: 0,
             n_frames: 0,
             n_pictures: 0,
@@ -245,6 +249,11 @@ impl<W: Write> Writer<W> {
             .collect();
         let n_bytes: usize = pictures.iter().map(|(_, bytes, _)| bytes.len()).sum();
         self.make_room(time_ns, (n_bytes + message.len()) as u64 + ROOM)?;
+        if !self.index_size.add(self.session.get(), entry) {
+            self.end(Stop::Index {
+                max_bytes: MAX_INDEX_BYTES,
+            })?;
+        }
         let n_frames = self.n_frames;
         let chunk = self.open_chunk(time_ns)?;
         for (topic, bytes, number) in pictures {
@@ -362,6 +371,11 @@ impl<W: Write> Writer<W> {
         } else {
             return Ok(());
         };
+        self.end(stop)
+    }
+
+    /// Ends writing; everything so far is flushed.
+    fn end(&mut self, stop: Stop) -> Result<(), WriteError> {
         self.close_chunk()?;
         self.flush_sink()?;
         self.stop = Some(stop);
@@ -453,38 +467,6 @@ impl<W: Write> Writer<W> {
             self.check()
         })
     }
-}
-
-fn session_without_frames(session: &str) -> Result<(Box<RawValue>, SessionShape), WriteError> {
-    const WHAT: &str = "the session's index";
-    let failed = |error: serde_json::Error| json_error(WHAT, &error);
-    if session.len() as u64 > MAX_INDEX_BYTES {
-        return Err(WriteError::TooLarge {
-            what: WHAT,
-            n_bytes: session.len() as u64,
-            max_bytes: MAX_INDEX_BYTES,
-        });
-    }
-    let mut keys: BTreeMap<String, &RawValue> = serde_json::from_str(session).map_err(failed)?;
-    keys.remove("frames");
-    let raw = serde_json::value::to_raw_value(&keys).map_err(failed)?;
-    let shape = serde_json::from_str(raw.get()).unwrap_or_default();
-    Ok((raw, shape))
-}
-
-fn object<'a>(what: &'static str, text: &'a str) -> Result<&'a RawValue, WriteError> {
-    let raw: &RawValue = serde_json::from_str(text).map_err(|error| json_error(what, &error))?;
-    if raw.get().starts_with('{') {
-        Ok(raw)
-    } else {
-        let reason = "not an object".to_owned();
-        Err(WriteError::Json { what, reason })
-    }
-}
-
-fn json_error(what: &'static str, error: &serde_json::Error) -> WriteError {
-    let reason = error.to_string();
-    WriteError::Json { what, reason }
 }
 
 fn count(n: usize) -> u32 {

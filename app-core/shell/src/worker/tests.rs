@@ -88,14 +88,20 @@ fn without_a_folder_nothing_may_be_kept() {
         WorkCommand::Video(true),
         WorkCommand::Share,
     ];
+    let not_allowed = Filmed {
+        saved: Saved::NotAllowed,
+        ending: VideoEnding::Broken,
+    };
     for command in asked {
         let name = format!("{command:?}");
         worker.obey(&live, command);
         let event = told(&mut worker);
-        assert!(
-            matches!(event, ShellEvent::Saved(Saved::NotAllowed)),
-            "{name}: {event:?}"
-        );
+        let is_told = match event {
+            ShellEvent::Saved(saved) => saved == Saved::NotAllowed,
+            ShellEvent::Filmed(filmed) => filmed == not_allowed,
+            _ => false,
+        };
+        assert!(is_told, "{name}: {event:?}");
     }
 }
 
@@ -115,8 +121,15 @@ fn log_and_latest_recording_are_handed_on() {
         files,
         ["log.txt", "recording_2.mcap"].map(|name| folder.join(name))
     );
-    let event = told(&mut worker);
-    assert!(matches!(event, ShellEvent::Saved(Saved::Done)), "{event:?}");
+    // It is not saved for the person before the platform says so.
+    for (is_shared, expected) in [(true, Saved::Done), (false, Saved::NotShared)] {
+        worker.shared()(is_shared);
+        let event = told(&mut worker);
+        assert!(
+            matches!(event, ShellEvent::Saved(saved) if saved == expected),
+            "{event:?}"
+        );
+    }
     fs::remove_dir_all(&folder).expect("a folder");
 }
 
@@ -132,12 +145,50 @@ fn the_app_is_kept_running_until_a_video_is_whole() {
     worker.obey(&live, WorkCommand::Video(false));
     // It has no picture.
     let event = told(&mut worker);
-    assert!(matches!(event, ShellEvent::Saved(Saved::Failed)), "{event:?}");
+    let no_picture = Filmed {
+        saved: Saved::Failed,
+        ending: VideoEnding::Asked,
+    };
+    assert!(
+        matches!(event, ShellEvent::Filmed(filmed) if filmed == no_picture),
+        "{event:?}"
+    );
     let begun = Instant::now();
     while LET_GO.load(Ordering::SeqCst) == 0 {
         assert!(begun.elapsed() < Duration::from_secs(60), "it is kept for good");
         thread::yield_now();
     }
+}
+
+#[test]
+fn a_video_that_ends_after_the_app_reaches_the_gallery_at_the_next_start() {
+    let folder = std::env::temp_dir().join(format!("app-shell-gallery-{}", std::process::id()));
+    let mut worker = worker_in(Some(&folder));
+    // Another test counts.
+    worker.platform.keep_running = || Box::new(());
+    worker.begin_video();
+    let picture = app_core::scene::Image {
+        width_px: 16,
+        height_px: 8,
+        rgba8: vec![255; 4 * 16 * 8],
+    };
+    let video = worker.video.as_mut().expect("a video");
+    assert!(video.add(picture, 0.0));
+    worker.video = None;
+    // Nobody asks for its outcome.
+    let begun = Instant::now();
+    while worker.gallery.waiting().is_empty() {
+        assert!(begun.elapsed() < Duration::from_secs(60), "nothing waits");
+        thread::yield_now();
+    }
+    drop(worker);
+    let mut worker = worker_in(Some(&folder));
+    let Outcome::Written(file) = wait_for(&mut worker) else {
+        panic!("no file for the gallery");
+    };
+    assert!(file.is_file() && file.starts_with(&folder));
+    assert!(Gallery::kept_in(&worker.folders).waiting().is_empty(), "once");
+    fs::remove_dir_all(&folder).expect("a folder");
 }
 
 #[test]

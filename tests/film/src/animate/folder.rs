@@ -26,6 +26,8 @@ pub const SESSION_FOLDER: &str = "session";
 const LOCK_FILE: &str = ".film.lock";
 const TURN_FILE: &str = ".begin.lock";
 const MAX_SESSION_FILE_BYTES: u64 = 1 << 30;
+/// The keys of the index that name files.
+const FILE_KEYS: [&str; 4] = ["image", "depth", "people", "file"];
 
 /// All that determines the pixels of a film.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -161,15 +163,12 @@ impl Film {
 /// # Errors
 /// When one cannot be read.
 pub fn sources(session: &Stored, is_moving: bool) -> anyhow::Result<Vec<SourceFile>> {
-    let index = index_of(session)?;
-    let plates = index["backgrounds"].as_array().into_iter().flatten();
-    let of_plates = plates.map(|plate| &plate["image"]);
-    let frames = index["frames"].as_array().into_iter().flatten();
-    let n_frames = if is_moving { usize::MAX } else { 1 };
-    let of_frames = frames.map(|frame| &frame["image"]).take(n_frames);
-    let others = [&index["toy"]["file"], &index["probe"]["image"]];
-    let named = of_plates.chain(of_frames).chain(others).filter_map(Value::as_str);
-    let mut paths: Vec<String> = named.chain([SESSION_FILE]).map(str::to_owned).collect();
+    let mut index = index_of(session)?;
+    if let Some(frames) = index["frames"].as_array_mut().filter(|_| !is_moving) {
+        frames.truncate(1);
+    }
+    let mut paths = vec![SESSION_FILE.to_owned()];
+    add_named(&index, &mut paths);
     let toy = index["toy"]["file"].as_str().unwrap_or_default();
     if !toy.to_ascii_lowercase().ends_with(".glb") {
         // Buffers and pictures may lie beside it.
@@ -190,6 +189,23 @@ pub fn sources(session: &Stored, is_moving: bool) -> anyhow::Result<Vec<SourceFi
         })
     };
     paths.into_iter().map(source).collect()
+}
+
+/// Adds the files that a part of the index names, except truths: they are compared with pictures
+/// and change none.
+fn add_named(part: &Value, paths: &mut Vec<String>) {
+    match part {
+        Value::Array(parts) => parts.iter().for_each(|part| add_named(part, paths)),
+        Value::Object(keys) => {
+            for (key, value) in keys {
+                match value.as_str() {
+                    Some(path) if FILE_KEYS.contains(&key.as_str()) => paths.push(path.to_owned()),
+                    _ => add_named(value, paths),
+                }
+            }
+        }
+        _ => {}
+    }
 }
 
 /// Reads a session's index.

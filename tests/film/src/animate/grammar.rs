@@ -122,6 +122,23 @@ pub fn items(text: &str, clips: &[ClipFacts]) -> Result<Vec<Item>, GrammarError>
     Ok(items)
 }
 
+/// The text of [`items`] that plays a clip once: its name, or its number if the name means something
+/// else there, as one with a comma or `*` in it does.
+#[must_use]
+pub fn once(clip: usize, clips: &[ClipFacts]) -> String {
+    let name = clips.get(clip).map_or("", |clip| &clip.name);
+    let plays = |text: &str| {
+        let items = items(text, clips);
+        matches!(items.as_deref(), Ok([Item::Clip { clip: other, n_times, speed }])
+            if *other == clip && n_times.get() == 1 && *speed == 1.0)
+    };
+    if plays(name) {
+        name.to_owned()
+    } else {
+        format!("#{clip}")
+    }
+}
+
 fn names(clips: &[ClipFacts]) -> Vec<String> {
     clips.iter().map(|clip| clip.name.clone()).collect()
 }

@@ -98,6 +98,7 @@ pub fn render(folder: &Path, range: &Range<u32>, adapter: &AdapterChoice) -> any
     for frame in missing.into_iter().take(n_pictures) {
         let pose = pose_of(&toy, &frame.pose)?;
         let input = studio.input(&mut core, frame.photograph, &pose)?;
+        warnings.say(std::mem::take(&mut studio.warnings).into_iter())?;
         let report = core.frame(&input.with_shown_pose(pose));
         let report = report.with_context(|| frame.file.clone())?;
         write_picture(folder, &studio, frame, &core)?;
@@ -122,6 +123,8 @@ struct Studio<'a> {
     alignments: Alignments,
     /// The shown place of the toy throughout; `None` for the place of the real toy.
     world_from_shown: Option<DMat4>,
+    /// About the session's frames, until they are told.
+    warnings: Vec<String>,
     /// The photograph that the core received last, by its place among those of the film.
     latest: Option<(usize, FrameInput)>,
 }
@@ -144,6 +147,7 @@ impl<'a> Studio<'a> {
             photographs: film.photographs(),
             alignments,
             world_from_shown: first.world_from_shown,
+            warnings: first.warnings.iter().map(ToString::to_string).collect(),
             latest: None,
         })
     }
@@ -168,6 +172,8 @@ impl<'a> Studio<'a> {
 
     fn photographed(&mut self, index: usize) -> anyhow::Result<FrameInput> {
         let frame = self.capture.frame(index)?;
+        self.warnings
+            .extend(frame.warnings.iter().map(ToString::to_string));
         if self.film.is_moving {
             // They were aligned when the session was copied; observations of earlier ones are
             // dropped.

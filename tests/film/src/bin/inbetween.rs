@@ -103,7 +103,9 @@ fn run(args: &Args) -> anyhow::Result<()> {
     }
     eprintln!();
     let mut lines = findings(&film.keys);
-    lines.extend(film.warnings.iter().map(|warning| format!("warning: {warning}")));
+    let of_shot = shot.warnings().iter().map(ToString::to_string);
+    let warnings = of_shot.chain(film.warnings.iter().cloned());
+    lines.extend(warnings.map(|warning| format!("warning: {warning}")));
     lines.push(format!(
         "{} pictures, {SHEET_FILE}, {CONTACT_FILE}, {REPORT_FILE} and {PAGE_FILE}, which compares them with the keys, in {}\n",
         film.n_frames,

@@ -8,6 +8,7 @@ use clap::Parser;
 use desk::program::{exit_code, print};
 use film::length::metres;
 use film::new::{DRAWING, Key, View, Wanted, new};
+use film::quoted::quoted;
 use glam::DVec3;
 
 /// Make a session from photographs: the place without the toy, then the toy on it. The toy is the
@@ -72,18 +73,18 @@ fn run(args: Args) -> anyhow::Result<()> {
         keys: args.key,
         apart_secs: args.apart,
     };
-    let made = new(&wanted, &args.out)?;
+    let made = new(&wanted, &args.out, &mut |step| eprintln!("{step}"))?;
     let mut lines = made.facts;
     lines.extend(made.warnings.iter().map(|warning| format!("warning: {warning}")));
     let next = if wanted.keys.is_empty() {
         format!(
-            "animate '{}' --clips {}{}",
-            args.out.display(),
-            made.clip.unwrap_or_else(|| "CLIP".to_owned()),
+            "animate {} --clips {}{}",
+            quoted(&args.out.display().to_string()),
+            made.clip.map_or_else(|| "CLIP".to_owned(), |clip| quoted(&clip)),
             if made.is_video { " --moving" } else { "" }
         )
     } else {
-        format!("inbetween '{}'", args.out.display())
+        format!("inbetween {}", quoted(&args.out.display().to_string()))
     };
     lines.push(format!(
         "look at the outlines in {}; then `cargo xtask {next}`",

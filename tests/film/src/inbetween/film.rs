@@ -84,12 +84,20 @@ pub struct Film {
 struct Ready<'a> {
     index: usize,
     key: &'a Key,
+    /// The print in the camera of the film. A figure has 24 bytes for each pixel, so only keys that
+    /// are ready have theirs.
+    figure: Figure,
     core: Core,
     world_from_shown: DMat4,
 }
 
 impl<'a> Ready<'a> {
-    fn new(keys: &'a Keys, index: usize, core: &Core, preset: Preset) -> Result<Self, InbetweenError> {
+    fn new(
+        (keys, index): (&'a Keys, usize),
+        figure: Figure,
+        core: &Core,
+        preset: Preset,
+    ) -> Result<Self, InbetweenError> {
         let key = keys.keys.get(index).ok_or(InbetweenError::NoKey)?;
         let mut core = core.beside();
         let failed = |reason| InbetweenError::Core { index, reason };
@@ -97,6 +105,7 @@ impl<'a> Ready<'a> {
         Ok(Self {
             index,
             key,
+            figure,
             core,
             world_from_shown: keys.world_from_shown,
         })
@@ -215,11 +224,10 @@ impl Maker<'_> {
         let pictures = [moment.left, right].map(|key| self.picture(key, &pose));
         let [left_picture, right_picture] = pictures;
         let (left_picture, right_picture) = (left_picture?, right_picture?);
-        let scene = self.shot.scene();
-        let size_px = [scene.width_px as usize, scene.height_px as usize];
-        let figure = Figure::new(&scene.toy, (&pose, &keys.world_from_shown), &keys.camera, size_px)?;
-        let touched = figure.touched(&scene.receivers, &keys.lights);
-        let seen = [moment.left, right].map(|key| figure.seen_in(&keys.keys[key].figure));
+        let figure = self.figure(&pose, &keys.world_from_shown)?;
+        let touched = figure.touched(&self.shot.scene().receivers, &keys.lights);
+        let [left_ready, right_ready] = [self.ready(moment.left)?, self.ready(right)?];
+        let seen = [left_ready, right_ready].map(|ready| figure.seen_in(&ready.figure));
         #[allow(clippy::cast_possible_truncation, reason = "from 0 to 1")]
         let share = moment.share as f32;
         let mix = Mix {
@@ -274,7 +282,9 @@ impl Maker<'_> {
         if is_new {
             // Keys before the previous one are no longer needed.
             self.ready.retain(|ready| ready.index + 1 == key);
-            let ready = Ready::new(self.keys, key, self.core, self.options.preset)?;
+            let of_key = self.keys.keys.get(key).ok_or(InbetweenError::NoKey)?;
+            let figure = self.figure(&of_key.pose, &of_key.input.world_from_object)?;
+            let ready = Ready::new((self.keys, key), figure, self.core, self.options.preset)?;
             self.ready.push(ready);
         }
         let ready = self.ready.iter_mut().find(|ready| ready.index == key);
@@ -284,6 +294,20 @@ impl Maker<'_> {
             self.warnings.extend(ready.warnings()?);
         }
         Ok(picture)
+    }
+
+    /// The toy in the camera of the film.
+    fn figure(&self, pose: &Pose, world_from_object: &DMat4) -> Result<Figure, InbetweenError> {
+        let scene = self.shot.scene();
+        let size_px = [scene.width_px as usize, scene.height_px as usize];
+        let placed = (pose, world_from_object);
+        Ok(Figure::new(&scene.toy, placed, &self.keys.camera, size_px)?)
+    }
+
+    /// A key of which a picture was made.
+    fn ready(&self, key: usize) -> Result<&Ready<'_>, InbetweenError> {
+        let ready = self.ready.iter().find(|ready| ready.index == key);
+        ready.ok_or(InbetweenError::NoKey)
     }
 
     /// The pose at a moment.

@@ -34,8 +34,8 @@ pub struct Key {
     pub pose: Pose,
     /// Seconds of the film.
     pub time_secs: f64,
-    /// The print in the reference camera.
-    pub figure: Figure,
+    /// The print's middle in world.
+    middle: DVec3,
     /// Its corrections.
     pub found: Found,
 }
@@ -88,6 +88,8 @@ struct Sighted {
     alignment: Alignment,
     pose: Pose,
     time_secs: f64,
+    /// Of its photograph and its entry in the session.
+    warnings: Vec<String>,
 }
 
 impl Keys {
@@ -111,12 +113,13 @@ impl Keys {
             lights: &lights,
         };
         let reference = stage.reference(first)?;
-        let keys = sighted.iter().enumerate();
+        // Each photograph as recorded goes with its key: a large one has a hundred megabytes.
+        let keys = sighted.into_iter().enumerate();
         let mut keys = keys
-            .map(|(index, key)| stage.key(index, key, &reference))
+            .map(|(index, key)| stage.key(index, &key, &reference))
             .collect::<Result<Vec<_>, _>>()?;
         let mark = shot.scene().world_from_object;
-        let off_mark = |key: &Key| off(&mark, &key.input.world_from_object, &key.figure.middle());
+        let off_mark = |key: &Key| off(&mark, &key.input.world_from_object, &key.middle);
         let is_near =
             |off: PoseDifference| off.moved_m < MOST_OFF_MARK_M && off.turned_rad < MOST_OFF_MARK_RAD;
         let is_mark = keys.iter().all(|key| is_near(off_mark(key)));
@@ -126,7 +129,7 @@ impl Keys {
             keys[0].input.world_from_object
         };
         for key in &mut keys {
-            let middle = key.figure.middle();
+            let middle = key.middle;
             let print = off(&world_from_shown, &key.input.world_from_object, &middle);
             let px_per_m = camera.intrinsics.fx_px / distance_m(&camera, middle);
             key.found.print = (print != PoseDifference::default()).then_some(PoseDifference {
@@ -154,6 +157,7 @@ fn sighted_key(shot: &Shot, index: usize) -> Result<Sighted, InbetweenError> {
         recorded,
         pose: frame.shown_pose,
         time_secs: frame.time_secs,
+        warnings: frame.warnings.iter().map(ToString::to_string).collect(),
     })
 }
 
@@ -368,7 +372,8 @@ impl Stage<'_> {
         // A foot of a posed print may well be above the table.
         let is_other = |warning: &&AlignmentWarning| !matches!(warning, AlignmentWarning::OffReceiver { .. });
         let others = alignment.warnings.iter().filter(is_other);
-        let warnings = others.map(ToString::to_string).collect();
+        let others = others.map(ToString::to_string);
+        let warnings = key.warnings.iter().cloned().chain(others).collect();
         let world_from_object = self.on_plane(key, &alignment.world_from_object)?;
         let input = alignment
             .applied_to(&input)
@@ -390,7 +395,7 @@ impl Stage<'_> {
         let [now, then] = [&self.camera, &found_camera].map(|camera| camera.world_from_camera);
         let camera = off(&now, &then, &now.w_axis.truncate());
         Ok(Key {
-            figure: self.figure(&key.pose, &input.world_from_object)?,
+            middle: self.figure(&key.pose, &input.world_from_object)?.middle(),
             input: input.with_grain(grain),
             scene,
             pose: key.pose.clone(),

@@ -19,7 +19,7 @@ const STEEP: f64 = 0.25;
 
 /// A toy with a pose and a place, in a camera.
 #[derive(Clone, Debug)]
-pub struct Figure {
+pub(super) struct Figure {
     /// Vertices in world.
     points: Vec<DVec3>,
     /// Their places in the picture: u, v in pixels, and the depth in metres.
@@ -58,7 +58,7 @@ impl Figure {
     ///
     /// # Errors
     /// When it cannot be posed.
-    pub fn new(
+    pub(super) fn new(
         toy: &Toy,
         (pose, world_from_object): (&Pose, &DMat4),
         camera: &Camera,
@@ -82,7 +82,7 @@ impl Figure {
 
     /// Pixels of the toy.
     #[must_use]
-    pub fn covered(&self) -> Vec<bool> {
+    pub(super) fn covered(&self) -> Vec<bool> {
         let mut mask = vec![false; self.size_px[0] * self.size_px[1]];
         self.draw(&self.corners, &mut mask);
         mask
@@ -90,7 +90,7 @@ impl Figure {
 
     /// Pixels of the toy and of all its shadows on receivers.
     #[must_use]
-    pub fn touched(&self, receivers: &[Receiver], lights: &[Light]) -> Vec<bool> {
+    pub(super) fn touched(&self, receivers: &[Receiver], lights: &[Light]) -> Vec<bool> {
         let mut mask = self.covered();
         for light in lights {
             for receiver in receivers {
@@ -104,13 +104,13 @@ impl Figure {
 
     /// Vertices in world.
     #[must_use]
-    pub fn points(&self) -> &[DVec3] {
+    pub(super) fn points(&self) -> &[DVec3] {
         &self.points
     }
 
     /// The mean of the vertices.
     #[must_use]
-    pub fn middle(&self) -> DVec3 {
+    pub(super) fn middle(&self) -> DVec3 {
         let (least, most) = self.bounds();
         0.5 * (least + most)
     }
@@ -161,7 +161,7 @@ impl Figure {
     /// The visibility of each pixel of this figure in another one of the same toy, 0 to 1; `None`
     /// for pixels beside the toy.
     #[must_use]
-    pub fn seen_in(&self, other: &Self) -> Vec<Option<f32>> {
+    pub(super) fn seen_in(&self, other: &Self) -> Vec<Option<f32>> {
         let (least, most) = self.bounds();
         let hidden_m = HIDDEN_DEPTH * (most - least).length();
         let pixels = 0..self.size_px[0] * self.size_px[1];

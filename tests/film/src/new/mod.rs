@@ -18,6 +18,7 @@ use app_core::toy::Toy;
 use desk::output::write_png;
 use glam::{DMat4, DVec3};
 
+use crate::animate::grammar::{ClipFacts, once};
 use crate::photograph::{Photograph, focal_px};
 use crate::video::{MAX_PICTURES, PICTURES_PER_SEC, Video, is_video};
 
@@ -64,7 +65,7 @@ pub struct Made {
     pub facts: Vec<String>,
     /// Possible mistakes.
     pub warnings: Vec<String>,
-    /// The toy's first clip.
+    /// The toy's first clip, as `animate` reads it.
     pub clip: Option<String>,
     /// Whether the session has all pictures of a video.
     pub is_video: bool,
@@ -91,36 +92,48 @@ struct Given {
     facts: Vec<String>,
 }
 
-/// Makes a session's folder from photographs.
+/// Makes a session's folder from photographs. Tells each step to `progress` as it begins.
 ///
 /// # Errors
 /// When `out` exists already, a file cannot be read, or the result is uncertain: nothing is written
 /// then.
-pub fn new(wanted: &Wanted, out: &Path) -> anyhow::Result<Made> {
+pub fn new(wanted: &Wanted, out: &Path, progress: &mut dyn FnMut(&str)) -> anyhow::Result<Made> {
     anyhow::ensure!(
         !out.exists(),
         "{}: exists already: delete it or name another folder",
         out.display()
     );
-    let mut partial = out.file_name().context("--out: has no name")?.to_owned();
-    partial.push(".partial");
-    let partial = out.with_file_name(partial);
+    let name = out.file_name().context("--out: has no name")?;
+    let beside = |ending: &str| {
+        let mut name = name.to_owned();
+        name.push(ending);
+        out.with_file_name(name)
+    };
+    let partial = beside(".partial");
     anyhow::ensure!(
         !partial.exists(),
         "{}: another run writes there, or was interrupted: remove it in that case",
         partial.display()
     );
-    let given = read(wanted, &out.with_extension("video"))?;
+    if let Some(above) = out.parent() {
+        fs::create_dir_all(above).with_context(|| above.display().to_string())?;
+    }
+    progress("reading the photographs");
+    let given = read(wanted, &beside(".video"))?;
+    progress("searching for the toy, its table and its lights, which takes the longest");
     let found = found::find(&given, wanted)?;
+    progress("writing the session");
     written::write(&given, &found, wanted, &partial)?;
     write_png(&partial.join(DRAWING), &found.drawn(&given)?)?;
     fs::rename(&partial, out).with_context(|| out.display().to_string())?;
     let mut facts = given.facts.clone();
     facts.extend(found.facts());
+    let of_toy = given.toy.warnings().iter();
+    let of_toy = of_toy.map(|warning| format!("{}: {warning}", wanted.toy.display()));
     Ok(Made {
         facts,
-        warnings: found.warnings(&given),
-        clip: given.toy.clip_names().into_iter().next(),
+        warnings: of_toy.chain(found.warnings(&given)).collect(),
+        clip: first_clip(&given.toy),
         is_video: given.video.is_some(),
     })
 }
@@ -163,10 +176,7 @@ fn read(wanted: &Wanted, folder: &Path) -> anyhow::Result<Given> {
     };
     let bounds = toy.bounds_of_pose(&pose)?;
     let corners = [bounds.min, bounds.max].map(|corner| corner.as_dvec3());
-    for key in &wanted.keys {
-        toy.find_clip(&key.moment.0)
-            .with_context(|| key.path.display().to_string())?;
-    }
+    check_keys(&toy, &wanted.keys)?;
     let (upright, height_m) = upright(corners, wanted)?;
     if let (Pose::Clip { clip, time_secs }, Some((name, _))) = (&pose, &wanted.moment) {
         let (end_secs, is_beyond) = toy.clamp_time(*clip, *time_secs)?;
@@ -200,6 +210,22 @@ fn read(wanted: &Wanted, folder: &Path) -> anyhow::Result<Given> {
         height_m,
         corners,
     })
+}
+
+/// Checks that the clips of further prints exist and are as long as their moments.
+fn check_keys(toy: &Toy, keys: &[Key]) -> anyhow::Result<()> {
+    for key in keys {
+        let named = || key.path.display().to_string();
+        let (name, time_secs) = &key.moment;
+        let clip = toy.find_clip(name).with_context(named)?;
+        let (end_secs, is_beyond) = toy.clamp_time(clip, *time_secs)?;
+        anyhow::ensure!(
+            !is_beyond,
+            "{}: the clip {name:?} ends at {end_secs:.3} s",
+            named()
+        );
+    }
+    Ok(())
 }
 
 /// A photograph, or the first picture of a video with the video.
@@ -237,6 +263,16 @@ fn read_toy(path: &Path) -> anyhow::Result<(Toy, Vec<u8>)> {
     let name = path.display().to_string();
     let bytes = desk::toy_file::read_toy(path)?;
     Ok((Toy::from_glb(&name, &bytes)?, bytes))
+}
+
+/// The first clip in the words of a film's clips.
+fn first_clip(toy: &Toy) -> Option<String> {
+    let facts = toy.clip_names().into_iter().map(|name| ClipFacts {
+        name,
+        duration_secs: 0.0,
+    });
+    let facts: Vec<ClipFacts> = facts.collect();
+    (!facts.is_empty()).then(|| once(0, &facts))
 }
 
 /// Turns the model upright and scales it to its height, which is returned, too.

@@ -6,7 +6,8 @@ use std::sync::Barrier;
 use std::thread;
 
 use app_core::shadow_style::ShadowStyle;
-use film::animate::folder::{Film, FilmFolder, FilmFrame, MadeBy, SourceFile};
+use desk::stored::Stored;
+use film::animate::folder::{Film, FilmFolder, FilmFrame, MadeBy, SourceFile, sources};
 use film::animate::grammar::items;
 use film::animate::render::missing;
 use film::animate::timeline::{Timing, frames};
@@ -106,6 +107,46 @@ fn pictures_stay_as_long_as_all_that_decides_on_them_does() {
     fs::write(path.join("film.json"), "{").unwrap();
     assert!(begin(path, &first, false).is_err());
     assert_eq!(pictures(path), [true, false, true]);
+}
+
+#[test]
+fn all_files_that_change_pictures_are_sources_of_a_film() {
+    let folder = Temporary::new("film-sources");
+    let index = serde_json::json!({
+        "toy": { "file": "toy.glb" },
+        "backgrounds": [{ "image": "plate.png" }],
+        "probe": { "pictures": [{ "image": "probe.png" }] },
+        "place_mesh": { "file": "place.glb" },
+        "frames": [
+            { "image": "0.png", "depth": "0d.png", "people": "0p.png", "truth": "0t.png", "mask": "0m.png" },
+            { "image": "1.png", "depth": "1d.png", "people": "1p.png" },
+        ],
+    });
+    let first = [
+        "0.png",
+        "0d.png",
+        "0p.png",
+        "place.glb",
+        "plate.png",
+        "probe.png",
+        "toy.glb",
+    ];
+    let later = ["1.png", "1d.png", "1p.png"];
+    for file in first.iter().chain(&later).chain(&["0t.png", "0m.png"]) {
+        fs::write(folder.0.join(file), file).unwrap();
+    }
+    fs::write(folder.0.join("capture.json"), index.to_string()).unwrap();
+    let paths = |is_moving| -> Vec<String> {
+        let sources = sources(&Stored::open(&folder.0).unwrap(), is_moving).unwrap();
+        sources.into_iter().map(|source| source.path).collect()
+    };
+    let mut expected = first.to_vec();
+    expected.push("capture.json");
+    expected.sort_unstable();
+    assert_eq!(paths(false), expected);
+    expected.extend(later);
+    expected.sort_unstable();
+    assert_eq!(paths(true), expected);
 }
 
 /// Pictures stay when another build continues, and the film records the build that began them until

@@ -2,7 +2,8 @@
 
 use std::num::NonZeroU32;
 
-use film::animate::grammar::{Item, items};
+use film::animate::grammar::{ClipFacts, Item, items, once};
+use film::quoted::quoted;
 
 use super::clips;
 
@@ -38,6 +39,34 @@ fn items_are_clips_with_times_and_speeds_and_holds() {
     for (text, expected) in cases {
         assert_eq!(items(text, &clips()).unwrap(), expected, "{text}");
     }
+}
+
+#[test]
+fn a_clip_is_printed_so_that_it_is_read_back() {
+    let named = |names: &[&str]| -> Vec<ClipFacts> {
+        let facts = names.iter().map(|name| ClipFacts {
+            name: (*name).to_owned(),
+            duration_secs: 1.0,
+        });
+        facts.collect()
+    };
+    let names = [
+        "Armature|Walk",
+        "#1",
+        "Walk, slow",
+        "Look*2",
+        "",
+        "hold:3",
+        "Armature|Walk",
+    ];
+    let texts = ["Armature|Walk", "#1", "#2", "Look*2", "#4", "hold:3", "#6"];
+    let clips = named(&names);
+    for (index, text) in texts.into_iter().enumerate() {
+        assert_eq!(once(index, &clips), text);
+        assert_eq!(items(text, &clips).unwrap(), [clip(index, 1, 1.0)]);
+    }
+    assert_eq!(quoted("Armature|Walk"), "'Armature|Walk'");
+    assert_eq!(quoted("a'b"), r"'a'\''b'");
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use film::animate::frame_files::{FrameRange, NamePattern};
+use film::photograph::{Photograph, PhotographReason};
 use film::video::{Video, is_video};
 use harness::temporary::Temporary;
 
@@ -53,4 +54,25 @@ fn a_video_is_known_by_its_ending_and_leaves_nothing_if_it_cannot_be_read() {
     let error = Video::open(&video, &pictures, 1).unwrap_err();
     assert!(format!("{error:#}").contains("walk.mp4: "), "{error:#}");
     assert!(!pictures.exists());
+    fs::create_dir(&pictures).unwrap();
+    let error = Video::open(&video, &pictures, 1).unwrap_err().to_string();
+    assert!(error.contains("was interrupted: remove it"), "{error}");
+    assert!(pictures.exists(), "it is another run's");
+}
+
+#[test]
+fn a_photograph_that_was_cut_off_is_refused() {
+    let folder = Temporary::new("cut-short");
+    let mut bytes = Vec::new();
+    let noise = image::RgbImage::from_fn(128, 128, |x, y| {
+        image::Rgb([x, y, x ^ y].map(|code| u8::try_from(code).unwrap()))
+    });
+    let mut encoder = image::codecs::jpeg::JpegEncoder::new(&mut bytes);
+    encoder.encode_image(&noise).unwrap();
+    let path = folder.0.join("photo.jpg");
+    fs::write(&path, &bytes).unwrap();
+    assert!(Photograph::read(&path).is_ok());
+    fs::write(&path, &bytes[..bytes.len() - 100]).unwrap();
+    let error = Photograph::read(&path).unwrap_err();
+    assert!(matches!(error.reason, PhotographReason::CutShort), "{error}");
 }

@@ -11,7 +11,7 @@ use std::{sync::mpsc, thread};
 use app_core::recording::{
     Flushed, Item, Limits, Picture, Recording, RecordingError, Source, Stop, Topic, WriteError, Writer, queue,
 };
-use app_core::session::{FileError, Files};
+use app_core::session::{FileError, Files, INDEX_FILE, MAX_INDEX_BYTES};
 use harness::endless::{add, compare, entry, picture, session, time_ns};
 
 use crate::recording::small::{open, small};
@@ -62,6 +62,27 @@ fn a_recording_stops_within_its_limits_and_is_whole() {
         assert_eq!(compare(&recording).unwrap().len(), flushed.n_frames as usize);
         assert!(flushed.n_frames > 50);
     }
+}
+
+#[test]
+fn a_writer_stops_before_the_index_is_larger_than_a_reader_accepts() {
+    let mut writer = writer(Vec::new(), Limits::default());
+    let written = (0..20).find_map(|number| {
+        let spaces = " ".repeat(1 << 20);
+        let entry = entry(number).to_string().replacen('{', &format!("{{{spaces}"), 1);
+        let time_ns = time_ns(number);
+        let stopped = writer.frame(time_ns, Picture::New(&picture(number)), &entry);
+        stopped.err().map(|error| (number, error))
+    });
+    let stop = Stop::Index {
+        max_bytes: MAX_INDEX_BYTES,
+    };
+    assert_eq!(written, Some((15, WriteError::Stopped(stop))));
+    let (bytes, flushed) = writer.finish().unwrap();
+    let recording = open(&bytes).unwrap();
+    assert_eq!((flushed.n_frames, recording.n_frames()), (15, 15));
+    assert!(recording.losses().is_empty());
+    assert!(recording.read(INDEX_FILE, MAX_INDEX_BYTES).is_ok());
 }
 
 /// A device that is suddenly full, in the middle of a record.

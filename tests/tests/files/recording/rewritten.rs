@@ -2,7 +2,7 @@
 //! recordings in one file.
 
 use app_core::recording::{Loss, Recording, RecordingError};
-use app_core::session::Files;
+use app_core::session::{Files, INDEX_FILE, MAX_INDEX_BYTES};
 use harness::endless::{compare, picture};
 use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 
@@ -129,6 +129,45 @@ fn compressed_chunks_and_messages_without_chunks_are_read() {
     for bytes in [zstd, lz4, unchunked(&small.bytes)] {
         is_whole(&open(&bytes).unwrap());
     }
+}
+
+/// The same records, with each frame's entry padded by spaces to `n_bytes`.
+fn padded(records: &[u8], n_bytes: usize) -> Vec<u8> {
+    const KEY: &[u8] = b"\"entry\":{";
+    let of_one = |one: &[u8]| {
+        let entry = one.windows(KEY.len()).position(|window| window == KEY);
+        let Some(at) = entry.filter(|_| one[0] == MESSAGE) else {
+            return one.to_vec();
+        };
+        let (before, after) = one.split_at(at + KEY.len());
+        // The entry's first bracket is before, the message's last one is after.
+        let spaces = vec![b' '; n_bytes - after.len()];
+        record(MESSAGE, &[&before[HEAD_BYTES..], &spaces, after].concat())
+    };
+    each(records).into_iter().flat_map(of_one).collect()
+}
+
+#[test]
+fn frames_beyond_the_limit_of_an_index_are_left_out_and_the_rest_is_read() {
+    // Sixteen entries are the limit to the byte, without what is between them.
+    let entry_bytes = usize::try_from(MAX_INDEX_BYTES).unwrap() / 16;
+    let bytes = with_chunks(&small(20).bytes, |records| {
+        let records = padded(records, entry_bytes);
+        chunk("", &records, &records, records.len() as u64)
+    });
+    let recording = open(&bytes).unwrap();
+    assert_eq!(
+        recording.losses(),
+        [Loss::TooMany {
+            n_messages: 5,
+            max_bytes: MAX_INDEX_BYTES
+        }]
+    );
+    assert_eq!(recording.n_frames(), 15);
+    assert!(
+        recording.read(INDEX_FILE, MAX_INDEX_BYTES).is_ok(),
+        "a session is opened"
+    );
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Events of an app, in arbitrary order.
 
-use app_core::app::{ArSession, GraphicsState, Permission, Saved, Thermal, UserAction};
+use app_core::app::{ArSession, Filmed, GraphicsState, Permission, Saved, Thermal, UserAction, VideoEnding};
 use app_core::camera_frame::Tracking;
 use glam::DVec2;
 use proptest::prelude::*;
@@ -34,6 +34,8 @@ pub(crate) enum Happening {
     WorkEnds(bool),
     OtherToy(bool),
     Saved(Saved),
+    Filmed(Filmed),
+    PictureFails,
     /// The first or the last recording ends, on command or not.
     RecordingEnds(bool),
     FreeSpace(u64),
@@ -69,7 +71,13 @@ pub(crate) fn happening() -> impl Strategy<Value = Happening> {
         Thermal::Serious,
         Thermal::Critical,
     ]);
-    let saved = select(vec![Saved::Done, Saved::NoRoom, Saved::NotAllowed, Saved::Failed]);
+    let saved = || select(vec![Saved::Done, Saved::NoRoom, Saved::NotAllowed, Saved::Failed]);
+    let ending = select(vec![
+        VideoEnding::Asked,
+        VideoEnding::TooLarge,
+        VideoEnding::Broken,
+    ]);
+    let filmed = (saved(), ending).prop_map(|(saved, ending)| Filmed { saved, ending });
     prop_oneof![
         1 => permission.prop_map(Happening::Permission),
         1 => any::<bool>().prop_map(Happening::Foreground),
@@ -87,7 +95,9 @@ pub(crate) fn happening() -> impl Strategy<Value = Happening> {
         1 => Just(Happening::AlignmentDies),
         4 => select(vec![true, true, true, false]).prop_map(Happening::WorkEnds),
         1 => any::<bool>().prop_map(Happening::OtherToy),
-        1 => saved.prop_map(Happening::Saved),
+        1 => saved().prop_map(Happening::Saved),
+        1 => filmed.prop_map(Happening::Filmed),
+        1 => Just(Happening::PictureFails),
         1 => any::<bool>().prop_map(Happening::RecordingEnds),
         1 => select(vec![0, u64::MAX]).prop_map(Happening::FreeSpace),
         12 => action().prop_map(Happening::User),

@@ -29,7 +29,7 @@ fn lamp() -> DVec3 {
 }
 
 /// A session with a picture of a lens on the card, under a sun; or without any lamp.
-fn session(name: &str, is_lit: bool) -> Capture {
+fn session(name: &str, is_lit: bool) -> Arc<Capture> {
     let lamps = if is_lit {
         vec![Lamp::sun(lamp(), 0.01, 1.0)]
     } else {
@@ -59,10 +59,10 @@ fn session(name: &str, is_lit: bool) -> Capture {
     });
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     folder::write(&path, &shot).unwrap();
-    Capture::open(Folder::open(&path).unwrap()).unwrap()
+    Arc::new(Capture::open(Folder::open(&path).unwrap()).unwrap())
 }
 
-static LIT: LazyLock<Capture> = LazyLock::new(|| session("lens-lit", true));
+static LIT: LazyLock<Arc<Capture>> = LazyLock::new(|| session("lens-lit", true));
 
 /// A person with a phone.
 struct Person {
@@ -75,7 +75,8 @@ struct Person {
 
 impl Person {
     /// The step of the ghost, without a plate.
-    fn at_ghost(session: &Capture) -> Self {
+    fn at_ghost(session: &Arc<Capture>) -> Self {
+        let session = Arc::clone(session);
         let feed = Feed::of(session).unwrap();
         let mut person = Self {
             app: App::new(Arc::clone(&feed.scene().toy)),

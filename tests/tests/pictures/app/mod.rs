@@ -1,6 +1,7 @@
 //! The app's logic: its table of steps, every order of events, and a person's way to a moving toy.
 
 mod conditions;
+mod failures;
 mod happenings;
 mod heat;
 mod lens;

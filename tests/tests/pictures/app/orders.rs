@@ -75,22 +75,7 @@ impl Platform {
             }),
             Happening::AlignmentRuns => self.end(AlignJob::run),
             Happening::AlignmentDies => self.end(|job| job.without_result()),
-            Happening::WorkEnds(is_whole) => {
-                let plates = self.plates.drain(..);
-                let plates = plates.map(|job| is_whole.then(|| Box::new(job.run())));
-                let searches = self.searches.drain(..);
-                let searches = searches.map(|job| is_whole.then(|| Box::new(job.run())));
-                let watches = self
-                    .watches
-                    .drain(..)
-                    .map(|job| if is_whole { job.run() } else { job.without_result() });
-                let plates = plates.map(ShellEvent::Plated);
-                let watches = watches.map(|done| ShellEvent::Watched(Box::new(done)));
-                plates
-                    .chain(searches.map(ShellEvent::Searched))
-                    .chain(watches)
-                    .collect()
-            }
+            Happening::WorkEnds(is_whole) => self.end_work(is_whole),
             Happening::OtherToy(is_toy) => {
                 let read = if is_toy {
                     Ok(world::toy())
@@ -100,6 +85,8 @@ impl Platform {
                 vec![ShellEvent::Toy(read)]
             }
             Happening::Saved(saved) => vec![ShellEvent::Saved(saved)],
+            Happening::Filmed(filmed) => vec![ShellEvent::Filmed(filmed)],
+            Happening::PictureFails => vec![ShellEvent::PictureFailed("planted".to_owned())],
             Happening::RecordingEnds(is_last) => {
                 let place = if is_last {
                     self.recordings.len().checked_sub(1)
@@ -116,6 +103,24 @@ impl Platform {
             Happening::FreeSpace(free_bytes) => vec![ShellEvent::FreeSpace(free_bytes)],
             Happening::User(action) => vec![ShellEvent::User(action)],
         }
+    }
+
+    /// Ends the work of all threads but alignments, with or without a result.
+    fn end_work(&mut self, is_whole: bool) -> Vec<ShellEvent> {
+        let plates = self.plates.drain(..);
+        let plates = plates.map(|job| is_whole.then(|| Box::new(job.run())));
+        let searches = self.searches.drain(..);
+        let searches = searches.map(|job| is_whole.then(|| Box::new(job.run())));
+        let watches = self
+            .watches
+            .drain(..)
+            .map(|job| if is_whole { job.run() } else { job.without_result() });
+        let plates = plates.map(ShellEvent::Plated);
+        let watches = watches.map(|done| ShellEvent::Watched(Box::new(done)));
+        plates
+            .chain(searches.map(ShellEvent::Searched))
+            .chain(watches)
+            .collect()
     }
 
     /// Ends the latest alignment, if there is one.

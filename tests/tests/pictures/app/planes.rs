@@ -28,6 +28,9 @@ fn planes_above_the_table_are_receivers() {
     let mut frame = person.feed.next(0.033);
     let others = [
         plane(101, STEP, 0.0),
+        // Two that were merged into it: they would take all places.
+        plane(111, STEP, 0.0),
+        plane(112, STEP, 0.0),
         plane(102, STEP * DVec3::new(1.0, 0.2, 1.0), 0.0),
         plane(103, STEP * DVec3::new(1.0, -30.0, 1.0), 0.0),
         plane(104, DVec3::new(2.0, 0.02, 0.0), 0.0),

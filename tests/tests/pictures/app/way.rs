@@ -10,6 +10,7 @@ use app_core::app::{
 use app_core::interface::announced;
 use app_core::recording::RecordingJob;
 use app_core::scene::{Camera, Image};
+use app_core::session::{Capture, Session};
 use desk::files::BUNDLED_SESSION;
 use desk::stored::Stored;
 use glam::{DMat4, DVec2, DVec3};
@@ -192,6 +193,32 @@ fn a_ghost_that_is_a_little_off_becomes_a_toy_that_moves() {
     let turned_rad = (yaw_rad(&input.world_from_object) - yaw_rad(truth)).abs();
     assert!(turned_rad < 0.01, "{turned_rad}");
     assert_eq!(input.lights.as_ref().map(|lights| lights.len()), Some(1));
+}
+
+#[test]
+fn the_toy_of_a_session_is_there_while_the_app_expects_it() {
+    let mut feed = Feed::of_stored(Stored::open(BUNDLED_SESSION).unwrap()).unwrap();
+    let mut there = |step| {
+        feed.follow(step);
+        feed.is_toy_there
+    };
+    assert_eq!(Step::ALL.map(&mut there), [false, false, false, true, true, true]);
+    assert!(!there(Step::TakePlate), "it is taken off for another photograph");
+}
+
+#[test]
+fn a_recording_that_is_too_long_to_be_kept_gives_the_same_frames() {
+    let session = Arc::new(Capture::open(Stored::open(BUNDLED_SESSION).unwrap()).unwrap());
+    let n_frames = session.n_frames();
+    let [mut all, mut first] = [usize::MAX, 0].map(|most_bytes| {
+        let mut feed = Feed::keeping(session.clone(), most_bytes).unwrap();
+        feed.is_toy_there = true;
+        feed
+    });
+    for _ in 0..=n_frames {
+        let [all, first] = [&mut all, &mut first].map(|feed| feed.next(0.033));
+        assert_eq!(all.image.rgba().rgba8, first.image.rgba().rgba8);
+    }
 }
 
 #[test]
