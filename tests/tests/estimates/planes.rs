@@ -51,8 +51,8 @@ pub(super) fn session(planes: &[(DMat4, DVec2)]) -> (Scene, Shot) {
     painted(planes, &Paint::Even(DVec3::new(0.2, 0.35, 0.6)))
 }
 
-/// The same with planes of a paint.
-fn painted(planes: &[(DMat4, DVec2)], paint: &Paint) -> (Scene, Shot) {
+/// The boxes beside planes of a paint.
+fn boxes(planes: &[(DMat4, DVec2)], paint: &Paint) -> World {
     let mut world = World::boxes().resized([480, 270]);
     world = world.lit_by(vec![Lamp::bulb(toward(50.0, 90.0), 0.01, 0.75)]);
     world.bounces = false;
@@ -69,6 +69,12 @@ fn painted(planes: &[(DMat4, DVec2)], paint: &Paint) -> (Scene, Shot) {
             half_extent_m: *half_extent_m,
             paint: *paint,
         }));
+    world
+}
+
+/// The same with planes of a paint.
+fn painted(planes: &[(DMat4, DVec2)], paint: &Paint) -> (Scene, Shot) {
+    let world = boxes(planes, paint);
     let shot = Shot::of(&world).unwrap();
     let mut scene = shot.scene.clone();
     scene.receivers.truncate(1);
@@ -336,6 +342,30 @@ fn a_plane_that_is_listed_a_little_off_is_corrected() {
     let found = corrected(listed);
     let off_m = found.world_from_plane.w_axis.y - exact.world_from_plane.w_axis.y;
     assert!(off_m.abs() < HEIGHT_M, "{:.2} mm off", 1e3 * off_m);
+}
+
+/// A line of the table's squares is clearer than a side of the board, but the toy's shadow on the table between
+/// them shows that the board does not reach there.
+#[test]
+fn a_listed_plane_does_not_grow_to_a_line_of_the_table() {
+    let world_from_board = board(0.018, 0.0);
+    let color = DVec3::new(0.45, 0.35, 0.25);
+    let mut world = boxes(&[(world_from_board, HALF_M)], &Paint::Even(0.9 * color));
+    let line_m = world_from_board.transform_point3(DVec3::new(HALF_M.x + 0.012, 0.0, 0.1));
+    let table = &mut world.grounds[0];
+    table.paint = Paint::Tiles {
+        colors: [color, 0.4 * color],
+        side_m: 0.2,
+    };
+    table.world_from_plane = DMat4::from_rotation_translation(
+        DQuat::from_mat4(&world_from_board),
+        DVec3::new(line_m.x, 0.0, line_m.z),
+    );
+    let shot = Shot::of(&world).unwrap();
+    let mut observer = Observer::default();
+    observer.observed(&shot.scene, &shot.input).unwrap();
+    let known = observer.scene(&shot.scene);
+    assert_eq!(known.receivers, shot.scene.receivers);
 }
 
 /// Lights that are fitted to a board that is listed too low agree with it, so it is corrected in those

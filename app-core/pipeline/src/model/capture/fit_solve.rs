@@ -12,8 +12,7 @@ use crate::model::state::solution::{PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, PRIOR_W
 use crate::passes::globals::GLOBALS_GROUP;
 pub(crate) use crate::passes::list::NoTargets as Targets;
 
-pub(crate) const SHADER: Shader =
-    shader!("capture/fit_solve", constants: [PRIOR_WEIGHT, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, SAME_GAIN_WEIGHT]);
+pub(crate) const SHADER: Shader = shader!("capture/fit_solve", constants: [PRIOR_WEIGHT, PRIOR_BOUNCE, PRIOR_DIRECT_FRACTION, SAME_GAIN_WEIGHT]);
 const SLOTS: &[Slot] = &[
     Slot::per_use::<FitStep>(),
     Slot::Read,

@@ -19,8 +19,7 @@ use crate::passes::toy_mesh::{CasterLod, Savings, SeenToy, Side, SilhouetteTarge
 /// Count of a pixel's covered positions.
 pub(crate) const COVERED: Mirrors = mirrors!("common/covered", constants: [N_POSITIONS, COVERED_CODES]);
 /// The lattice of these positions, for the background of an outline.
-pub(crate) const BEHIND_OUTLINE: Mirrors =
-    mirrors!("common/behind_outline", constants: [OUTLINE_ROW_STEP]);
+pub(crate) const BEHIND_OUTLINE: Mirrors = mirrors!("common/behind_outline", constants: [OUTLINE_ROW_STEP]);
 pub(crate) const SHADER: Shader = shader!("frame/coverage", structs: [Positions]);
 const SLOTS: &[Slot] = &[Slot::per_use::<Positions>()];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
