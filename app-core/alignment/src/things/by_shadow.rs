@@ -98,8 +98,8 @@ impl Search<'_> {
         })
     }
 
-    /// The pixels that show a shadow of only one of both: on a plane, or on the known receivers. A pixel
-    /// that is lit may also show a side below the plane.
+    /// The pixels that show a shadow of only one of both: on a plane, or on the known receivers; and those of which
+    /// neither explains the shadow. A pixel that is lit may also show a side below the plane.
     fn evidence(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Vec<Evidence> {
         let plane = self.plane(&candidate.heights);
         let depth = self.depth(&self.ratios(raster, &plane));
@@ -118,6 +118,7 @@ impl Search<'_> {
             (is_on_plane || new > unexplained).then_some(Evidence {
                 at: pixel.at,
                 is_on_plane,
+                is_explained: known.min(new) < explained,
             })
         });
         evidence.collect()

@@ -1,5 +1,6 @@
 //! Extent of a plane whose colours are the place's, so that no thing grows to its edges: the
-//! rectangle that has the colours of the pixels where the toy's shadow lies on the plane.
+//! rectangle that has the colours of the pixels where the toy's shadow lies on the plane, or that of these pixels
+//! alone if their colours do not tell the plane from the place.
 //!
 //! Source: Rother et al. 2004 (GrabCut: the colours inside and outside are learned in turn), with a
 //! rectangle on the plane in place of a cut.
@@ -43,6 +44,8 @@ const STRIPS_A_REACH: f64 = 600.0;
 pub(super) struct Evidence {
     pub(super) at: IVec2,
     pub(super) is_on_plane: bool,
+    /// Whether the plane or a known receiver explains it.
+    pub(super) is_explained: bool,
 }
 
 /// The picture around a thing: its pixels with their places on a plane.
@@ -96,13 +99,18 @@ impl<'a> Surroundings<'a> {
             return None;
         }
         let about = Extent::smallest(&inside)?;
-        let by_color = self.of_colors(is_inside, evidence, &about);
-        by_color.or_else(|| self.likeliest(&self.likelier(|_| -OF_PLACE, evidence), &about))
+        let explained = evidence.iter().filter(|pixel| pixel.is_explained);
+        let by_color = self.of_colors(is_inside, &explained.collect::<Vec<_>>(), &about);
+        // Where colours tell nothing, the sides below the plane, which nothing explains, show where it ends.
+        by_color.or_else(|| {
+            let evidence: Vec<&Evidence> = evidence.iter().collect();
+            self.likeliest(&self.likelier(|_| -OF_PLACE, &evidence), &about)
+        })
     }
 
     /// The rectangle of the colours of inner pixels, which it learns in turn; `None` if these
     /// do not tell it from the place, or have no end.
-    fn of_colors(&self, mut is_inside: Vec<bool>, evidence: &[Evidence], about: &Extent) -> Option<Extent> {
+    fn of_colors(&self, mut is_inside: Vec<bool>, evidence: &[&Evidence], about: &Extent) -> Option<Extent> {
         let mut learned: Option<Extent> = None;
         for _ in 0..N_ROUNDS {
             let known = &is_inside;
@@ -111,12 +119,17 @@ impl<'a> Surroundings<'a> {
                 near.map(|(index, _)| self.plate.pixels[*index])
             };
             let colors = Colors::of(of(true), of(false));
-            let ratio = |color| colors.likelier(color).unwrap_or(0.0).clamp(-MOST, MOST);
-            let (sum, n) = of(true).fold((0.0, 0.0_f32), |(sum, n), color| (sum + ratio(color), n + 1.0));
+            let ratio = |color, of_place: f32| {
+                let likelier = colors.likelier(color).unwrap_or(0.0);
+                (likelier - of_place).clamp(-MOST, MOST)
+            };
+            let (sum, n) = of(true).fold((0.0, 0.0_f32), |(sum, n), color| {
+                (sum + ratio(color, 0.0), n + 1.0)
+            });
             if sum < LEAST_TOLD * n {
                 return None;
             }
-            let by_color = |color| ratio(color) - OF_PLACE;
+            let by_color = |color| ratio(color, OF_PLACE);
             let about = learned.as_ref().unwrap_or(about);
             let extent = self.likeliest(&self.likelier(by_color, evidence), about)?;
             let rectangle = extent.plane(self.plane_from_camera);
@@ -130,7 +143,7 @@ impl<'a> Surroundings<'a> {
 
     /// For each pixel, the log likelihood ratio that it shows what the inner ones show, by the colours of the
     /// pixels around it.
-    fn likelier(&self, by_color: impl Fn(Color) -> f32, evidence: &[Evidence]) -> Vec<f32> {
+    fn likelier(&self, by_color: impl Fn(Color) -> f32, evidence: &[&Evidence]) -> Vec<f32> {
         let mut likelier: Vec<f32> = self.plate.pixels.iter().map(|color| by_color(*color)).collect();
         for pixel in evidence {
             if let Some(index) = index_in(self.plate.size_px, pixel.at) {

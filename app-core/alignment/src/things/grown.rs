@@ -43,7 +43,6 @@ pub(super) const LEAST_ALONE: usize = 60;
 /// Distance in pixels at which a group touches a thing, and an added one's distance from the receiver.
 pub(super) const TOUCH_PX: i32 = 3;
 const ABSORBED: f32 = 10.0;
-
 /// Part of a thing's seeds on known tops and their sides from which on it ends with these.
 const ON_SOLID: f32 = 0.9;
 
@@ -125,8 +124,8 @@ impl Grown {
         }
     }
 
-    /// Without the pixels beside known tops and their sides, of things whose seeds are on these: a side of a ramp of stone, on a
-    /// table of the same stone, has grown over that.
+    /// Without the pixels beside known tops and their sides, of things whose seeds are on these: a side of a
+    /// ramp of stone had grown over a table of the same stone.
     pub(super) fn within(mut self, is_solid: &[bool], (seeds, kind): (&Seeds, Seed)) -> Self {
         let mut n_on = vec![0; self.n_seeds.len()];
         for index in seeds.of(kind).into_iter().filter(|index| is_solid[*index]) {
@@ -135,16 +134,14 @@ impl Grown {
             }
         }
         let is_on = |thing: u32| {
-            let [n, n_on] = [&self.n_seeds, &n_on].map(|n| n[thing as usize] as f32);
-            n_on > ON_SOLID * n
+            let of = |n: &[usize]| n[thing as usize] as f32;
+            of(&n_on) > ON_SOLID * of(&self.n_seeds)
         };
-        let pixels = self.thing.iter().zip(is_solid);
-        let beside: Vec<bool> = pixels
-            .map(|(thing, is_solid)| !is_solid && thing.is_some_and(is_on))
-            .collect();
-        for (index, _) in beside.iter().enumerate().filter(|(_, is_beside)| **is_beside) {
-            self.thing[index] = None;
-            self.nearer[index] = self.nearer[index].min(-OF_STEP);
+        let pixels = self.thing.iter_mut().zip(&mut self.nearer).zip(is_solid);
+        for ((thing, nearer), is_solid) in pixels {
+            if !is_solid && thing.is_some_and(is_on) {
+                (*thing, *nearer) = (None, nearer.min(-OF_STEP));
+            }
         }
         self
     }
