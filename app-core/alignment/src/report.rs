@@ -182,17 +182,15 @@ pub struct Stand {
 }
 
 impl PoseAlignment {
-    /// The toy's deviation from the receiver that it was given on, if that is more than a
-    /// millimetre or a degree and more than twice the pose's deviation; `None` if it stands there,
-    /// or floats.
+    /// The toy's deviation from the receiver that it was given on, if a foot is more than a millimetre and more
+    /// than twice the pose's deviation from it; `None` if it stands there, or floats. A lean alone counts for
+    /// nothing: the toes of an exact heron, of which none is a millimetre high, lie on a plane that leans by 3.4
+    /// degrees.
     #[must_use]
     pub fn off_receiver(&self) -> Option<Stand> {
         const MOST_HEIGHT_M: f64 = 1e-3;
-        const MOST_LEAN_RAD: f64 = 0.017;
         let height_m = MOST_HEIGHT_M.max(2.0 * self.deviation.depth_m);
-        let lean_rad = MOST_LEAN_RAD.max(2.0 * self.deviation.rotation_rad);
-        self.stand
-            .filter(|stand| stand.height_m.abs() > height_m || stand.lean_rad > lean_rad)
+        self.stand.filter(|stand| stand.height_m.abs() > height_m)
     }
 
     /// The outline's distance of the shown toy, in pixels.
