@@ -58,28 +58,27 @@ pub(super) fn solids(receivers: &[SeenReceiver], level: &Level, border_m: f64) -
 fn slices(top: &SeenReceiver, table: &SeenReceiver, border_m: f64) -> impl Iterator<Item = SeenReceiver> {
     let table_from_top = table.own_from_plane(&top.plane_from_camera);
     let half_m = top.half_extent_m();
-    let along_m = |axis: DVec4, half_m: f64| half_m * axis.y.abs();
-    let middle_m = table_from_top.w_axis.y;
-    let rise_m = along_m(table_from_top.x_axis, half_m.x) + along_m(table_from_top.z_axis, half_m.y);
-    let highest_m = middle_m + rise_m + MOST_M;
+    let DMat4 {
+        x_axis,
+        z_axis,
+        w_axis,
+        ..
+    } = table_from_top;
+    let highest_m = w_axis.y + half_m.x * x_axis.y.abs() + half_m.y * z_axis.y.abs();
+    let reach_m = highest_m + MOST_M;
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a hundred at most"
     )]
-    let n = (highest_m / (0.5 * border_m)).ceil().clamp(1.0, 100.0) as u32;
+    let n = (reach_m / (0.5 * border_m)).ceil().clamp(1.0, 100.0) as u32;
     let camera_from_table = table.plane_from_camera.inverse();
-    let most = 1.0 + MOST_M / middle_m;
     (0..=n).map(move |index| {
-        let part = most * f64::from(index) / f64::from(n);
+        let at_m = reach_m * f64::from(index) / f64::from(n);
+        let (part, above_m) = ((at_m / highest_m).min(1.0), (at_m - highest_m).max(0.0));
         let lowered = |axis: DVec4| DVec4::new(axis.x, part * axis.y, axis.z, axis.w);
-        let DMat4 {
-            x_axis,
-            z_axis,
-            w_axis,
-            ..
-        } = table_from_top;
-        let table_from_slice = DMat4::from_cols(lowered(x_axis), DVec4::Y, lowered(z_axis), lowered(w_axis));
+        let origin = lowered(w_axis) + above_m * DVec4::Y;
+        let table_from_slice = DMat4::from_cols(lowered(x_axis), DVec4::Y, lowered(z_axis), origin);
         let camera_from_slice = camera_from_table * table_from_slice;
         SeenReceiver::of_size(camera_from_slice.inverse(), half_m + border_m)
     })
