@@ -41,8 +41,8 @@ pub fn exif_orientation(bytes: &[u8]) -> u8 {
     orientation.map_or(1, Orientation::to_exif)
 }
 
-/// Whether a JPEG has its end; decoders fill what is cut off with grey. Walks the segments: previews in its metadata have their own end markers,
-/// so a search for the marker's bytes would not do.
+/// Whether a JPEG has its end; decoders fill what is cut off with grey. Walks the segments: previews
+/// in its metadata have their own end markers, so a search for the marker's bytes would not do.
 #[must_use]
 pub fn jpeg_has_end(bytes: &[u8]) -> bool {
     const STUFFED: u8 = 0x00;

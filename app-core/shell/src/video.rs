@@ -115,8 +115,8 @@ impl Timeline {
     }
 }
 
-/// Encodes pictures until there are no more, or until the file can be no larger. A video without a picture leaves no file; a failed one
-/// is removed.
+/// Encodes pictures until there are no more, or until the file can be no larger. A video without a
+/// picture leaves no file; a failed one is removed.
 fn write(
     stem: &Path,
     formats: &[VideoFormat],

@@ -307,8 +307,7 @@ impl Worker {
             let path = stem.with_extension("png");
             let saved = save::picture(&path, &picture);
             if saved == Saved::Done {
-                gallery.add(&path);
-                send(outcomes, Outcome::Written(path));
+                written(outcomes, &gallery, path);
             }
             drop(kept_running);
             ShellEvent::Saved(saved)
@@ -327,8 +326,7 @@ impl Worker {
         let kept_running = (self.platform.keep_running)();
         let done = move |filmed, file: Option<PathBuf>| {
             if let Some(file) = file {
-                gallery.add(&file);
-                send(&outcomes, Outcome::Written(file));
+                written(&outcomes, &gallery, file);
             }
             send(&outcomes, Outcome::Tell(ShellEvent::Filmed(filmed)));
             drop(kept_running);
@@ -439,6 +437,12 @@ impl Worker {
 /// Sends an outcome; the receiver may no longer exist.
 fn send(outcomes: &Sender<Outcome>, outcome: Outcome) {
     let _ = outcomes.send(outcome);
+}
+
+/// Hands a whole file to the gallery: by the platform, or else at the next start.
+fn written(outcomes: &Sender<Outcome>, gallery: &Gallery, file: PathBuf) {
+    gallery.add(&file);
+    send(outcomes, Outcome::Written(file));
 }
 
 #[cfg(test)]

@@ -10,11 +10,11 @@ use glam::{DVec3, IVec2, Vec3Swizzles};
 
 use super::colored_extent::{Evidence, Surroundings};
 use super::extent::{Extent, Outline};
-use super::inner::NOISIEST;
+use super::inner::certain;
 use super::planes::{Candidate, FoundPlane, SHADOWED, Search};
 use super::seeds::{EXPLAINED, UNEXPLAINED, is_unexplained};
 use super::shadow_loss::square;
-use crate::lights::{Compared, Comparison};
+use crate::lights::Compared;
 use crate::picture::{Level, brightness};
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
@@ -75,7 +75,6 @@ impl Search<'_> {
     /// certainly of the thing: it may have none in a shadow, or many of the table's.
     pub(super) fn best_among_shadows(&self, raster: &mut Rasterizer) -> Option<(Self, Candidate)> {
         let shadowed: Vec<&Compared> = certain(self.comparison)
-            .into_iter()
             .filter(|pixel| self.is_near(pixel.at) && is_shadowed(pixel))
             .collect();
         let unexplained: Vec<&Compared> = shadowed
@@ -103,7 +102,7 @@ impl Search<'_> {
     fn evidence(&self, raster: &mut Rasterizer, candidate: &Candidate) -> Vec<Evidence> {
         let plane = self.plane(&candidate.heights);
         let depth = self.depth(&self.ratios(raster, &plane));
-        let pixels = certain(self.comparison);
+        let pixels: Vec<&Compared> = certain(self.comparison).collect();
         // What is surely explained, and what is surely not, is as for the seeds of things.
         let [explained, unexplained] = [EXPLAINED, UNEXPLAINED].map(|away| f64::from(away).powi(2));
         let places: Vec<IVec2> = pixels.iter().map(|pixel| pixel.at).collect();
@@ -158,8 +157,9 @@ impl Search<'_> {
 
     /// The same search, with some of the pixels with little noise.
     fn of_certain(self, is_used: impl Fn(IVec2) -> bool) -> Self {
-        let mut pixels = certain(self.comparison);
-        pixels.retain(|pixel| is_used(pixel.at));
+        let pixels: Vec<&Compared> = certain(self.comparison)
+            .filter(|pixel| is_used(pixel.at))
+            .collect();
         self.of_pixels(&pixels)
     }
 }
@@ -167,10 +167,4 @@ impl Search<'_> {
 /// Whether a pixel is in a shadow, or should be.
 fn is_shadowed(pixel: &Compared) -> bool {
     brightness(&pixel.ratio).min(brightness(&pixel.model)) < 1.0 - SHADOWED
-}
-
-/// Pixels with little noise.
-fn certain(comparison: &Comparison) -> Vec<&Compared> {
-    let pixels = comparison.pixels.iter();
-    pixels.filter(|pixel| pixel.noise() < NOISIEST).collect()
 }

@@ -126,10 +126,11 @@ impl Grown {
 
     /// Without the pixels beside known tops and their sides, of things whose seeds are on these: a side of a
     /// ramp of stone had grown over a table of the same stone.
-    pub(super) fn within(mut self, is_solid: &[bool], (seeds, kind): (&Seeds, Seed)) -> Self {
+    pub(super) fn within(mut self, is_solid: impl Fn(IVec2) -> bool, (seeds, kind): (&Seeds, Seed)) -> Self {
+        let is_solid = |index: usize| is_solid(place_of(index, seeds.size_px));
         let mut n_on = vec![0; self.n_seeds.len()];
-        for index in seeds.of(kind).into_iter().filter(|index| is_solid[*index]) {
-            if let Some(thing) = self.thing[index] {
+        for index in seeds.of(kind) {
+            if let Some(thing) = self.thing[index].filter(|_| is_solid(index)) {
                 n_on[thing as usize] += 1;
             }
         }
@@ -137,9 +138,8 @@ impl Grown {
             let of = |n: &[usize]| n[thing as usize] as f32;
             of(&n_on) > ON_SOLID * of(&self.n_seeds)
         };
-        let pixels = self.thing.iter_mut().zip(&mut self.nearer).zip(is_solid);
-        for ((thing, nearer), is_solid) in pixels {
-            if !is_solid && thing.is_some_and(is_on) {
+        for (index, (thing, nearer)) in self.thing.iter_mut().zip(&mut self.nearer).enumerate() {
+            if thing.is_some_and(is_on) && !is_solid(index) {
                 (*thing, *nearer) = (None, nearer.min(-OF_STEP));
             }
         }

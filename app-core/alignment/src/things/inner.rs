@@ -10,14 +10,17 @@ use app_scene::scene::MAX_RECEIVERS;
 /// Least pixels of a thing, in the level, for a search of its plane.
 const LEAST_PIXELS: usize = 300;
 /// Largest noise of a pixel that counts, in plates.
-pub(super) const NOISIEST: f32 = 0.2;
+const NOISIEST: f32 = 0.2;
+
+/// Pixels with little noise.
+pub(super) fn certain(comparison: &Comparison) -> impl Iterator<Item = &Compared> {
+    comparison.pixels.iter().filter(|pixel| pixel.noise() < NOISIEST)
+}
 
 /// The inner pixels of a thing, row by row.
 pub(super) fn pixels<'a>(comparison: &'a Comparison, grown: &Grown, thing: usize) -> Vec<&'a Compared> {
     let is_within = |at: IVec2| cross(at, 1).all(|at| grown.of_pixel(at) == Some(thing));
-    let all = comparison.pixels.iter();
-    all.filter(|pixel| pixel.noise() < NOISIEST && is_within(pixel.at))
-        .collect()
+    certain(comparison).filter(|pixel| is_within(pixel.at)).collect()
 }
 
 /// The receiver behind most of the pixels; `None` for too few pixels.

@@ -1,10 +1,10 @@
 //! Corrects listed planes of things, such as the top of a book that a tracker gave some millimetres
 //! off or larger than it is: height and tilt by the toy's shadow, extents by edges of the plate.
 
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec3, DVec4, IVec2};
 
 use super::extent::{Extent, LEVEL};
-use super::inner::NOISIEST;
+use super::inner::certain;
 use super::planes::{FoundPlane, GROUND, Nearer, Place, Search};
 use crate::lights::{Compared, Comparison};
 use crate::picture::{Level, places};
@@ -32,25 +32,30 @@ const MOST_M: f64 = 0.006;
 /// Marks of a level's pixels that may show the listed planes of things, or the sides below them;
 /// `None` if there are no such planes.
 pub(crate) fn marks_of_listed(receivers: &[SeenReceiver], level: &Level) -> Option<Vec<Mark>> {
-    let marks = solids(receivers, level, BORDER_M)?.into_iter();
-    let marks = marks.map(|is_shown| if is_shown { Mark::Thing } else { Mark::None });
-    Some(marks.collect())
+    let is_shown = solids(receivers, level, BORDER_M)?;
+    let mark = |at| if is_shown(at) { Mark::Thing } else { Mark::None };
+    Some(places(level.frame.size_px).map(mark).collect())
 }
 
-/// Whether each pixel of a level shows the planes of things, which are a border larger, or the sides below
+/// Whether a pixel of a level shows the planes of things, which are a border larger, or the sides below
 /// them; `None` if there are no such planes.
-pub(super) fn solids(receivers: &[SeenReceiver], level: &Level, border_m: f64) -> Option<Vec<bool>> {
+pub(super) fn solids(
+    receivers: &[SeenReceiver],
+    level: &Level,
+    border_m: f64,
+) -> Option<impl Fn(IVec2) -> bool + use<>> {
     let table = receivers.get(GROUND)?;
     let tops = receivers.iter().skip(GROUND + 1);
     let slices: Vec<SeenReceiver> = tops
         .filter(|top| height_m(top, table).is_some())
         .flat_map(|top| slices(top, table, border_m))
         .collect();
-    let is_shown = |at| {
+    let (has_tops, intrinsics) = (!slices.is_empty(), level.intrinsics);
+    let is_shown = move |at| {
         let mut slices = slices.iter();
-        slices.any(|slice| slice.point_at(&level.intrinsics, at).is_some())
+        slices.any(|slice| slice.point_at(&intrinsics, at).is_some())
     };
-    (!slices.is_empty()).then(|| places(level.frame.size_px).map(is_shown).collect())
+    Some(is_shown).filter(|_| has_tops)
 }
 
 /// The solid below a top, a border larger, from the largest height at which that may be down to the table: the
@@ -145,11 +150,9 @@ fn is_agreed(
     listed: &SeenReceiver,
 ) -> bool {
     let has = |plane: &SeenReceiver, at| plane.point_at(&level.intrinsics, at).is_some();
-    let pixels = comparison
-        .pixels
-        .iter()
-        .filter(|pixel| pixel.noise() < NOISIEST && has(larger, pixel.at) && !has(listed, pixel.at));
-    let pixels: Vec<&Compared> = pixels.collect();
+    let pixels: Vec<&Compared> = certain(comparison)
+        .filter(|pixel| has(larger, pixel.at) && !has(listed, pixel.at))
+        .collect();
     let search = Search::new((place.shape, place.receivers), level, comparison, &pixels);
     search.is_none_or(|search| {
         let losses = search.agreed_losses(&mut Rasterizer::default(), larger, false);
@@ -165,10 +168,8 @@ fn by_shadow(
 ) -> Option<Nearer> {
     let half_m = listed.half_extent_m();
     let inner = SeenReceiver::of_size(listed.plane_from_camera, (half_m - BORDER_M).max(0.5 * half_m));
-    let pixels: Vec<&Compared> = comparison
-        .pixels
-        .iter()
-        .filter(|pixel| pixel.noise() < NOISIEST && inner.point_at(&level.intrinsics, pixel.at).is_some())
+    let pixels: Vec<&Compared> = certain(comparison)
+        .filter(|pixel| inner.point_at(&level.intrinsics, pixel.at).is_some())
         .collect();
     if pixels.len() < LEAST_PIXELS {
         return None;

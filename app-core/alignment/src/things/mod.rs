@@ -243,11 +243,12 @@ impl Sight<'_> {
             None if planes.is_empty() => Grown::whole_from(&seeds, Seed::Thing, plate),
             grown => grown,
         };
-        let solids = listed::solids(self.receivers, level, SOLID_BORDER_M);
-        let grown = grown.map(|grown| match &solids {
-            Some(is_solid) => grown.within(is_solid, (&seeds, Seed::Thing)),
-            None => grown,
-        });
+        let grown = grown.map(
+            |grown| match listed::solids(self.receivers, level, SOLID_BORDER_M) {
+                Some(is_solid) => grown.within(is_solid, (&seeds, Seed::Thing)),
+                None => grown,
+            },
+        );
         let evidence = grown.as_ref().map(|grown| (grown, self.needed(grown, level)));
         let before = evidence.as_ref().map_or(Vec::new(), |(grown, needed)| {
             toy.before(grown, (frame, plate), needed)

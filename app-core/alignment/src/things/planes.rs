@@ -247,14 +247,13 @@ impl<'a> Search<'a> {
         level: &Level,
         losses: [f64; 2],
     ) -> FoundPlane {
-        let [_, along_x, along_z] = candidate.heights;
         FoundPlane {
             plane: extent.plane(endless),
             instead_of: None,
             contrast: extent.contrast(level, endless, self.table),
             report: PlaneAlignment {
                 height_m: extent.height_m(endless, self.table),
-                tilt_rad: (along_x.hypot(along_z) / self.size_m).atan(),
+                tilt_rad: self.slope(&candidate.heights).atan(),
                 half_extent_m: extent.half_m.to_array(),
                 losses,
             },
@@ -302,8 +301,7 @@ impl<'a> Search<'a> {
             ends.min_by(|a, b| a.0.total_cmp(&b.0))
         };
         let (level, tilted) = (descended(level, 1)?, descended(tilted, 3)?);
-        let slope = tilted.1[1].hypot(tilted.1[2]) / self.size_m;
-        let times = LEVEL_TIMES[usize::from(slope > FLAT)];
+        let times = LEVEL_TIMES[usize::from(self.slope(&tilted.1) > FLAT)];
         let is_level = level.0 <= times * tilted.0 + LEVEL_MORE;
         let (loss, heights) = if is_level { level } else { tilted };
         Some(Candidate {
@@ -358,8 +356,7 @@ impl<'a> Search<'a> {
         } else {
             LEAST_SHADOWED
         };
-        let [_, along_x, along_z] = candidate.heights;
-        let is_steepest = along_x.hypot(along_z) > AT_STEEPEST * STEEPEST * self.size_m;
+        let is_steepest = self.slope(&candidate.heights) > AT_STEEPEST * STEEPEST;
         let is_found = is_significant && !is_steepest && self.is_shown(raster, candidate, least);
         is_found.then_some([of_receiver, loss])
     }
@@ -396,6 +393,11 @@ impl<'a> Search<'a> {
             .collect();
         tried.sort_by(|a, b| a.0.total_cmp(&b.0));
         tried.into_iter().take(n).map(|(_, heights)| heights).collect()
+    }
+
+    /// Rise of a plane over a metre.
+    fn slope(&self, [_, along_x, along_z]: &Heights) -> f64 {
+        along_x.hypot(*along_z) / self.size_m
     }
 
     pub(super) fn plane(&self, [height_m, along_x, along_z]: &Heights) -> SeenReceiver {

@@ -8,7 +8,7 @@ use glam::{DMat4, DVec2, DVec3, IVec2, Vec3Swizzles};
 use super::edges::{self, face_contrast};
 use super::extent::LEVEL;
 use super::grown::Grown;
-use super::inner::NOISIEST;
+use super::inner::certain;
 use super::listed::{self, LEAST_M};
 use super::planes::{FoundPlane, GROUND, Place, Search};
 use crate::lights::{Compared, Comparison};
@@ -110,9 +110,9 @@ fn losses(
     raster: &mut Rasterizer,
 ) -> Option<[f64; 2]> {
     let shown: HashSet<IVec2> = side.pixels.iter().copied().collect();
-    let pixels = comparison.pixels.iter();
-    let pixels = pixels.filter(|pixel| pixel.noise() < NOISIEST && shown.contains(&pixel.at));
-    let pixels: Vec<&Compared> = pixels.collect();
+    let pixels: Vec<&Compared> = certain(comparison)
+        .filter(|pixel| shown.contains(&pixel.at))
+        .collect();
     match Search::new((place.shape, place.receivers), level, comparison, &pixels) {
         Some(search) if pixels.len() >= LEAST_COMPARED => {
             search.agreed_losses(raster, &side.plane, !side.is_seen)
