@@ -11,7 +11,7 @@ use super::rig::{Rig, Set};
 use super::surface::{Surface, is_mirrored, n_transforms};
 use super::warning::ToyWarning;
 
-/// Largest number of checked moments of a clip.
+/// Largest number of checked moments of a clip, beside those at which a scale changes its sign.
 const MAX_MOMENTS: usize = 64;
 
 /// Largest number of checked transforms in all clips together: some seconds' work.
@@ -31,7 +31,7 @@ pub(super) fn by_clips(
     for (index, clip) in rig.clips.iter().enumerate() {
         let mut open = moved_by_flips(rig, clip, surfaces);
         open.retain(|&place| !found[place]);
-        for time_secs in moments(clip) {
+        for time_secs in moments(rig, clip) {
             if open.is_empty() {
                 break;
             }
@@ -71,11 +71,7 @@ pub(super) fn by_clips(
 /// For each node, whether a clip gives it or an ancestor a scale of another sign than at rest.
 fn below_flips(rig: &Rig, clip: &Clip) -> Vec<bool> {
     let mut below = vec![false; rig.graph.nodes.len()];
-    for channel in clip
-        .channels
-        .iter()
-        .filter(|channel| channel.property == Property::Scale)
-    {
+    for channel in scales(clip) {
         below[channel.node] |= has_flip(rig, channel);
     }
     for &node in &rig.graph.parents_first {
@@ -85,12 +81,40 @@ fn below_flips(rig: &Rig, clip: &Clip) -> Vec<bool> {
     below
 }
 
-fn has_flip(rig: &Rig, channel: &Channel) -> bool {
+/// The channels of scales.
+fn scales(clip: &Clip) -> impl Iterator<Item = &Channel> {
+    let channels = clip.channels.iter();
+    channels.filter(|channel| channel.property == Property::Scale)
+}
+
+fn rest_scale(rig: &Rig, channel: &Channel) -> [f64; 3] {
     let rest = rig.graph.nodes[channel.node].rest.decomposed();
-    let rest = rest.map_or([1.0; 3], |trs| trs.scale.to_array());
+    rest.map_or([1.0; 3], |trs| trs.scale.to_array())
+}
+
+fn has_flip(rig: &Rig, channel: &Channel) -> bool {
+    let rest = rest_scale(rig, channel);
     let keys = channel.track.values.as_chunks::<3>().0.iter();
     keys.flat_map(|key| key.iter().zip(rest))
         .any(|(value, rest)| f64::from(*value) * rest < 0.0)
+}
+
+/// Times of the keys at which a scale has other signs than at the key before, or than at rest for
+/// the first key: however short a flip is, one of them is in it.
+fn sign_changes(rig: &Rig, channel: &Channel) -> Vec<f64> {
+    let rest = rest_scale(rig, channel);
+    let mut before = [false; 3];
+    let mut changes = Vec::new();
+    for &time_secs in &channel.track.times_secs {
+        let mut scale = [0.0; 3];
+        channel.track.sample(time_secs, &mut scale);
+        let now = [0, 1, 2].map(|axis| scale[axis] * rest[axis] < 0.0);
+        if now != before {
+            changes.push(time_secs);
+        }
+        before = now;
+    }
+    changes
 }
 
 /// Surfaces below such a node, or with a joint there.
@@ -106,19 +130,20 @@ fn moved_by_flips(rig: &Rig, clip: &Clip, surfaces: &[Surface]) -> Vec<usize> {
         .collect()
 }
 
-/// Times of its keys of scale, and between them; a selection if there are many.
-fn moments(clip: &Clip) -> Vec<f64> {
-    let scales = clip
-        .channels
-        .iter()
-        .filter(|channel| channel.property == Property::Scale);
-    let mut times: Vec<f64> = scales
-        .flat_map(|channel| channel.track.times_secs.iter().copied())
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    let middles = times.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
-    let all: Vec<f64> = times.iter().copied().chain(middles).collect();
+/// Times at which scales change their signs, then those of all keys of scale and between them; of
+/// the latter a selection if there are many.
+fn moments(rig: &Rig, clip: &Clip) -> Vec<f64> {
+    let in_order = |mut times: Vec<f64>| {
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        times
+    };
+    let mut moments = in_order(scales(clip).flat_map(|channel| sign_changes(rig, channel)).collect());
+    let keys = scales(clip).flat_map(|channel| channel.track.times_secs.iter().copied());
+    let keys = in_order(keys.collect());
+    let middles = keys.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));
+    let all: Vec<f64> = keys.iter().copied().chain(middles).collect();
     let step = all.len().div_ceil(MAX_MOMENTS).max(1);
-    all.into_iter().step_by(step).collect()
+    moments.extend(all.into_iter().step_by(step));
+    moments
 }
