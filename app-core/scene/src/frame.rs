@@ -258,6 +258,13 @@ impl FrameInput {
         own.unwrap_or_else(|| scene.lights.as_slice().into())
     }
 
+    /// Whether it asks for the toy in the scene's pose of the real toy and at that toy's place.
+    #[must_use]
+    pub fn shows_real_toy(&self, scene: &Scene) -> bool {
+        let place = self.world_from_shown.unwrap_or(self.world_from_object);
+        place == self.world_from_object && self.shown_pose == scene.physical_pose
+    }
+
     /// Validates the input.
     pub fn check(&self) -> Result<(), InputError> {
         check::camera("camera", &self.camera)?;

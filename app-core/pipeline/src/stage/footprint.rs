@@ -143,11 +143,7 @@ impl Stage {
     /// Whether the frame asks for the toy in its real pose, at its real place and with its true
     /// shadow.
     fn shows_what_is_there(&self, input: &FrameInput) -> bool {
-        let is_elsewhere = input
-            .world_from_shown
-            .is_some_and(|world_from_shown| world_from_shown != input.world_from_object);
-        let is_shadow_true = self.shadow_style == ShadowStyle::TRUE;
-        !is_elsewhere && is_shadow_true && input.shown_pose == self.scene.physical_pose
+        self.shadow_style == ShadowStyle::TRUE && input.shows_real_toy(&self.scene)
     }
 
     /// Poses the toy for the frame and extends `reach` to contain it.
