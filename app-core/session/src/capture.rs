@@ -35,9 +35,13 @@ use app_scene::lens::{Distortion, Lens};
 use app_scene::people::People;
 use app_scene::scene::{Camera, Image, Intrinsics, LightEstimate, Pose, Scene};
 
+pub use convert::{toy_bytes, toy_neighbours};
 #[cfg(feature = "schema")]
 pub use schema::schema;
 pub use written::ScenePaths;
+
+/// The byte order mark of UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// A `shadow-capture` folder.
 ///
@@ -309,12 +313,23 @@ impl PictureStore {
     }
 }
 
-fn read_index(files: &dyn Files) -> Result<CaptureRecord, SessionError> {
-    let bytes = files
+/// The text of a session's index, without the byte order mark that some editors write and JSON does
+/// not allow.
+///
+/// # Errors
+/// When it cannot be read, or is larger than [`MAX_INDEX_BYTES`].
+pub fn index_bytes(files: &dyn Files) -> Result<Vec<u8>, SessionError> {
+    let mut bytes = files
         .read(INDEX_FILE, MAX_INDEX_BYTES)
-        .map_err(|error| SessionError::new(INDEX_FILE, WHOLE_FILE, error))?;
-    // Some editors write a byte order mark, which JSON does not allow.
-    parse_index(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes))
+        .map_err(|error| in_index(WHOLE_FILE, error))?;
+    if bytes.starts_with(BYTE_ORDER_MARK) {
+        bytes.drain(..BYTE_ORDER_MARK.len());
+    }
+    Ok(bytes)
+}
+
+fn read_index(files: &dyn Files) -> Result<CaptureRecord, SessionError> {
+    parse_index(&index_bytes(files)?)
 }
 
 /// Checks format and version first: another version may break every other rule.

@@ -33,7 +33,7 @@ use app_scene::words::Number;
 pub use app_scene::scene::FieldError;
 #[cfg(feature = "schema")]
 pub use capture::schema;
-pub use capture::{Capture, ScenePaths, record};
+pub use capture::{Capture, ScenePaths, index_bytes, record, toy_bytes, toy_neighbours};
 pub use error::{PictureError, SessionError, SessionErrorKind};
 pub use files::{FileError, Files, INDEX_FILE, MAX_INDEX_BYTES, PathError, check_path};
 #[cfg(feature = "fs")]

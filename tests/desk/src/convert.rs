@@ -2,15 +2,15 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fs::{self, File};
-use std::path::Path;
+use std::path::{self, Path};
 
 use anyhow::{Context, ensure};
 use app_core::recording::{Limits, Maps, Note, Picture, Topic, Writer};
-use app_core::session::{FileError, Files};
+use app_core::session::{FileError, Files, index_bytes};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
-use crate::files::SESSION_FILE;
+use crate::files::{SESSION_FILE, check_index_size};
 use crate::output::{make_folder, write_whole};
 use crate::stored::Stored;
 
@@ -62,23 +62,49 @@ impl Entry {
     }
 }
 
-/// Writes a session to `out`, as a recording if the path ends so, else as a folder. `index`
-/// replaces its `capture.json` if given.
+/// Refuses a path for a session that is written anew. Call it before long work.
 ///
 /// # Errors
-/// When `out` exists already or lies in the session's folder, a file of the session cannot be read
-/// or is a link, or the system refuses.
-pub fn write(session: &Stored, index: Option<Vec<u8>>, out: &Path) -> anyhow::Result<()> {
+/// When `out` exists already, or lies in the folder of `session`.
+pub fn check_out(session: &Stored, out: &Path) -> anyhow::Result<()> {
+    let named = || out.display().to_string();
     ensure!(
         !out.exists(),
         "{}: exists already: delete it or name another path",
         out.display()
     );
+    let Stored::Folder(folder) = session else {
+        return Ok(());
+    };
+    // Folders on the way to it may be missing.
+    let absolute = path::absolute(out).with_context(named)?;
+    let existing = absolute.ancestors().find(|ancestor| ancestor.exists());
+    let is_inside = existing.map(|existing| folder.holds(existing)).transpose();
+    ensure!(
+        is_inside.with_context(named)? != Some(true),
+        "{}: lies in the session itself: name a path outside of it",
+        out.display()
+    );
+    Ok(())
+}
+
+/// Writes a session to `out`, as a recording if the path ends so, else as a folder; folders on the
+/// way to it are made. `index` replaces its `capture.json` if given.
+///
+/// # Errors
+/// When `out` exists already or lies in the session's folder, the index is too large to be read, a
+/// file of the session cannot be read or is a link, or the system refuses.
+pub fn write(session: &Stored, index: Option<Vec<u8>>, out: &Path) -> anyhow::Result<()> {
+    check_out(session, out)?;
     let index = match index {
         Some(index) => index,
-        None => read(session, SESSION_FILE)?,
+        None => index_bytes(session)?,
     };
+    check_index_size(&index)?;
     let paths = session.paths()?;
+    if let Some(parent) = out.parent() {
+        make_folder(parent)?;
+    }
     if out.extension().is_some_and(|extension| extension == EXTENSION) {
         write_recording(session, &index, &paths, out)
     } else {
@@ -94,15 +120,6 @@ fn read(session: &dyn Files, path: &str) -> anyhow::Result<Vec<u8>> {
 
 fn write_folder(session: &Stored, index: &[u8], paths: &[String], out: &Path) -> anyhow::Result<()> {
     make_folder(out)?;
-    if let Stored::Folder(folder) = session
-        && folder.holds(out)?
-    {
-        fs::remove_dir(out)?;
-        anyhow::bail!(
-            "{}: lies in the session itself: name a path outside of it",
-            out.display()
-        );
-    }
     for path in paths.iter().filter(|path| *path != SESSION_FILE) {
         let file = out.join(path);
         if let Some(folder) = file.parent() {

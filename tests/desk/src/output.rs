@@ -58,7 +58,7 @@ pub fn write_png(path: &Path, image: &Image) -> Result<(), WriteError> {
 }
 
 /// A picture as the bytes of a PNG, alpha included, for the file `path`.
-fn png_of(path: &Path, image: &Image) -> Result<Vec<u8>, WriteError> {
+pub(crate) fn png_of(path: &Path, image: &Image) -> Result<Vec<u8>, WriteError> {
     let n_bytes = u64::from(image.width_px) * u64::from(image.height_px) * 4;
     if image.rgba8.len() as u64 != n_bytes {
         let reason = format!("the picture has {} bytes instead of {n_bytes}", image.rgba8.len());

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, ensure};
-use app_core::session::{Files, Folder};
+use app_core::session::{Folder, toy_neighbours};
 use app_core::toy::{MAX_FILE_BYTES, packed};
 
 const MAX_BYTES: u64 = MAX_FILE_BYTES as u64;
@@ -23,6 +23,5 @@ pub fn read_toy(path: &Path) -> anyhow::Result<Vec<u8>> {
     let bytes = std::fs::read(path).with_context(named)?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = Folder::open(folder.unwrap_or(Path::new(".")))?;
-    let mut neighbour = |name: &str| folder.read(name, MAX_BYTES).map_err(|error| error.to_string());
-    Ok(packed(&named(), &bytes, &mut neighbour)?.into_owned())
+    Ok(packed(&named(), &bytes, &mut toy_neighbours(&folder, ""))?.into_owned())
 }

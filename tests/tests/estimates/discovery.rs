@@ -10,9 +10,13 @@ use app_core::alignment::{Aligner, Alignment, AlignmentWarning, EstimatedLight, 
 use app_core::frame::FrameInput;
 use app_core::scene::{Light, LightEstimate, N_HARMONICS, Scene};
 use app_core::session::{Capture, Session};
-use desk::alignment::SeenLight;
+use desk::alignment::{Alignments, Asked, SeenLight};
+use desk::check::aligned_session::{self, Assumed};
 use desk::files::{BUNDLED_SESSION, Folder};
+use desk::stored::Stored;
 use glam::DVec3;
+use harness::temporary::Temporary;
+use measure::photographer;
 use measure::photographer::world::toward;
 use measure::photographer::{Lamp, Quality, Shot, World};
 
@@ -109,7 +113,7 @@ fn no_lamp_is_found_where_there_is_none() {
 #[test]
 fn a_window_is_assumed() {
     let window = toward(40.0, 60.0);
-    let (_, found) = discover(vec![Lamp::sun(window, 35.0f64.to_radians(), 0.35)]);
+    let (shot, found) = discover(vec![Lamp::sun(window, 35.0f64.to_radians(), 0.35)]);
     assert_eq!(found.report.discovered, [], "{:#?}", found.report);
     let assumed = found.report.assumed.unwrap();
     let direction = SeenLight::from(DVec3::ZERO, &assumed.light).direction_in_world;
@@ -121,6 +125,20 @@ fn a_window_is_assumed() {
         "{:?}",
         found.warnings
     );
+    assert_eq!(n_written_with(&shot, Assumed::Written), 1);
+    // It is no result.
+    assert_eq!(n_written_with(&shot, Assumed::Omitted), 0);
+}
+
+/// The number of frames that are corrected in a session of a photograph that is written anew.
+fn n_written_with(shot: &Shot, assumed: Assumed) -> usize {
+    let folder = Temporary::new("assumed");
+    let [given, aligned] = ["given", "aligned"].map(|name| folder.0.join(name));
+    photographer::folder::write(&given, shot).unwrap();
+    let stored = Stored::open(&given).unwrap();
+    let capture = Capture::open(Folder::open(&given).unwrap()).unwrap();
+    let alignments = Alignments::find(&capture, 0..1, Asked::default()).unwrap();
+    aligned_session::write(&stored, &aligned, &alignments, assumed).unwrap()
 }
 
 /// A light that is not a disc is found as several, whether it is listed as one or not.

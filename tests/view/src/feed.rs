@@ -8,31 +8,17 @@ use app_core::camera_frame::{
 };
 use app_core::card::card_from_lens;
 use app_core::scene::{Camera, ProbeShape, Scene};
-use app_core::session::{Capture, Files, MAX_INDEX_BYTES, Session, SessionError, SessionFrame};
-use app_core::toy::MAX_FILE_BYTES;
+use app_core::session::{Capture, Session, SessionError, SessionFrame, toy_bytes};
 use glam::{DMat4, DVec2, DVec3};
-use serde::Deserialize;
 
-use desk::files::SESSION_FILE;
+use desk::files::index_of;
 use desk::stored::Stored;
 
 /// Cosine of 10 degrees, the largest inclination of a level receiver.
 const LEVEL: f64 = 0.985;
 
-const MAX_TOY_BYTES: u64 = MAX_FILE_BYTES as u64;
 /// Limit for the decoded pictures that are kept, in bytes: a session's loop is then decoded once.
 const MOST_KEPT_BYTES: usize = 1 << 30;
-
-/// The part of the index with the name of the toy's file.
-#[derive(Deserialize)]
-struct Index {
-    toy: ToyEntry,
-}
-
-#[derive(Deserialize)]
-struct ToyEntry {
-    file: String,
-}
 
 /// A session as a camera delivers it.
 pub struct Feed {
@@ -97,20 +83,21 @@ impl Feed {
         })
     }
 
-    /// All frames of a stored session, and its toy's file.
+    /// All frames of a stored session, and its toy's file with the files that this refers to.
     ///
     /// # Errors
     /// When one cannot be read.
     pub fn of_stored(stored: Stored) -> anyhow::Result<Self> {
-        let index: Index = serde_json::from_slice(&stored.read(SESSION_FILE, MAX_INDEX_BYTES)?)?;
-        let toy_file = stored.read(&index.toy.file, MAX_TOY_BYTES)?;
+        let index = index_of(&stored)?;
+        let toy = index["toy"]["file"].as_str().map(|file| toy_bytes(&stored, file));
+        let feed = Self::of(Arc::new(Capture::open(stored)?))?;
         Ok(Self {
-            toy_file: toy_file.into(),
-            ..Self::of(Arc::new(Capture::open(stored)?))?
+            toy_file: toy.transpose()?.unwrap_or_default().into(),
+            ..feed
         })
     }
 
-    /// The toy's file; empty if the session came without it.
+    /// The toy's file, a binary glTF; empty if the session came without it.
     #[must_use]
     pub fn toy_file(&self) -> Arc<[u8]> {
         Arc::clone(&self.toy_file)

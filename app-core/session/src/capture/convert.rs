@@ -1,5 +1,6 @@
 //! From the records of `capture.json` to a capture of checked values.
 
+use std::borrow::Cow;
 use std::sync::{Arc, Mutex};
 
 use super::field::{at, check_named, each, in_index, non_empty, read_named};
@@ -114,19 +115,39 @@ fn picture_size(record: &CaptureRecord) -> Result<PictureSize, SessionError> {
     })
 }
 
-fn read_toy(files: &dyn Files, path: &str) -> Result<Toy, SessionError> {
-    let field = "toy.file";
-    let bytes = read_named(files, path, field, MAX_TOY_BYTES)?;
-    let folder = path
-        .rsplit_once('/')
-        .map_or(String::new(), |(folder, _)| format!("{folder}/"));
-    let mut neighbour = |name: &str| {
+/// The field that names the toy's file.
+const TOY_FILE: &str = "toy.file";
+
+/// A session's toy as one binary glTF: the bytes of the file that `toy.file` names, with the files
+/// that it refers to included.
+///
+/// # Errors
+/// When it cannot be read, is no glTF, or refers to a buffer that is not beside it.
+pub fn toy_bytes(files: &dyn Files, path: &str) -> Result<Vec<u8>, SessionError> {
+    let bytes = read_named(files, path, TOY_FILE, MAX_TOY_BYTES)?;
+    let packed = toy::packed(path, &bytes, &mut toy_neighbours(files, path));
+    let packed = match packed.map_err(|error| SessionError::new(path, TOY_FILE, error))? {
+        Cow::Owned(packed) => Some(packed),
+        Cow::Borrowed(_) => None,
+    };
+    Ok(packed.unwrap_or(bytes))
+}
+
+/// A reader of the files to which the toy's file at `path` refers, by their names relative to it.
+pub fn toy_neighbours<'a>(
+    files: &'a dyn Files,
+    path: &str,
+) -> impl FnMut(&str) -> Result<Vec<u8>, String> + use<'a> {
+    let folder = path.rsplit_once('/').map(|(folder, _)| format!("{folder}/"));
+    let folder = folder.unwrap_or_default();
+    move |name| {
         let read = files.read(&format!("{folder}{name}"), MAX_TOY_BYTES);
         read.map_err(|error| error.to_string())
-    };
-    toy::packed(path, &bytes, &mut neighbour)
-        .and_then(|bytes| Toy::from_glb(path, &bytes))
-        .map_err(|error| SessionError::new(path, field, error))
+    }
+}
+
+fn read_toy(files: &dyn Files, path: &str) -> Result<Toy, SessionError> {
+    Toy::from_glb(path, &toy_bytes(files, path)?).map_err(|error| SessionError::new(path, TOY_FILE, error))
 }
 
 fn place_mesh_of(files: &dyn Files, record: &PlaceMeshRecord) -> Result<PlaceMesh, SessionError> {

@@ -3,17 +3,15 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use anyhow::Context;
 use app_core::alignment::{LensAlignment, RatioOutcome};
 use app_core::scene::{Light, Receiver};
 use app_core::session::record::{LensRecord, LightRecord};
-use app_core::session::{Files, MAX_INDEX_BYTES};
 use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::alignment::Alignments;
 use crate::convert;
-use crate::files::SESSION_FILE;
+use crate::files::{index_of, index_text};
 use crate::stored::Stored;
 
 /// The handling of lights that are assumed, since none was found.
@@ -29,13 +27,12 @@ pub enum Assumed {
 /// the number of corrected frames.
 ///
 /// # Errors
-/// When the new one exists already or would lie in the session, or a file is a link or cannot be
-/// read or written.
+/// When the new one exists already or would lie in the session, its index is too large to be read,
+/// or a file is a link or cannot be read or written.
 pub fn write(from: &Stored, to: &Path, alignments: &Alignments, assumed: Assumed) -> anyhow::Result<usize> {
-    let bytes = from.read(SESSION_FILE, MAX_INDEX_BYTES).context(SESSION_FILE)?;
-    let mut index: Value = serde_json::from_slice(&bytes)?;
+    let mut index = index_of(from)?;
     let n_corrected = correct(&mut index, alignments, assumed);
-    convert::write(from, Some(format!("{index:#}\n").into_bytes()), to)?;
+    convert::write(from, Some(index_text(&index)?), to)?;
     Ok(n_corrected)
 }
 
@@ -90,7 +87,8 @@ fn correct(index: &mut Value, alignments: &Alignments, assumed: Assumed) -> usiz
         // If none was found, the list stays.
         let is_taken = assumed == Assumed::Written || alignment.report.assumed.is_none();
         let is_found = |lights: &&Arc<[Light]>| !lights.is_empty() && is_taken;
-        if let Some(lights) = alignment.lights.as_ref().filter(is_found) {
+        let found = alignment.lights.as_ref().filter(is_found);
+        if let Some(lights) = found {
             let listed = index["lights"].as_array().cloned().unwrap_or_default();
             let mut entries = if aligned.put_aside.is_empty() {
                 listed
@@ -105,7 +103,7 @@ fn correct(index: &mut Value, alignments: &Alignments, assumed: Assumed) -> usiz
         }
         let is_other_camera = focal_ratio != 1.0 || has_other_lens;
         n_corrected += usize::from(
-            is_moved || is_scaled || is_camera_moved || alignment.lights.is_some() || is_other_camera,
+            is_moved || is_scaled || is_camera_moved || found.is_some() || is_other_camera,
         );
     }
     n_corrected

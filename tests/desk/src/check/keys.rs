@@ -1,6 +1,5 @@
 //! Unknown keys of `capture.json`, which are mostly misspelt.
 
-use app_core::session::{Files, MAX_INDEX_BYTES};
 use serde_json::Value;
 
 use crate::files::SESSION_FILE;
@@ -8,13 +7,11 @@ use crate::files::SESSION_FILE;
 /// The format's schema, which a test compares with the types that read it.
 const SCHEMA: &str = include_str!("../../../../app-core/doc/session.schema.json");
 
-/// The unknown keys of a session's index; none if it cannot be read, which the reader reports.
-pub(super) fn unknown(session: &dyn Files) -> Vec<String> {
-    let bytes = session.read(SESSION_FILE, MAX_INDEX_BYTES).unwrap_or_default();
-    let index: Value = serde_json::from_slice(&bytes).unwrap_or_default();
+/// The unknown keys of a session's index.
+pub(super) fn unknown(index: &Value) -> Vec<String> {
     let mut unknown = Vec::new();
     let schema = serde_json::from_str(SCHEMA).unwrap_or_default();
-    look(&index, &schema, "", &mut unknown);
+    look(index, &schema, "", &mut unknown);
     unknown
 }
 

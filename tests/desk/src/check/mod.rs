@@ -18,6 +18,7 @@ use app_core::scene::Image;
 use app_core::session::{Capture, Session, SessionWarning};
 
 use crate::alignment::{Aligned, Alignments, Asked, LightError, Lights, Source};
+use crate::files::index_of;
 use crate::gizmo;
 use crate::gizmo::Gizmo;
 use crate::lens::through_lens;
@@ -52,14 +53,14 @@ pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyh
     let stored = Stored::open(session)?;
     // An old drawing in the folder may be of another session.
     remove_file(&out.join(DRAWING))?;
-    let mut findings = Findings {
-        wrong: keys::unknown(&stored),
-        ..Findings::default()
-    };
+    let mut findings = Findings::default();
+    let index = index_of(&stored);
+    findings.wrong.extend(index.iter().flat_map(keys::unknown));
     findings
         .wrong
         .extend(stored.losses().iter().map(ToString::to_string));
-    findings.wrong.extend(pictures::wrong(&stored));
+    let of_pictures = index.iter().flat_map(|index| pictures::wrong(&stored, index));
+    findings.wrong.extend(of_pictures);
     let capture = match Capture::open(stored) {
         Ok(capture) => capture,
         Err(error) => {
@@ -67,6 +68,10 @@ pub fn check(session: &Path, out: &Path, (asked, lens): (Asked, Source)) -> anyh
             return Ok(findings);
         }
     };
+    if let Err(error) = index {
+        let message = format!("{error:#}, so that its keys and its pictures' files are not checked");
+        findings.wrong.push(message);
+    }
     let capture = match lens {
         Source::Given => capture,
         Source::Found => findings.freed_of_lens(session, asked.lights)?,

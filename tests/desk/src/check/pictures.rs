@@ -11,10 +11,8 @@ use image::{ImageDecoder, Limits};
 use serde_json::Value;
 
 use super::icc;
-use crate::files::SESSION_FILE;
 
-/// Longest index and picture to read: 16-bit RGBA of the largest allowed size, and room for tags.
-const MOST_INDEX_BYTES: u64 = 16 << 20;
+/// Longest picture to read: 16-bit RGBA of the largest allowed size, and room for tags.
 const MOST_PICTURE_BYTES: u64 = (8 * 4096 * 3072) + (16 << 20);
 
 /// Values of a PNG's `cICP` chunk: colour primaries, transfer function, matrix, range. Source: ITU-T H.273, tables 2 to 4.
@@ -28,13 +26,11 @@ const SRGB_CHRM: [u32; 8] = [31_270, 32_900, 64_000, 33_000, 30_000, 60_000, 15_
 /// Rounding of these values.
 const SAME: u32 = 200;
 
-/// The misread pictures of an index; none if it cannot be read, which the reader reports.
-pub(super) fn wrong(session: &dyn Files) -> Vec<String> {
-    let bytes = session.read(SESSION_FILE, MOST_INDEX_BYTES).unwrap_or_default();
-    let index: Value = serde_json::from_slice(&bytes).unwrap_or_default();
+/// The misread pictures of a session's index.
+pub(super) fn wrong(session: &dyn Files, index: &Value) -> Vec<String> {
     let mut wrong = Vec::new();
     let mut known = HashSet::new();
-    for (field, file) in named(&index) {
+    for (field, file) in named(index) {
         if !known.insert(file) {
             continue;
         }
@@ -61,11 +57,13 @@ pub(super) fn wrong(session: &dyn Files) -> Vec<String> {
 /// Each field that names a picture, with the file.
 fn named(index: &Value) -> Vec<(String, &str)> {
     let mut named = Vec::new();
-    for (list, keys) in [
-        ("backgrounds", &["image"][..]),
-        ("frames", &["image", "truth", "mask"]),
+    let probe = &index["probe"];
+    for (list, entries, keys) in [
+        ("backgrounds", &index["backgrounds"], &["image"][..]),
+        ("frames", &index["frames"], &["image", "truth", "mask"]),
+        ("probe.pictures", &probe["pictures"], &["image"]),
     ] {
-        for (number, entry) in index[list].as_array().into_iter().flatten().enumerate() {
+        for (number, entry) in entries.as_array().into_iter().flatten().enumerate() {
             for key in keys {
                 if let Some(file) = entry[key].as_str() {
                     named.push((format!("{list}[{number}].{key}"), file));
@@ -73,7 +71,7 @@ fn named(index: &Value) -> Vec<(String, &str)> {
             }
         }
     }
-    if let Some(file) = index["probe"]["image"].as_str() {
+    if let Some(file) = probe["image"].as_str() {
         named.push(("probe.image".to_owned(), file));
     }
     named

@@ -47,7 +47,7 @@ pub(super) fn offered(session: &dyn Session, index: usize, asked: Asked) -> Opti
         .to_cols_array()
         .map(|number| format!("{number:.6}"));
     Some(format!(
-        "frames[{index}]: turned {} the toy fits, its outline within {:.2} px: give toy.world_from_object [{}], or turn the model upright and export it again",
+        "frames[{index}]: turned {} the toy fits, its outline within {:.2} px: give toy.world_from_object [{}], and delete any world_from_object of frames, or turn the model upright and export it again",
         best.words,
         best.outline_px,
         numbers.join(", ")

@@ -6,7 +6,7 @@ use super::lens::Lens;
 
 /// Limit for the size of a list of frames.
 pub(super) const MAX_TEXT_BYTES: u64 = 512 << 20;
-/// More than twice an hour of 60 frames per second.
+/// Limit for the length of a list of frames: 28 minutes of 60 frames per second, more than an index can hold.
 pub(super) const MAX_FRAMES: usize = 100_000;
 /// Limit for focal lengths, image coordinates and metres.
 pub(super) const MAX_NUMBER: f64 = 1e6;

@@ -1,17 +1,18 @@
 //! Pictures of a recording as a session needs them: one size, one lens, intrinsics of that size.
 
 use std::io::Cursor;
+use std::path::Path;
 
 use app_core::scene::{Image, Intrinsics};
 use app_core::session::Files;
 use app_core::session::record::LensRecord;
 use app_scene::picture;
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder, ImageFormat, ImageReader, Limits};
+use image::{ImageFormat, ImageReader, Limits};
 
 use super::error::{ImportError, ImportReason};
 use super::imported::Imported;
 use super::lens::Lens;
+use crate::output::png_of;
 
 /// Limit for the size of a session's file.
 pub(super) const MAX_FILE_BYTES: u64 = 512 << 20;
@@ -125,14 +126,7 @@ impl Fitted {
         let made = frame
             .lens
             .to_pinhole(&self.intrinsics[index], &decoded(&frame.image, bytes)?);
-        let mut png = Vec::new();
-        PngEncoder::new(&mut png).write_image(
-            &made.rgba8,
-            made.width_px,
-            made.height_px,
-            ExtendedColorType::Rgba8,
-        )?;
-        Ok(png)
+        Ok(png_of(Path::new(&frame.image), &made)?)
     }
 
     /// Path of a picture in the session.

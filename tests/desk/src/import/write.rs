@@ -17,7 +17,7 @@ use super::imported::{Imported, ImportedDepth, ImportedFrame};
 use super::pictures::{Fitted, fit};
 use super::ply::glb_of_ply_file;
 use super::source::Source;
-use crate::files::{Folder, SESSION_FILE};
+use crate::files::{Folder, SESSION_FILE, index_text};
 use crate::output::{make_folder, write_whole};
 use crate::toy_file::read_toy;
 
@@ -146,12 +146,14 @@ impl Lacking {
     /// The toy's file as a .glb.
     fn toy(&self) -> anyhow::Result<Vec<u8>> {
         let toy = self.toy.as_deref().context("--toy")?;
-        let bytes = fs::read(toy).with_context(|| toy.display().to_string())?;
-        if bytes.starts_with(b"ply") {
-            return glb_of_ply_file(toy, &bytes).with_context(|| toy.display().to_string());
-        }
-        let bytes = read_toy(toy)?;
-        Toy::from_glb(&toy.display().to_string(), &bytes)?;
+        let named = toy.display().to_string();
+        let bytes = fs::read(toy).with_context(|| named.clone())?;
+        let bytes = if bytes.starts_with(b"ply") {
+            glb_of_ply_file(toy, &bytes).with_context(|| named.clone())?
+        } else {
+            read_toy(toy)?
+        };
+        Toy::from_glb(&named, &bytes)?;
         Ok(bytes)
     }
 }
@@ -211,6 +213,7 @@ pub fn write(
     );
     let fitted = fit(files, imported)?;
     let index = index(name, imported, &fitted, lacking)?;
+    let text = index_text(&Index::from(index.clone()))?;
     let toy = lacking.toy()?;
     make_folder(out)?;
     if files.holds(out)? {
@@ -220,7 +223,7 @@ pub fn write(
             out.display()
         );
     }
-    let capture = write_files(files, imported, &fitted, (&toy, index), out).inspect_err(|_| {
+    let capture = write_files((files, imported, &fitted), (&toy, &index, &text), out).inspect_err(|_| {
         // The rest is no valid session; the error gives the reason.
         let _ = fs::remove_dir_all(out);
     })?;
@@ -237,10 +240,8 @@ pub fn write(
 }
 
 fn write_files(
-    files: &Source,
-    imported: &Imported,
-    fitted: &Fitted,
-    (toy, index): (&[u8], CaptureRecord),
+    (files, imported, fitted): (&Source, &Imported, &Fitted),
+    (toy, index, text): (&[u8], &CaptureRecord, &[u8]),
     out: &Path,
 ) -> anyhow::Result<Capture> {
     write_whole(&out.join("toy.glb"), toy)?;
@@ -261,10 +262,7 @@ fn write_files(
             write_whole(&file, &depth.png(files)?)?;
         }
     }
-    write_whole(
-        &out.join(SESSION_FILE),
-        &serde_json::to_vec_pretty(&Index::from(index))?,
-    )?;
+    write_whole(&out.join(SESSION_FILE), text)?;
     let capture = Capture::open(Folder::open(out)?)?;
     capture.check_pictures(0..capture.n_frames())?;
     Ok(capture)

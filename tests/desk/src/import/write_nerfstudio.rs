@@ -5,9 +5,10 @@ use std::path::Path;
 use anyhow::Context;
 use app_core::session::Files;
 use glam::DMat4;
-use serde_json::{Value, json};
+use serde_json::json;
 
-use crate::files::SESSION_FILE;
+use crate::convert::check_out;
+use crate::files::{SESSION_FILE, index_of};
 use crate::output::{make_folder, write_whole};
 use crate::stored::Stored;
 
@@ -18,15 +19,11 @@ const MAX_FILE_BYTES: u64 = 512 << 20;
 /// receivers, lights and plates.
 ///
 /// # Errors
-/// When `out` exists already, the session cannot be read, or the system refuses.
+/// When `out` exists already or lies in the session's folder, the session cannot be read, or the
+/// system refuses.
 pub fn write_transforms(session: &Stored, out: &Path) -> anyhow::Result<()> {
-    anyhow::ensure!(
-        !out.exists(),
-        "{}: exists already: delete it or name another folder",
-        out.display()
-    );
-    let index = session.read(SESSION_FILE, MAX_FILE_BYTES).context(SESSION_FILE)?;
-    let index: Value = serde_json::from_slice(&index).context(SESSION_FILE)?;
+    check_out(session, out)?;
+    let index = index_of(session)?;
     let shared = &index["intrinsics"];
     let z_up_from_y_up = DMat4::from_rotation_x(std::f64::consts::FRAC_PI_2);
     let mut frames = Vec::new();

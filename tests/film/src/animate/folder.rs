@@ -9,9 +9,9 @@ use std::{fs, io};
 
 use anyhow::{Context, bail, ensure};
 use app_core::preset::Preset;
-use app_core::session::{Files, MAX_INDEX_BYTES};
+use app_core::session::Files;
 use app_core::shadow_style::ShadowStyle;
-use desk::files::SESSION_FILE;
+use desk::files::{SESSION_FILE, index_of};
 use desk::output::{make_folder, remove_file, write_whole};
 use desk::stored::Stored;
 use serde::{Deserialize, Serialize};
@@ -206,15 +206,6 @@ fn add_named(part: &Value, paths: &mut Vec<String>) {
         }
         _ => {}
     }
-}
-
-/// Reads a session's index.
-///
-/// # Errors
-/// When it cannot be read, or is no JSON.
-pub fn index_of(session: &Stored) -> anyhow::Result<Value> {
-    let index = session.read(SESSION_FILE, MAX_INDEX_BYTES);
-    serde_json::from_slice(&index.context(SESSION_FILE)?).context(SESSION_FILE)
 }
 
 /// The folder of a film in work.

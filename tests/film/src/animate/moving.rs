@@ -9,11 +9,11 @@ use anyhow::{Context, ensure};
 use app_core::session::{Capture, Session};
 use desk::alignment::{Alignments, Asked};
 use desk::check::aligned_session::{self, Assumed};
-use desk::files::SESSION_FILE;
+use desk::files::{SESSION_FILE, index_of};
 use desk::output::write_whole;
 use desk::stored::Stored;
 
-use super::folder::{Film, SESSION_FOLDER, index_of};
+use super::folder::{Film, SESSION_FOLDER};
 use super::timeline::ROUNDING_SECS;
 
 /// Warnings of the alignment, in the film's copy of the session: later runs repeat them.

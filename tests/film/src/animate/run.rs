@@ -17,13 +17,13 @@ use app_core::shadow_style::ShadowStyle;
 use app_core::toy::Toy;
 use app_core::wgpu;
 use desk::convert;
-use desk::files::SESSION_FILE;
+use desk::files::{SESSION_FILE, index_of, index_text};
 use desk::output::write_whole;
 use desk::program::open_session;
 use desk::stored::Stored;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::folder::{Film, FilmFolder, FilmFrame, MadeBy, index_of, sources};
+use super::folder::{Film, FilmFolder, FilmFrame, MadeBy, sources};
 use super::frame_files::{FrameRange, NamePattern};
 use super::grammar::{ClipFacts, items};
 use super::moving;
@@ -268,7 +268,7 @@ fn write_session(
     if let Some(frames) = index["frames"].as_array_mut() {
         frames.truncate(1);
     }
-    write_whole(&to.join(SESSION_FILE), format!("{index:#}\n").as_bytes())?;
+    write_whole(&to.join(SESSION_FILE), &index_text(&index)?)?;
     Ok(())
 }
 

@@ -8,7 +8,7 @@ use app_core::session::record::{
     ToyRecord,
 };
 use app_core::session::{Capture, Session};
-use desk::files::{Folder, SESSION_FILE};
+use desk::files::{Folder, SESSION_FILE, index_text};
 use desk::output::{make_folder, write_png, write_whole};
 
 use super::found::Found;
@@ -56,9 +56,7 @@ pub(super) fn write(given: &Given, found: &Found, wanted: &Wanted, out: &Path) -
         shot::write(given, record.clone(), wanted, out)?;
     }
     let index = Index::from(record);
-    let mut json = serde_json::to_vec_pretty(&index)?;
-    json.push(b'\n');
-    write_whole(&out.join(SESSION_FILE), &json)?;
+    write_whole(&out.join(SESSION_FILE), &index_text(&index)?)?;
     Capture::open(Folder::open(out)?)?.frame(0)?;
     if !wanted.keys.is_empty() {
         Shot::open(out)?;

@@ -1,6 +1,7 @@
 //! The output of `check` for a good session and for wrong ones, and the correction of these by
 //! `align`.
 
+mod index;
 mod pictures;
 
 use std::fs;
@@ -21,7 +22,7 @@ use harness::temporary::Temporary;
 use serde_json::{Value, json};
 
 /// The bundled session with a changed index.
-fn changed(name: &str, change: impl Fn(&mut Value)) -> Temporary {
+pub(crate) fn changed(name: &str, change: impl Fn(&mut Value)) -> Temporary {
     let folder = Temporary::new(name);
     for entry in fs::read_dir(BUNDLED_SESSION).unwrap() {
         let path = entry.unwrap().path();

@@ -7,7 +7,7 @@ use desk::files::SESSION_FILE;
 use harness::temporary::Temporary;
 use image::codecs::{jpeg::JpegEncoder, png::PngEncoder};
 use image::{DynamicImage, ImageEncoder};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::check::wrong;
 
@@ -148,16 +148,17 @@ fn with_chunks(chunks: &[(&[u8; 4], &[u8])]) -> Vec<u8> {
 /// The warnings for a session with these pictures as its frames, except for those about the missing
 /// toy.
 fn said(pictures: &[(&str, Vec<u8>)]) -> Vec<String> {
-    let session = Temporary::new("pictures");
-    let frames: Vec<_> = pictures
+    let entries: Vec<_> = pictures
         .iter()
         .map(|(name, _)| json!({ "image": name }))
         .collect();
-    fs::write(
-        session.0.join(SESSION_FILE),
-        json!({ "frames": frames }).to_string(),
-    )
-    .unwrap();
+    said_of(&json!({ "frames": entries }), pictures)
+}
+
+/// The same for an index that names them.
+fn said_of(index: &Value, pictures: &[(&str, Vec<u8>)]) -> Vec<String> {
+    let session = Temporary::new("pictures");
+    fs::write(session.0.join(SESSION_FILE), index.to_string()).unwrap();
     for (name, bytes) in pictures {
         fs::write(session.0.join(name), bytes).unwrap();
     }
@@ -196,6 +197,27 @@ fn what_is_not_read_as_meant_is_named_with_its_file() {
             "{line}"
         );
         assert!(expected.iter().all(|expected| line.contains(expected)), "{line}");
+    }
+}
+
+#[test]
+fn every_picture_of_a_probe_is_looked_at() {
+    let index = json!({ "probe": { "image": "a.jpg", "pictures": [{ "image": "b.jpg" }, { "image": "c.png" }] } });
+    let pictures = [
+        ("a.jpg", jpeg(None, Some(TURNED))),
+        ("b.jpg", jpeg(None, Some(TURNED))),
+        ("c.png", png(&DynamicImage::new_rgb16(2, 2), None)),
+    ];
+    let mut said = said_of(&index, &pictures);
+    said.sort();
+    let expected = [
+        "a.jpg (probe.image): its EXIF orientation is 6",
+        "b.jpg (probe.pictures[0].image): its EXIF orientation is 6",
+        "c.png (probe.pictures[1].image): 16 bits a channel",
+    ];
+    assert_eq!(said.len(), expected.len(), "{said:#?}");
+    for (line, expected) in said.iter().zip(expected) {
+        assert!(line.starts_with(expected), "{line}");
     }
 }
 

@@ -48,6 +48,38 @@ fn intrinsics_are_scaled_to_smaller_pictures() {
     );
 }
 
+/// Before any picture is copied or undistorted.
+#[test]
+fn a_session_that_could_not_be_opened_is_refused_at_once() {
+    let small = Small::new("at-once");
+    let camera = r#""w":192,"h":108,"fl_x":170,"cx":95,"cy":55"#;
+    small.file("transforms.json", transforms(camera).as_bytes());
+    small.picture("a.png", &grey(SIZE_PX));
+    let refused = |lacking: &Lacking| {
+        let error = small.import(Format::Nerfstudio, lacking).err().unwrap();
+        assert!(!small.folder.0.join("session").exists());
+        format!("{error:#}")
+    };
+    let mut long = lacking();
+    long.receiver[0] = long.receiver[0].replace("\"\"", &format!("\"{}\"", "a".repeat(16 << 20)));
+    let error = refused(&long);
+    assert!(error.starts_with("capture.json: would have 167"), "{error}");
+    // More triangles than a toy may have.
+    let n_faces = 250_001;
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face {n_faces}\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n{}",
+        "3 0 1 2\n".repeat(n_faces)
+    );
+    small.file("toy.ply", ply.as_bytes());
+    let toy = small.folder.0.join("recording/toy.ply");
+    let error = refused(&Lacking {
+        toy: Some(toy.clone()),
+        ..lacking()
+    });
+    let named = toy.display().to_string();
+    assert!(error.starts_with(&named) && error.contains("triangles"), "{error}");
+}
+
 #[test]
 fn other_pictures_are_refused() {
     #[rustfmt::skip] // One case a line.

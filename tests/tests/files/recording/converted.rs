@@ -7,6 +7,7 @@ use std::path::Path;
 use app_core::session::{Capture, Files, GroundTruth, Session};
 use desk::convert::write;
 use desk::files::{BUNDLED_SESSION, Folder};
+use desk::import::write_transforms;
 use desk::stored::Stored;
 use harness::bundled_session;
 use harness::session_format::example;
@@ -100,6 +101,20 @@ fn nothing_is_written_over_or_out_of_the_folder() {
     fs::write(&out, "").unwrap();
     assert!(write(&session, None, &out).is_err());
     assert!(fs::read(&out).unwrap().is_empty());
+    // Nothing is written into a session, of which it would be a file.
+    let own = folder.0.join("own");
+    write(&session, None, &own).unwrap();
+    let before = files(&own);
+    let session = Stored::open(&own).unwrap();
+    for name in ["own.mcap", "new/own.mcap", "new/folder"] {
+        let inside = own.join(name);
+        let error = write(&session, None, &inside).unwrap_err().to_string();
+        assert!(error.ends_with("lies in the session itself: name a path outside of it"), "{error}");
+        assert!(write_transforms(&session, &inside).is_err(), "{name}");
+    }
+    assert!(files(&own) == before && !own.join("new").exists());
+    // Folders on the way are made.
+    write(&session, None, &folder.0.join("new/other/own.mcap")).unwrap();
     // A recording may contain any names.
     let bytes = small(1).bytes;
     let at = bytes.windows(7).position(|window| window == b"toy.glb").unwrap();

@@ -4,8 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use app_core::session::{FileError, Files, PathError};
-use desk::files::Folder;
+use app_core::toy::Toy;
+use desk::files::{BUNDLED_SESSION, Folder, SESSION_FILE};
+use desk::stored::Stored;
 use harness::temporary::Temporary;
+use measure::glb::chunks;
+use serde_json::{Value, json};
+use view::feed::Feed;
 
 #[test]
 fn a_folder_gives_its_own_files_and_no_others() {
@@ -36,6 +41,29 @@ fn a_folder_gives_its_own_files_and_no_others() {
     }
     let error = Folder::open(inside.join("none")).unwrap_err();
     assert!(error.to_string().contains("none"), "{error}");
+}
+
+/// A camera of a session hands its toy on as one file, whatever the toy's file refers to.
+#[test]
+fn a_feeds_toy_needs_no_other_file() {
+    let session = Temporary::new("gltf");
+    for entry in fs::read_dir(BUNDLED_SESSION).unwrap() {
+        let path = entry.unwrap().path();
+        fs::copy(&path, session.0.join(path.file_name().unwrap())).unwrap();
+    }
+    let glb = fs::read(session.0.join("toy.glb")).unwrap();
+    let (mut tree, bin) = chunks(&glb);
+    tree["buffers"][0]["uri"] = json!("toy.bin");
+    fs::create_dir(session.0.join("toy")).unwrap();
+    fs::write(session.0.join("toy/toy.bin"), bin).unwrap();
+    fs::write(session.0.join("toy/toy.gltf"), tree.to_string()).unwrap();
+    let index = session.0.join(SESSION_FILE);
+    let mut value: Value = serde_json::from_slice(&fs::read(&index).unwrap()).unwrap();
+    value["toy"]["file"] = json!("toy/toy.gltf");
+    fs::write(&index, value.to_string()).unwrap();
+    let feed = Feed::of_stored(Stored::open(&session.0).unwrap()).unwrap();
+    let toy = Toy::from_glb("toy.glb", &feed.toy_file()).unwrap();
+    assert_eq!(toy.indices(), feed.scene().toy.indices());
 }
 
 #[cfg(unix)]
