@@ -5,6 +5,8 @@ use app_pipeline::geometry::rect::PixelRect;
 use app_pipeline::readback::{FloatMap, Map};
 use serde::Serialize;
 
+pub use app_scene::geometry::color::srgb_from_linear;
+
 /// Colours at equal steps from the lowest value to the highest, as 8-bit sRGB.
 pub type Ramp = &'static [[u8; 3]];
 
@@ -329,13 +331,4 @@ fn opaque([r, g, b]: [u8; 3]) -> [u8; 4] {
 #[expect(clippy::cast_possible_truncation, reason = "rounded and kept within a byte")]
 fn code(value: f32) -> u8 {
     value.round().clamp(0.0, 255.0) as u8
-}
-
-/// Encodes a linear value in [0, 1]. Source: IEC 61966-2-1.
-pub fn srgb_from_linear(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
-    }
 }

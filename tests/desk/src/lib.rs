@@ -22,6 +22,7 @@ pub mod progress;
 mod ratio;
 pub mod replay;
 mod replay_error;
+mod replay_out;
 pub mod report;
 pub mod shaders;
 pub mod stored;

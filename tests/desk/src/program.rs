@@ -1,5 +1,6 @@
 //! Start and end of a desktop program: its session, its exit code.
 
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -27,6 +28,14 @@ pub fn repository() -> &'static Path {
 /// # Errors
 /// When there is no such session.
 pub fn results_of(session: &Path, results: &str) -> anyhow::Result<PathBuf> {
+    Ok(repository().join(results).join(name_of(session)?))
+}
+
+/// The name of a session's folder or recording, without the recording's extension.
+///
+/// # Errors
+/// When there is no such session.
+pub fn name_of(session: &Path) -> anyhow::Result<OsString> {
     // `.` and `..` have a name only after they are resolved.
     let session = session
         .canonicalize()
@@ -36,8 +45,7 @@ pub fn results_of(session: &Path, results: &str) -> anyhow::Result<PathBuf> {
     } else {
         session.file_name()
     };
-    let results = repository().join(results);
-    Ok(results.join(name.unwrap_or("session".as_ref())))
+    Ok(name.unwrap_or("session".as_ref()).to_owned())
 }
 
 /// Opens a folder or a recording, and reports a damaged recording's losses on standard error.

@@ -1,7 +1,7 @@
 //! Replays a session: the core makes a picture of every camera frame; each is written and scored, and all are reported.
 
 use std::iter;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
@@ -19,7 +19,6 @@ use app_pipeline::readback::Map;
 use crate::alignment::{Alignments, Asked, Lights, Ratio};
 use crate::doubts;
 use crate::false_color::{self, ERROR, describe};
-use crate::files::SESSION_FILE;
 use crate::frames::Frames;
 use crate::lens::{map_through_lens, through_lens};
 use crate::lights_drawn::write_lights;
@@ -30,9 +29,11 @@ use crate::output::folder::OutputFolder;
 use crate::page::pictures::Pictures;
 use crate::page::{MAPS_FOLDER, Page, folder_of, values};
 use crate::progress::Progress;
+use crate::replay_out::take;
 use crate::report::{AlignmentEntry, FitEntry, FrameEntry, GlossEntry, MapEntry, Mean, Report};
 
 pub use crate::replay_error::ReplayError;
+pub use crate::replay_out::check_out;
 
 /// File name of the report in the output folder.
 pub const REPORT_FILE: &str = "report.json";
@@ -124,13 +125,15 @@ pub fn replay(
     progress: &mut dyn Progress,
 ) -> Result<Vec<Report>, ReplayError> {
     session.check_pictures(options.frames.within(session.n_frames())?)?;
+    let output = options.out.as_deref().map(take).transpose()?;
     let mut alignments = match options.asked() {
         Some(asked) if asked.ratio == Ratio::Given => {
             Alignments::new(session.scene(), asked).with_lens(options.lens)
         }
         _ => alignments(session, options)?,
     };
-    replay_aligned((session, truth), core, options, &mut alignments, progress)
+    let into = (output, &mut alignments);
+    replay_into((session, truth), core, options, into, progress)
 }
 
 /// The same with given corrections; further frames are aligned as they come. `core` makes the first preset's pictures.
@@ -144,11 +147,21 @@ pub fn replay_aligned(
     alignments: &mut Alignments,
     progress: &mut dyn Progress,
 ) -> Result<Vec<Report>, ReplayError> {
+    let output = options.out.as_deref().map(take).transpose()?;
+    replay_into((session, truth), core, options, (output, alignments), progress)
+}
+
+fn replay_into(
+    (session, truth): (&dyn Session, Option<&dyn GroundTruth>),
+    core: &mut Core,
+    options: &Options,
+    (output, alignments): (Option<Rc<OutputFolder>>, &mut Alignments),
+    progress: &mut dyn Progress,
+) -> Result<Vec<Report>, ReplayError> {
     let indices = options.frames.within(session.n_frames())?;
     let others = options.presets.iter().skip(1);
     let mut others: Vec<Core> = others.map(|_| core.beside()).collect();
     let runs = options.presets.iter().zip(iter::once(core).chain(&mut others));
-    let output = options.out.as_deref().map(take).transpose()?;
     let runs = runs
         .map(|(preset, core)| Run::new(*preset, core, options, output.as_ref()))
         .collect::<Result<Vec<_>, _>>()?;
@@ -475,15 +488,6 @@ fn warnings_of(session: &dyn Session, core: &Core, ended: Option<&str>) -> Resul
 /// The answer of a core; empty if it fails after the replay has ended, for example because the device is lost.
 fn of_core<T>(answer: Result<T, CoreError>, ended: Option<&str>) -> Result<Option<T>, CoreError> {
     answer.map(Some).or_else(|error| ended.map(|_| None).ok_or(error))
-}
-
-fn take(out: &Path) -> Result<Rc<OutputFolder>, ReplayError> {
-    if out.join(SESSION_FILE).exists() {
-        return Err(ReplayError::OutIsSession {
-            folder: out.to_owned(),
-        });
-    }
-    Ok(Rc::new(OutputFolder::take(out)?))
 }
 
 fn ms(time: Duration) -> f64 {

@@ -89,6 +89,37 @@ fn what_can_be_known_is_refused_before_the_first_frame() {
     }
 }
 
+/// Runs a program, and returns its error.
+fn refused(program: &str, args: &[&Path]) -> String {
+    let output = process::Command::new(program).args(args).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// The session would end the long work with an error of its own.
+#[test]
+fn an_output_that_exists_is_refused_before_long_work() {
+    let session = session("existing", None);
+    let out = session.0.with_extension("out");
+    fs::create_dir_all(&out).unwrap();
+    fs::write(out.join("mine.txt"), "mine").unwrap();
+    let [dir, lens, found] = ["--out", "--lens", "found"].map(Path::new);
+    let error = refused(env!("CARGO_BIN_EXE_align"), &[&session.0, dir, &out]);
+    assert!(error.contains("exists already"), "{error}");
+    let inside = session.0.join("inside");
+    let error = refused(env!("CARGO_BIN_EXE_align"), &[&session.0, dir, &inside]);
+    assert!(error.contains("lies in the session itself"), "{error}");
+    let error = refused(
+        env!("CARGO_BIN_EXE_replay"),
+        &[&session.0, lens, found, dir, &out],
+    );
+    assert!(
+        error.contains("mine.txt was not written by an earlier run"),
+        "{error}"
+    );
+    fs::remove_dir_all(&out).unwrap();
+}
+
 #[test]
 fn what_was_made_before_a_frame_fails_has_report_and_page() {
     let whole = fs::read(Path::new(BUNDLED_SESSION).join("frame_0000.png")).unwrap();

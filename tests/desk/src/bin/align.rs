@@ -8,9 +8,10 @@ use app_core::session::Session;
 use clap::Parser;
 use desk::alignment::{Alignments, Asked, Lights, RatioArgs};
 use desk::check::aligned_session::{self, Assumed};
+use desk::convert::check_out;
 use desk::opened;
 use desk::opened::Opened;
-use desk::program::exit_code;
+use desk::program::{exit_code, print};
 use desk::stored::Stored;
 
 /// Write a session anew with cameras, pose and lights aligned by its pictures; all else stays as it
@@ -36,6 +37,8 @@ fn main() -> ExitCode {
 }
 
 fn run(args: &Args) -> anyhow::Result<()> {
+    let session = Stored::open(&args.session)?;
+    check_out(&session, &args.out)?;
     let opened = opened::open(&args.session, args.ratio.lens(), args.lights);
     let Opened { capture, lens } = opened.with_context(|| args.session.display().to_string())?;
     let asked = Asked {
@@ -43,12 +46,10 @@ fn run(args: &Args) -> anyhow::Result<()> {
         ratio: args.ratio.asked(),
     };
     let alignments = Alignments::find(&capture, 0..capture.n_frames(), asked)?.with_lens(lens);
-    let session = Stored::open(&args.session)?;
     let n_corrected = aligned_session::write(&session, &args.out, &alignments, Assumed::Omitted)?;
-    println!(
-        "{n_corrected} of {} frames have a corrected camera, focal length, lens, pose, scale or lights: {}",
+    print(&format!(
+        "{n_corrected} of {} frames have a corrected camera, focal length, lens, pose, scale or lights: {}\n",
         capture.n_frames(),
         args.out.display()
-    );
-    Ok(())
+    ))
 }

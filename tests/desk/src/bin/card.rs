@@ -9,7 +9,7 @@ use app_core::card::{PATTERN_M, reference};
 use clap::Parser;
 use desk::card::{CROSSES_M, Paper, page, png};
 use desk::output::{make_folder, write_whole};
-use desk::program::{exit_code, repository};
+use desk::program::{exit_code, print, repository};
 
 /// Default folder of the pages, below the top of the repository.
 const RESULTS: &str = "target/card";
@@ -32,15 +32,18 @@ fn run(args: Args) -> Result<()> {
     let results = || repository().join(RESULTS);
     let out = args.out.unwrap_or_else(results);
     make_folder(&out)?;
+    let mut written = String::new();
     for paper in Paper::ALL {
         let path = out.join(format!("card_{}.png", paper.name()));
         write_whole(&path, &png(&page(paper))?)?;
-        println!("{}", path.display());
+        written.push_str(&format!("{}\n", path.display()));
     }
     let path = out.join("card_reference.png");
     write_whole(&path, &png(&reference())?)?;
-    println!("{}: {:.0} mm wide when printed", path.display(), 1e3 * PATTERN_M);
     let [across, down] = (1e3 * CROSSES_M).to_array();
-    println!("Print at 100 %: the crosses are {across:.0} mm apart across and {down:.0} mm down.");
-    Ok(())
+    print(&format!(
+        "{written}{}: {:.0} mm wide when printed\nPrint at 100 %: the crosses are {across:.0} mm apart across and {down:.0} mm down.\n",
+        path.display(),
+        1e3 * PATTERN_M
+    ))
 }

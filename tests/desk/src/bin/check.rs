@@ -8,7 +8,7 @@ use clap::Parser;
 use desk::alignment::{Asked, Lights, RatioArgs};
 use desk::check::check;
 use desk::output::make_folder;
-use desk::program::{exit_code, repository};
+use desk::program::{exit_code, print, repository};
 
 /// Default folder of drawings, below the top of the repository.
 const RESULTS: &str = "target/check";
@@ -51,17 +51,14 @@ fn run(args: &Args) -> anyhow::Result<bool> {
     };
     let findings = check(&args.session, &out, (asked, args.ratio.lens()))
         .with_context(|| args.session.display().to_string())?;
-    for line in &findings.facts {
-        println!("{line}");
-    }
-    for line in &findings.wrong {
-        println!("wrong: {line}");
-    }
-    if let Some(drawing) = &findings.drawing {
-        println!(
-            "red as given, green as aligned, blue receivers, yellow lights as aligned: {}",
+    let facts = findings.facts.iter().map(|line| format!("{line}\n"));
+    let wrong = findings.wrong.iter().map(|line| format!("wrong: {line}\n"));
+    let drawing = findings.drawing.iter().map(|drawing| {
+        format!(
+            "red as given, green as aligned, blue receivers, yellow lights as aligned: {}\n",
             drawing.display()
-        );
-    }
+        )
+    });
+    print(&facts.chain(wrong).chain(drawing).collect::<String>())?;
     Ok(findings.wrong.is_empty())
 }

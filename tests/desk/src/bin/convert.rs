@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use desk::convert::write;
 use desk::import::write_transforms;
-use desk::program::{exit_code, open_session};
+use desk::program::{exit_code, open_session, print};
 
 /// Write a session anew, as a recording if the new path ends in .mcap, else as a folder. Pictures
 /// keep their bytes. Of a damaged recording, the readable part is written.
@@ -33,6 +33,5 @@ fn run(args: &Args) -> anyhow::Result<()> {
     } else {
         write(&session, None, &args.out)?;
     }
-    println!("{}", args.out.display());
-    Ok(())
+    print(&format!("{}\n", args.out.display()))
 }

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use app_core::session::Session;
 use clap::Parser;
 use desk::import::{Format, Lacking, Source, Written, read, write};
-use desk::program::exit_code;
+use desk::program::{exit_code, print};
 
 /// Convert another program's recording to a session. The program asks by name for each value that
 /// the format lacks. Extract a video's frames beforehand.
@@ -33,14 +33,11 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let recording = args.recording.canonicalize()?;
     let name = recording.file_name().unwrap_or_default().to_string_lossy();
     let Written { capture, notes } = write(&name, &files, &imported, &args.lacking, &args.out)?;
-    for note in notes {
-        println!("note: {note}");
-    }
-    println!(
-        "{}: {} frames, {} plates",
+    let notes: String = notes.iter().map(|note| format!("note: {note}\n")).collect();
+    print(&format!(
+        "{notes}{}: {} frames, {} plates\n",
         args.out.display(),
         capture.n_frames(),
         capture.scene().plates.len()
-    );
-    Ok(())
+    ))
 }

@@ -17,7 +17,7 @@ use desk::opened::Opened;
 use desk::page::PAGE_FILE;
 use desk::program::{exit_code, print, results_of};
 use desk::progress::{Progress, Quiet, on_stderr};
-use desk::replay::{Options, REPORT_FILE, replay};
+use desk::replay::{Options, REPORT_FILE, check_out, replay};
 use desk::report::{FrameEntry, Report};
 use desk::shaders::ShaderArgs;
 
@@ -76,6 +76,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         Some(out) => out.clone(),
         None => results_of(folder, RESULTS)?,
     };
+    check_out(&out)?;
     let opened = opened::open(folder, args.ratio.lens(), args.lights);
     let Opened { capture, lens } = opened.with_context(|| folder.display().to_string())?;
     let adapter = args

@@ -45,6 +45,25 @@ impl OutputFolder {
         Ok(folder)
     }
 
+    /// Refuses a folder that [`Self::take`] would refuse for its files, and changes nothing. Call it
+    /// before long work.
+    ///
+    /// # Errors
+    /// When a file lies in it that no run wrote or that has changed since, or cannot be read.
+    pub fn check(root: &Path) -> Result<(), WriteError> {
+        let path = root.join(MANIFEST_FILE);
+        let manifest = match fs::read_to_string(&path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                return Err(WriteError::new(&path, error));
+            }
+            read => read.unwrap_or_default(),
+        };
+        if root.is_dir() {
+            check(root, &listed(&manifest))?;
+        }
+        Ok(())
+    }
+
     /// Takes a folder to continue in it: existing files stay.
     ///
     /// # Errors
@@ -122,18 +141,23 @@ impl OutputFolder {
             .rewind()
             .and_then(|()| manifest.read_to_string(&mut text))
             .map_err(|error| WriteError::new(&self.root.join(MANIFEST_FILE), error))?;
-        let mut written: HashMap<String, Vec<u32>> = HashMap::new();
-        // A line that was cut off by a kill or an editor lists nothing.
-        for (checksum, file) in text.lines().filter_map(|line| line.split_once(' ')) {
-            let is_below = Path::new(file)
-                .components()
-                .all(|part| matches!(part, Component::Normal(_)));
-            if let (Ok(checksum), true) = (u32::from_str_radix(checksum, 16), is_below) {
-                written.entry(file.to_owned()).or_default().push(checksum);
-            }
-        }
-        Ok(written)
+        Ok(listed(&text))
     }
+}
+
+/// The files that a list names, each with its checksums.
+fn listed(manifest: &str) -> HashMap<String, Vec<u32>> {
+    let mut listed: HashMap<String, Vec<u32>> = HashMap::new();
+    // A line that was cut off by a kill or an editor lists nothing.
+    for (checksum, file) in manifest.lines().filter_map(|line| line.split_once(' ')) {
+        let is_below = Path::new(file)
+            .components()
+            .all(|part| matches!(part, Component::Normal(_)));
+        if let (Ok(checksum), true) = (u32::from_str_radix(checksum, 16), is_below) {
+            listed.entry(file.to_owned()).or_default().push(checksum);
+        }
+    }
+    listed
 }
 
 /// Refuses a folder that has files but no list, before a list is made in it.

@@ -42,7 +42,9 @@ function showAlignment() {
   if (is_long) rows.push(row("the light", ["long", "shown as a line of four round ones", ""]));
   if (unexplained !== null) rows.push(row("shadows in the picture", ["cast by the lights", `but for ${(100 * unexplained).toFixed(1)} %`,
     is_relit ? "the plates were taken in another light" : ""]));
-  const hemisphere = entry(data.presets[0]).maps.find(map => map.name === "hemisphere");
+  // Drawn in the first frame of a search alone, whose lights the frames after it have.
+  const upToNow = discovered.length > 0 ? data.presets[0].report.frames.slice(0, state.frame + 1) : [];
+  const hemisphere = upToNow.flatMap(frame => frame.maps.filter(map => map.name === "hemisphere")).pop();
   const searched = hemisphere ? [el("figure", {}, el("img", { src: data.presets[0].folder + hemisphere.file, alt: "Directions that a light was looked for in" }),
     el("figcaption", { class: "soft" }, "The hemisphere above the table, seen from above with the camera below: the brighter, the more of the shadow a light there explains. Yellow ring: found; red: listed."))] : [];
   at("alignment").replaceChildren(el("h2", {}, "Aligned by the picture"), ...searched,

@@ -17,7 +17,7 @@ use app_shell::record::clock;
 use app_shell::worker::Pace;
 use clap::{Parser, ValueEnum};
 use desk::files::BUNDLED_SESSION;
-use desk::program::{exit_code, open_session, repository};
+use desk::program::{exit_code, open_session, print, repository};
 use desk::shaders::ShaderArgs;
 use view::desktop::{Desk, Keeping};
 use view::fault::Fault;
@@ -136,14 +136,12 @@ fn run(args: Args) -> Result<()> {
             camera_s,
             machine_s: [ghost, searched, moves],
         } = Tour::new(&mut desk, screen, &out)?.straight()?;
-        println!(
-            "{n_touches} touches, {camera_s:.1} s of the camera; computed: the first ghost after {ghost:.1} s, the search ended {searched:.1} s later, the toy moved {moves:.1} s later"
-        );
-        return Ok(());
+        return print(&format!(
+            "{n_touches} touches, {camera_s:.1} s of the camera; computed: the first ghost after {ghost:.1} s, the search ended {searched:.1} s later, the toy moved {moves:.1} s later\n"
+        ));
     }
     let pictures = Tour::new(&mut desk, screen, &out)?.go()?;
-    println!("{} screens: {}", pictures.len(), out.display());
-    Ok(())
+    print(&format!("{} screens: {}\n", pictures.len(), out.display()))
 }
 
 fn fault_at(text: &str) -> Result<(Fault, f64)> {
