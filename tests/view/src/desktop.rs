@@ -63,7 +63,8 @@ pub struct Desk {
     pub keeping: Keeping,
     worker: Worker,
     is_tracking: bool,
-    n_moments: usize,
+    /// The thread that writes a page.
+    looking: Option<JoinHandle<()>>,
     /// Whether the device must be reopened.
     pub wants_device: bool,
 }
@@ -79,7 +80,7 @@ impl Desk {
             answer: Permission::Granted,
             keeping,
             is_tracking: false,
-            n_moments: 0,
+            looking: None,
             wants_device: false,
         }
     }
@@ -179,19 +180,31 @@ impl Desk {
         }
     }
 
-    /// Writes a page of the present moment, with every preset, on a thread that reports its path;
-    /// `None` while the toy does not move.
-    pub fn look_into(&mut self) -> Option<JoinHandle<()>> {
-        let moment = Moment::of(self.live.app())?;
-        let folder = self.keeping.out.join(format!("moment_{:04}", self.n_moments));
-        self.n_moments += 1;
-        Some(thread::spawn(move || match moment.write(&folder) {
+    /// Writes a page of the present moment, with every preset, on a thread that reports its path.
+    /// Does nothing while the toy does not move, or while another page is being written.
+    pub fn look_into(&mut self) {
+        if self.looking.as_ref().is_some_and(|page| !page.is_finished()) {
+            return;
+        }
+        let Some(moment) = Moment::of(self.live.app()) else {
+            return;
+        };
+        let folder = moment_folder(&self.keeping.out);
+        self.looking = Some(thread::spawn(move || match moment.write(&folder) {
             Ok(page) => println!(
                 "all presets, maps, lights and times of this moment: {}",
                 page.display()
             ),
             Err(error) => eprintln!("no page of this moment: {error:#}"),
-        }))
+        }));
+    }
+
+    /// Waits until a page of a moment is written.
+    pub fn wait_for_page(&mut self) {
+        if let Some(page) = self.looking.take() {
+            // The thread reports its failure itself.
+            let _ = page.join();
+        }
     }
 
     /// The user chose a toy's file.
@@ -211,5 +224,18 @@ impl Desk {
     pub fn close(&mut self) {
         self.tell(ShellEvent::Foreground(false));
         self.wait_for_recording();
+        self.wait_for_page();
+    }
+}
+
+/// The first folder for a moment's page that does not exist yet: pages of earlier runs stay.
+fn moment_folder(out: &Path) -> PathBuf {
+    let mut number = 0;
+    loop {
+        let folder = out.join(format!("moment_{number:04}"));
+        if !folder.exists() {
+            return folder;
+        }
+        number += 1;
     }
 }

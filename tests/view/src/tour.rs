@@ -265,9 +265,8 @@ impl<'a> Tour<'a> {
         self.shoot("photo_saved")?;
         self.press("Pause")?;
         self.shoot("paused")?;
-        if let Some(page) = self.desk.look_into() {
-            let _ = page.join();
-        }
+        self.desk.look_into();
+        self.desk.wait_for_page();
         self.press("More")?;
         self.shoot("menu")?;
         // Each of these changes the contents of the sheet, and so the places of its buttons.

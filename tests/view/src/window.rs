@@ -294,10 +294,12 @@ impl ApplicationHandler for Shell {
                 event_loop.exit();
             }
             WindowEvent::KeyboardInput { event, .. }
-                if event.state == ElementState::Pressed && event.logical_key.to_text() == Some("i") =>
+                if event.state == ElementState::Pressed
+                    && !event.repeat
+                    && event.logical_key.to_text() == Some("i") =>
             {
                 if let Some(Opened { desk, .. }) = &mut self.opened {
-                    let _ = desk.look_into();
+                    desk.look_into();
                 }
             }
             WindowEvent::DroppedFile(path) => {
