@@ -38,44 +38,69 @@ pub(super) fn fetch(root: &Path, phone: &Phone, app: &IphoneApp) -> Result<()> {
 }
 
 fn fetch_android(adb: &Path, folder: &Path) -> Result<()> {
-    empty(folder)?;
-    command::run(Command::new(adb).arg("pull").arg(ANDROID_FILES).arg(folder))
+    let partial = empty_beside(folder)?;
+    command::run(Command::new(adb).arg("pull").arg(ANDROID_FILES).arg(&partial))
         .context("adb comes with the SDK's platform-tools, and the phone has to allow debugging")?;
     let told = command::output(&adb.display().to_string(), &["logcat", "-d", "-s", ANDROID_TAG]);
-    fs::write(folder.join("logcat.txt"), told.unwrap_or_default())?;
-    show(folder)
+    fs::write(partial.join("logcat.txt"), told.unwrap_or_default())?;
+    replace(folder, &partial)
 }
 
 fn fetch_iphone(xcrun: &Path, folder: &Path, app: &IphoneApp) -> Result<()> {
     let Some(device) = &app.device else {
         bail!("--device NAME: which iPhone? `xcrun devicectl list devices` names them");
     };
-    empty(folder)?;
+    let partial = empty_beside(folder)?;
     let mut copy = Command::new(xcrun);
     copy.args(["devicectl", "device", "copy", "from", "--device", device]);
     copy.args(["--domain-type", "appDataContainer", "--domain-identifier"]);
     copy.arg(app.bundle.as_deref().unwrap_or(super::ios::BUNDLE));
-    command::run(copy.args(["--source", "Documents", "--destination"]).arg(folder)).context(
+    command::run(copy.args(["--source", "Documents", "--destination"]).arg(&partial)).context(
         "devicectl comes with Xcode 15; --bundle names the identifier that the app was signed with",
     )?;
-    show(folder)
+    replace(folder, &partial)
 }
 
-/// Makes the folder, and removes earlier files: an old log could be mistaken for the present one.
-fn empty(folder: &Path) -> Result<()> {
+/// Makes an empty folder beside the one of the files: what was fetched before stays until there is
+/// more.
+fn empty_beside(folder: &Path) -> Result<PathBuf> {
+    let mut name = folder.file_name().unwrap_or_default().to_owned();
+    name.push(".partial");
+    let partial = folder.with_file_name(name);
+    remove(&partial)?;
+    fs::create_dir_all(&partial)?;
+    Ok(partial)
+}
+
+fn remove(folder: &Path) -> Result<()> {
     if folder.exists() {
         fs::remove_dir_all(folder).with_context(|| format!("{} has to be emptied", folder.display()))?;
     }
-    Ok(fs::create_dir_all(folder)?)
+    Ok(())
+}
+
+/// Puts the fetched files in the place of earlier ones, for which they could be mistaken, and shows
+/// them.
+fn replace(folder: &Path, partial: &Path) -> Result<()> {
+    if log_in(partial).is_none() {
+        bail!("{}: no {LOG}: the app has drawn nothing yet", partial.display());
+    }
+    remove(folder)?;
+    fs::rename(partial, folder)?;
+    show(folder)
+}
+
+/// The log among the files of a phone.
+fn log_in(folder: &Path) -> Option<PathBuf> {
+    let places = [folder.join(LOG), folder.join("Documents").join(LOG)];
+    places.into_iter().find(|path| path.is_file())
 }
 
 /// Prints the path of the files, and the most important lines.
 fn show(folder: &Path) -> Result<()> {
-    let log: Option<PathBuf> = [folder.join(LOG), folder.join("Documents").join(LOG)]
-        .into_iter()
-        .find(|path| path.is_file());
-    let log =
-        log.with_context(|| format!("{}: no {LOG}: the app has drawn nothing yet", folder.display()))?;
+    let Some(log) = log_in(folder) else {
+        return Ok(());
+    };
     println!("{}:", log.display());
     let text = fs::read_to_string(&log)?;
     for line in text
@@ -114,7 +139,7 @@ mod tests {
         let to_name = to.display();
         assert_eq!(
             asked,
-            format!("pull {ANDROID_FILES} {to_name}\nlogcat -d -s {ANDROID_TAG}\n")
+            format!("pull {ANDROID_FILES} {to_name}.partial\nlogcat -d -s {ANDROID_TAG}\n")
         );
         assert_eq!(
             fs::read_to_string(to.join("logcat.txt")).expect("a log"),
@@ -138,11 +163,14 @@ mod tests {
             .to_string();
         assert!(error.contains("--device"), "{error}");
 
-        let nothing = stand_in(&folder, "true");
-        // Earlier files are not shown as new ones.
+        // Earlier files are not shown as new ones, and stay if nothing is fetched.
         fs::write(to.join("log.txt"), "old").expect("a log");
-        let error = fetch_android(&nothing, &to).expect_err("no log").to_string();
-        assert!(error.contains("no log.txt"), "{error}");
+        fs::write(to.join("toy.mcap"), "a recording").expect("a recording");
+        for (script, reason) in [("true", "no log.txt"), ("exit 1", "adb comes with")] {
+            let error = fetch_android(&stand_in(&folder, script), &to).expect_err("no log");
+            assert!(error.to_string().contains(reason), "{error}");
+            assert!(to.join("log.txt").exists() && to.join("toy.mcap").exists(), "{reason}");
+        }
         fs::remove_dir_all(folder).expect("a folder");
     }
 
