@@ -6,6 +6,7 @@ mod claims;
 mod exact;
 mod front;
 mod kinds;
+mod names;
 mod pull;
 mod table;
 mod withheld;
@@ -15,6 +16,7 @@ use app_core::core::{Core, CoreError};
 use app_core::frame::FrameInput;
 use app_core::governor::QualityStep;
 use app_core::preset::Preset;
+use app_core::scene::Scene;
 use app_core::session::{Capture, Session};
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::readback::Map;
@@ -35,8 +37,9 @@ pub use basin::{Draw, PoseAndLightErrors, basin, basin_csv, basin_drawing, basin
 pub use claims::{claims_drawing, claims_summary};
 pub use front::{Point, front, front_drawing, points};
 pub use kinds::{FRAME_KINDS, FrameKind, KindTimes, with_new};
+pub use names::file_names;
 pub use pull::Pull;
-pub(crate) use table::aligned;
+pub(crate) use table::{aligned, quoted};
 pub use table::{csv, json, table};
 pub use withheld::{Rebuilt, rebuild, rebuilt_table};
 
@@ -151,6 +154,7 @@ fn measure(
     // One preset, one report.
     let report = reports.swap_remove(0);
     let inputs = inputs(session, (&report, preset), alignments)?;
+    let scene = latest_scene(session.scene(), &report, alignments);
     Ok(Row {
         session: report.session,
         preset: front::named(preset, quality_reductions),
@@ -160,13 +164,21 @@ fn measure(
         align_ms: report.mean.align_ms,
         n_taps: mean_taps(core, &inputs)?,
         size_px: options.size_px.unwrap_or(own_px(session)),
-        times: times(session, core, (preset, quality_reductions), (options, &inputs))?,
+        times: times(scene, core, (preset, quality_reductions), (options, &inputs))?,
     })
+}
+
+/// The scene of the last frames of a replay: with the planes that were found, and with the toy and
+/// the plates as they were adapted.
+fn latest_scene(given: &Scene, report: &Report, alignments: &Alignments) -> Scene {
+    let latest_first = report.frames.iter().rev();
+    let mut changed = latest_first.filter_map(|frame| alignments.changed_scene(given, frame.index));
+    changed.next().unwrap_or_else(|| alignments.scene(given))
 }
 
 /// Times and costs in pictures of the requested size.
 fn times(
-    session: &Capture,
+    scene: Scene,
     core: &mut Core,
     (preset, quality_reductions): (Preset, &[QualityStep]),
     (options, inputs): (&Options, &[FrameInput]),
@@ -174,12 +186,12 @@ fn times(
     let (scene, inputs): (_, Vec<FrameInput>) = match options.size_px {
         Some(size_px) => {
             let inputs = inputs.iter().take(kinds::MOST_INPUTS);
-            let scene = sized_scene(session.scene(), size_px);
+            let scene = sized_scene(&scene, size_px);
             core.set_scene(scene.clone(), preset)?;
             core.set_quality_reductions(quality_reductions)?;
             (scene, inputs.map(|input| sized_input(input, size_px)).collect())
         }
-        None => (session.scene().clone(), inputs.to_vec()),
+        None => (scene, inputs.to_vec()),
     };
     let inputs = if options.as_planes {
         as_planes(inputs)?
@@ -246,15 +258,4 @@ fn mean_taps(core: &mut Core, inputs: &[FrameInput]) -> Result<Option<f64>, Core
     }
     let n_texels = taps.len() as f64;
     Ok((!taps.is_empty()).then(|| taps.iter().sum::<f64>() / n_texels))
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    let upper = values.get(middle).copied()?;
-    Some(if values.len() % 2 == 1 {
-        upper
-    } else {
-        0.5 * (values[middle - 1] + upper)
-    })
 }

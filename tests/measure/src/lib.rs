@@ -5,6 +5,8 @@ pub mod bench;
 pub mod count;
 pub mod glb;
 pub mod heap;
+mod median;
+pub mod moved;
 pub mod photographer;
 pub mod planar;
 pub mod process;

@@ -4,13 +4,16 @@ use std::time::Instant;
 
 use app_core::camera_frame::Display;
 use app_core::core::{Core, CoreError};
-use app_core::frame::{Clock, FrameInput, StageTime};
+use app_core::frame::{Clock, StageTime};
 use app_core::preset::Preset;
 use app_core::profile::{About, Args, DEVICE, FRAME, Frame, PROCESSOR, Profile};
 use app_core::session::{Session, SessionError};
+use desk::alignment::{Alignments, Asked};
+use desk::replay::ReplayError;
 use thiserror::Error;
 
 use crate::bench::aligned;
+use crate::median::median;
 
 /// The tasks of Table 1, with the times on an iPhone X. Source: Casas et al. 2018, Table 1.
 pub const TASKS: [(&str, f64); 9] = [
@@ -35,6 +38,9 @@ pub enum ProfileError {
     /// The core refuses it.
     #[error(transparent)]
     Core(#[from] CoreError),
+    /// A frame cannot be aligned.
+    #[error(transparent)]
+    Align(#[from] ReplayError),
     /// A profile of another version.
     #[error("version {found}: this program reads version {known}", known = app_core::profile::VERSION)]
     Version {
@@ -67,16 +73,27 @@ pub fn task(name: &str) -> Option<&'static str> {
     Some(TASKS[index].0)
 }
 
-/// Runs all frames of a session with a preset twice, and profiles the second run, in which nothing
-/// is compiled.
+/// Aligns all frames of a session, as other programs do, runs them with a preset twice, and profiles
+/// the second run, in which nothing is compiled.
 ///
 /// # Errors
-/// When a frame cannot be read or made.
+/// When a frame cannot be read, aligned or made.
 pub fn profile(session: &dyn Session, core: &mut Core, preset: Preset) -> Result<Profile, ProfileError> {
+    let alignments = Alignments::find(session, 0..session.n_frames(), Asked::default())?;
+    run(session, &alignments, core, preset)?;
+    run(session, &alignments, core, preset)
+}
+
+fn run(
+    session: &dyn Session,
+    alignments: &Alignments,
+    core: &mut Core,
+    preset: Preset,
+) -> Result<Profile, ProfileError> {
     let scene = session.scene();
     let start = Instant::now();
     let now_ms = move || 1e3 * start.elapsed().as_secs_f64();
-    core.set_scene(scene.clone(), preset)?;
+    core.set_scene(alignments.scene(scene), preset)?;
     core.time_passes(true)?;
     core.time_stages(Some(Clock::new(now_ms)));
     let mut profile = Profile::new(About {
@@ -89,7 +106,10 @@ pub fn profile(session: &dyn Session, core: &mut Core, preset: Preset) -> Result
     let screen = core.hidden_screen([scene.width_px, scene.height_px]);
     let mut before_ms = None;
     for number in 0..session.n_frames() {
-        let input = FrameInput::from(&session.frame(number)?);
+        let input = alignments.input(number, &session.frame(number)?, preset);
+        if let Some(changed) = alignments.changed_scene(scene, number) {
+            core.set_scene(changed, preset)?;
+        }
         let begin_ms = now_ms();
         let report = core.frame(&input)?;
         let drawn_from_ms = now_ms();
@@ -165,11 +185,11 @@ pub fn tables(profile: &Profile) -> String {
 /// camera's data.
 fn camera_words(profile: &Profile) -> String {
     let frames = || profile.scopes(PROCESSOR).filter(|event| event.name == FRAME);
-    let mut ages_ms: Vec<f64> = frames()
+    let ages_ms: Vec<f64> = frames()
         .filter_map(|frame| frame.args.camera_to_present_ms)
         .collect();
-    ages_ms.sort_by(f64::total_cmp);
-    let (Some(median), Some(longest)) = (ages_ms.get(ages_ms.len() / 2), ages_ms.last()) else {
+    let longest = ages_ms.iter().copied().max_by(f64::total_cmp);
+    let Some((median, longest)) = median(ages_ms).zip(longest) else {
         return String::new();
     };
     let n_dropped: u64 = frames().filter_map(|frame| frame.args.dropped).sum();

@@ -94,7 +94,8 @@ pub fn sized_scene(scene: &Scene, size_px: SizePx) -> Scene {
         .with_plates(scene.plates.iter().map(plate).collect())
 }
 
-/// A frame in a picture of `size_px`.
+/// A frame in a picture of `size_px`, without depths and the mask of people, which are of the
+/// picture's shape.
 #[must_use]
 pub fn sized_input(input: &FrameInput, size_px: SizePx) -> FrameInput {
     let filling = Filling::new(input.image.size_px(), size_px);
@@ -102,4 +103,6 @@ pub fn sized_input(input: &FrameInput, size_px: SizePx) -> FrameInput {
         .clone()
         .with_image(CameraImage::from(filling.image(input.image.rgba())))
         .with_camera(filling.camera(&input.camera))
+        .with_depth(None)
+        .with_people(None)
 }

@@ -13,6 +13,7 @@ mod gizmo;
 mod imported;
 mod imports;
 mod inbetween;
+mod measured;
 mod metrics;
 mod mutated;
 mod photographer;

@@ -16,6 +16,7 @@ use plotters::prelude::{
 
 use super::pull::{Pull, summary};
 use super::table::aligned;
+use crate::median::median;
 use crate::random::Random;
 use desk::alignment::middle;
 use desk::replay::ReplayError;
@@ -27,7 +28,7 @@ const MOST: PoseAndLightErrors = PoseAndLightErrors {
     pose_deg: 18.0,
     light_deg: Some(30.0),
 };
-/// Number of rows in the table, each a fraction of it.
+/// Largest number of rows in the table, each with as many starts but for the last.
 const N_PARTS: usize = 6;
 /// Lower bound of drawn errors, on a logarithmic axis.
 const LEAST_DRAWN: f64 = 0.01;
@@ -192,9 +193,9 @@ pub fn basin_table(draws: &[Draw]) -> String {
                 .map(|most| number(Some(most))),
         );
         for column in 0..3 {
-            let mut ends: Vec<f64> = part.iter().map(|draw| draw.end.numbers()[column]).collect();
-            ends.sort_by(f64::total_cmp);
-            line.extend([ends.get(ends.len() / 2).copied(), ends.last().copied()].map(number));
+            let ends: Vec<f64> = part.iter().map(|draw| draw.end.numbers()[column]).collect();
+            let worst = ends.iter().copied().max_by(f64::total_cmp);
+            line.extend([median(ends), worst].map(number));
         }
         cells.push(line);
     }

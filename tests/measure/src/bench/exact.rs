@@ -47,29 +47,31 @@ pub(super) fn measure(
     let n_frames = frames.len();
     let (mut scores, mut flicker) = (Vec::new(), Vec::new());
     let mut follower = Follower::default();
-    let mut physical: Option<(Camera, FloatMap)> = None;
+    let mut physical: Option<(Camera, DMat4, FloatMap)> = None;
     for index in frames {
         let failed = |reason| ReplayError::Frame { index, reason };
         let input = FrameInput::from(&session.frame(index)?);
         if let Some(rect) = core.frame(&input).map_err(failed)?.region {
-            let rays = Rays::new(scene, &input.camera, &rect);
+            let rays = Rays::new(scene, &input, &rect);
             let map = |pose: &Pose, world_from_object: &DMat4| {
                 let visibility = rays.visibility(scene, pose, world_from_object);
                 visibility.map_err(|error| failed(error.into()))
             };
-            let known = physical.take().filter(|(camera, map)| {
-                *camera == input.camera && [map.width, map.height] == rect.size_px.to_array()
+            // The frame's own place, which may differ from the scene's.
+            let world_from_object = input.world_from_object;
+            let known = physical.take().filter(|(camera, place, map)| {
+                let size_px = [map.width, map.height];
+                (*camera, *place, size_px) == (input.camera, world_from_object, rect.size_px.to_array())
             });
             let of_place = match known {
-                Some((_, map)) => map,
-                None => map(&scene.physical_pose, &scene.world_from_object)?,
+                Some((_, _, map)) => map,
+                None => map(&scene.physical_pose, &world_from_object)?,
             };
-            physical = Some((input.camera, of_place.clone()));
-            let world_from_shown = input.world_from_shown.as_ref();
-            let world_from_shown = world_from_shown.unwrap_or(&scene.world_from_object);
+            physical = Some((input.camera, world_from_object, of_place.clone()));
+            let world_from_shown = input.world_from_shown.unwrap_or(world_from_object);
             let maps = InjectedVisibility {
                 physical: Some(of_place),
-                shown: Some(map(&input.shown_pose, world_from_shown)?),
+                shown: Some(map(&input.shown_pose, &world_from_shown)?),
             };
             core.inject_visibility(&maps).map_err(failed)?;
             core.frame(&input).map_err(failed)?;
@@ -102,14 +104,14 @@ struct Rays {
 }
 
 impl Rays {
-    fn new(scene: &Scene, camera: &Camera, rect: &PixelRect) -> Self {
+    fn new(scene: &Scene, input: &FrameInput, rect: &PixelRect) -> Self {
         let used = scene.receivers.iter().take(MAX_RECEIVERS);
-        let toy_in_world = scene.world_from_object.w_axis.truncate();
+        let toy_in_world = input.world_from_object.w_axis.truncate();
         let receivers: Vec<AnchoredReceiver> = used
             .map(|receiver| AnchoredReceiver::near(receiver, toy_in_world))
             .collect();
         let image_px = UVec2::new(scene.width_px, scene.height_px);
-        let view = View::new(image_px, camera);
+        let view = View::new(image_px, &input.camera);
         let layout = SceneLayout {
             receivers: &receivers,
             lights: &[],

@@ -10,6 +10,7 @@ use app_pipeline::core::inspect::Inspect;
 use glam::DMat4;
 
 use crate::count::Counted;
+use crate::median::median;
 
 /// Turn of the camera about its own axis that makes a new view, some five pixels to the right, and
 /// back.
@@ -139,8 +140,8 @@ fn of_kind(
     Ok(KindTimes {
         kind,
         spread_ms: spread(if gpu.is_empty() { &cpu } else { &gpu }),
-        cpu_ms: super::median(cpu),
-        gpu_ms: super::median(gpu),
+        cpu_ms: median(cpu),
+        gpu_ms: median(gpu),
         counted: None,
         n_made,
         made_bytes,
@@ -236,7 +237,7 @@ fn medians(frames: &[Named]) -> Named {
     };
     let of_name = |name: &'static str| {
         let each = frames.iter().map(|frame| in_frame(frame, name)).collect();
-        super::median(each).map(|ms| (name, ms))
+        median(each).map(|ms| (name, ms))
     };
     names.into_iter().filter_map(of_name).collect()
 }

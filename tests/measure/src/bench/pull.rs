@@ -4,6 +4,8 @@ use app_core::alignment::PoseDeviation;
 use app_core::frame::FrameInput;
 use glam::DVec3;
 
+use crate::median::median;
+
 /// Number of deviations within which an error counts as expected.
 pub(super) const WITHIN: f64 = 2.0;
 
@@ -56,14 +58,13 @@ pub(super) struct Calibration {
 
 /// `None` without any error.
 pub(super) fn calibration(ratios: impl Iterator<Item = f64>) -> Option<Calibration> {
-    let mut ratios: Vec<f64> = ratios.collect();
-    ratios.sort_by(f64::total_cmp);
+    let ratios: Vec<f64> = ratios.collect();
     let n = ratios.len();
     let n_within = ratios.iter().filter(|ratio| **ratio <= WITHIN).count();
     Some(Calibration {
         n,
         within: n_within as f64 / n as f64,
-        median: *ratios.get(n / 2)?,
+        median: median(ratios)?,
     })
 }
 

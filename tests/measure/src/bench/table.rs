@@ -294,7 +294,7 @@ fn number(value: Option<f64>) -> String {
 }
 
 /// A field with arbitrary text. Source: RFC 4180.
-fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     if text.contains(['"', ',', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {

@@ -5,6 +5,7 @@
 use std::sync::Arc;
 
 use app_core::core::Core;
+use app_core::frame::FrameInput;
 use app_core::preset::{Preset, Settings};
 use app_core::scene::Image;
 use app_core::session::{Capture, Session};
@@ -72,9 +73,19 @@ fn rebuild_with(
     let scene = session.scene();
     core.set_scene(alignments.scene(scene), preset)?;
     core.withhold_shadow()?;
+    let mut first: Option<FrameInput> = None;
     let mut latest: Option<Arc<Image>> = None;
     let mut rebuilt = Vec::new();
     for frame in 0..session.n_frames() {
+        let failed = |reason| ReplayError::Frame { index: frame, reason };
+        if let Some(changed) = alignments.changed_scene(scene, frame) {
+            core.set_scene(changed, preset)?;
+            core.withhold_shadow()?;
+            // The new scene knows nothing yet of the first photograph's shadow.
+            if let Some(first) = &first {
+                core.frame(first).map_err(failed)?;
+            }
+        }
         let input = alignments
             .input(frame, &session.frame(frame)?, preset)
             .with_shown_pose(scene.physical_pose.clone());
@@ -84,7 +95,7 @@ fn rebuild_with(
         {
             continue;
         }
-        let failed = |reason| ReplayError::Frame { index: frame, reason };
+        first.get_or_insert_with(|| input.clone());
         let region = core.frame(&input).map_err(failed)?.region;
         let picture = core.read_picture().map_err(failed)?;
         let (mut all, mut clear) = Default::default();

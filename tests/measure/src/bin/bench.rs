@@ -8,7 +8,7 @@ use anyhow::Context;
 use app_core::core::Core;
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
-use app_core::session::{Capture, Session};
+use app_core::session::Capture;
 use app_core::wgpu;
 use clap::Parser;
 use desk::alignment::{Lights, RatioArgs};
@@ -20,7 +20,7 @@ use desk::output::{make_folder, remove_file, write_png, write_whole};
 use desk::program::{exit_code, open_session, print, repository};
 use desk::shaders::ShaderArgs;
 use measure::bench::{
-    Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, claims_drawing, claims_summary, csv,
+    Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, claims_drawing, claims_summary, csv, file_names,
     front_drawing, json, rebuild, rebuilt_table, table,
 };
 use measure::sized::{SizePx, parse_size};
@@ -121,7 +121,6 @@ fn run(args: &Args) -> anyhow::Result<()> {
         .map_or(AdapterChoice::Fastest, AdapterChoice::Named);
     let results = || repository().join(RESULTS);
     let out = args.out.clone().unwrap_or_else(results);
-    let result = out.join(CSV_FILE);
     make_folder(&out)?;
     if args.basin {
         return basins(folders, args, &out);
@@ -131,22 +130,44 @@ fn run(args: &Args) -> anyhow::Result<()> {
     if args.withheld {
         return rebuild_all(folders, &mut core, args, &out);
     }
-    // A result in the folder means that all sessions were measured.
-    remove_file(&result)?;
-    let mut rows = Vec::new();
-    for folder in folders {
-        let _ = writeln!(io::stderr(), "{}", folder.display());
-        let measured = measure(folder, &mut core, args);
-        rows.extend(measured.with_context(|| folder.display().to_string())?);
+    // None of an earlier run lies beside the new ones.
+    for file in [CSV_FILE, JSON_FILE, FRONT_FILE] {
+        remove_file(&out.join(file))?;
     }
-    write_whole(&out.join(JSON_FILE), format!("{:#}\n", json(&rows)).as_bytes())?;
-    if args.front {
-        let drawing = front_drawing(&rows).map_err(anyhow::Error::msg)?;
+    let mut rows = Vec::new();
+    let measured = of_each(folders, |_, folder| {
+        rows.extend(measure(folder, &mut core, args)?);
+        Ok(())
+    });
+    if !rows.is_empty() {
+        report(&rows, &core, args.front, &out)?;
+    }
+    measured
+}
+
+/// Writes and prints the rows.
+fn report(rows: &[Row], core: &Core, has_front: bool, out: &Path) -> anyhow::Result<()> {
+    write_whole(&out.join(JSON_FILE), format!("{:#}\n", json(rows)).as_bytes())?;
+    if has_front {
+        let drawing = front_drawing(rows).map_err(anyhow::Error::msg)?;
         write_whole(&out.join(FRONT_FILE), drawing.as_bytes())?;
     }
-    write_whole(&result, csv(&rows).as_bytes())?;
-    let text = table(&rows, &core.adapter_name(), core.is_software());
+    let result = out.join(CSV_FILE);
+    write_whole(&result, csv(rows).as_bytes())?;
+    let text = table(rows, &core.adapter_name(), core.is_software());
     print(&format!("{text}{}\n", result.display()))
+}
+
+/// Measures one session after the other, each under a name of its own, up to the first that fails.
+fn of_each(
+    folders: &[PathBuf],
+    mut measure: impl FnMut(&str, &Path) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    for (name, folder) in file_names(folders)?.iter().zip(folders) {
+        let _ = writeln!(io::stderr(), "{}", folder.display());
+        measure(name, folder).with_context(|| folder.display().to_string())?;
+    }
+    Ok(())
 }
 
 /// Prints the basin of convergence of alignment, and writes tables and drawings, of several sessions
@@ -154,12 +175,9 @@ fn run(args: &Args) -> anyhow::Result<()> {
 fn basins(folders: &[PathBuf], args: &Args, out: &Path) -> anyhow::Result<()> {
     let mut text = String::new();
     let mut all = Vec::new();
-    for folder in folders {
-        let _ = writeln!(io::stderr(), "{}", folder.display());
+    let measured = of_each(folders, |name, folder| {
         let capture = Capture::open(open_session(folder)?)?;
-        let draws = basin(&capture, args.seed, args.draws);
-        let draws = draws.with_context(|| folder.display().to_string())?;
-        let name = &capture.scene().name;
+        let draws = basin(&capture, args.seed, args.draws)?;
         let drawing = basin_drawing(name, &draws).map_err(anyhow::Error::msg)?;
         write_whole(
             &out.join(format!("{name}-basin.csv")),
@@ -168,32 +186,38 @@ fn basins(folders: &[PathBuf], args: &Args, out: &Path) -> anyhow::Result<()> {
         write_whole(&out.join(format!("{name}-basin.svg")), drawing.as_bytes())?;
         text.push_str(&format!("{name}\n{}", basin_table(&draws)));
         all.push(draws);
-    }
-    if folders.len() > 1 {
+        Ok(())
+    });
+    if all.len() > 1 {
         let drawing = claims_drawing(&all).map_err(anyhow::Error::msg)?;
         write_whole(&out.join(CLAIMS_FILE), drawing.as_bytes())?;
         text.extend(claims_summary(&all).map(|summary| format!("all\n{summary}\n")));
     }
     text.push_str(
-        "Median and worst remaining error, relative to the recorded values; starts are in sixths of the largest.\n",
+        "Median and worst remaining error, relative to the recorded values; a row has the starts beyond those of the row above.\n",
     );
-    print(&format!("{text}{}\n", out.display()))
+    if !all.is_empty() {
+        print(&format!("{text}{}\n", out.display()))?;
+    }
+    measured
 }
 
 /// Prints the accuracy of predicted shadows, and writes the pictures.
 fn rebuild_all(folders: &[PathBuf], core: &mut Core, args: &Args, out: &Path) -> anyhow::Result<()> {
     let mut all = Vec::new();
-    for folder in folders {
-        let _ = writeln!(io::stderr(), "{}", folder.display());
+    let measured = of_each(folders, |name, folder| {
         let capture = Capture::open(open_session(folder)?)?;
-        let rebuilt = rebuild(&capture, core, &presets(args), !args.as_given);
-        all.extend(rebuilt.with_context(|| folder.display().to_string())?);
+        for one in rebuild(&capture, core, &presets(args), !args.as_given)? {
+            let file = format!("{name}-{}-rebuilt_{:04}.png", one.preset, one.frame);
+            write_png(&out.join(file), &one.picture)?;
+            all.push(one);
+        }
+        Ok(())
+    });
+    if !all.is_empty() {
+        print(&format!("{}{}\n", rebuilt_table(&all), out.display()))?;
     }
-    for one in &all {
-        let file = format!("{}-{}-rebuilt_{:04}.png", one.session, one.preset, one.frame);
-        write_png(&out.join(file), &one.picture)?;
-    }
-    print(&format!("{}{}\n", rebuilt_table(&all), out.display()))
+    measured
 }
 
 fn presets(args: &Args) -> Vec<Preset> {

@@ -8,13 +8,14 @@ use app_core::alignment::Observer;
 use app_core::frame::FrameInput;
 use app_core::grain::Grain;
 use app_core::preset::Preset;
-use app_core::scene::{Pose, Scene};
+use app_core::scene::Scene;
 use app_core::session::{Capture, Session};
 use app_core::sharpness::Sharpness;
 use clap::Parser;
 use desk::files::BUNDLED_SESSION;
 use desk::program::{exit_code, open_session, print};
 use measure::count::{count, ledgers};
+use measure::moved::first_moved;
 use measure::scaling::{by_area, by_lights, by_picture, by_triangles};
 use measure::sized::{SizePx, parse_size, sized_input, sized_scene};
 use measure::stability::draw;
@@ -59,7 +60,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let own_px = [session.scene().width_px, session.scene().height_px];
     let size_px = args.size.unwrap_or(own_px);
     let scene = sized_scene(session.scene(), size_px);
-    let first = first_moved(&session)?.context("no frame shows another pose than the physical one")?;
+    let first = first_moved(&session)?.context("no frame shows the toy in another pose or at another place")?;
     let (scene, input) = observed(&scene, &sized_input(&first, size_px))?;
     let [width, height] = size_px;
     let mut text = String::new();
@@ -111,14 +112,3 @@ fn draw_scaling(folder: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The first frame that is retargeted.
-fn first_moved(session: &Capture) -> anyhow::Result<Option<FrameInput>> {
-    for index in 0..session.n_frames() {
-        let input = FrameInput::from(&session.frame(index)?);
-        let physical: &Pose = &session.scene().physical_pose;
-        if input.shown_pose != *physical {
-            return Ok(Some(input));
-        }
-    }
-    Ok(None)
-}

@@ -1,7 +1,7 @@
 //! The rows as a table for people, and as CSV.
 
 use super::row::{Measured, Row};
-use crate::bench::aligned;
+use crate::bench::{aligned, quoted};
 
 const HEADS: [&str; 11] = [
     "group",
@@ -66,13 +66,4 @@ fn cells(row: &Row) -> [String; 11] {
         state.to_owned(),
         note.clone(),
     ]
-}
-
-/// A field with arbitrary text. Source: RFC 4180.
-fn quoted(text: &str) -> String {
-    if text.contains(['"', ',', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
 }

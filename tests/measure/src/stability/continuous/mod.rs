@@ -16,6 +16,7 @@ use super::case::{Case, Scope};
 use super::gap::Gap;
 use super::lab::{Lab, Label, Made};
 use super::row::{Bound, Findings, Row, Sweep};
+use crate::median::median;
 use crate::photographer::{Shot, World};
 use desk::metrics::score;
 
@@ -165,9 +166,7 @@ fn findings(
 
 fn worst_jump(label: Label, along: &str, steps: &[Step]) -> Option<Row> {
     let median_of = |value: fn(&Step) -> f64| {
-        let mut values: Vec<f64> = steps.iter().map(value).collect();
-        values.sort_unstable_by(f64::total_cmp);
-        values.get(values.len() / 2).copied().unwrap_or(0.0)
+        median(steps.iter().map(value).collect()).unwrap_or(0.0)
     };
     let is_photographed = steps
         .iter()
