@@ -69,8 +69,8 @@ impl Observer {
         let grain = photograph.grain(sharpness.plate_spread);
         let lights = input.lights_in(&known);
         // It belongs to the receiver under the toy: found planes and later frames do not change it.
+        let soft = photograph.with_plate_as_soft(sharpness.plate_spread);
         if is_toy_seen {
-            let soft = photograph.with_plate_as_soft(sharpness.plate_spread);
             self.reflection.search_first(&known, (&soft, input), &lights)?;
         }
         let reflection = self.reflection.found;
@@ -79,7 +79,7 @@ impl Observer {
             plate_spread: sharpness.plate_spread,
             reflection: reflection.as_ref(),
         };
-        let mut photograph = look.photograph(&known)?;
+        let mut photograph = look.freed(soft, &known)?;
         let planes_of = self.planes.wanted(true);
         let before = self.memory.take();
         let sighted = photograph.things(&known, input, &lights, (planes_of, before.as_ref()))?;
@@ -116,6 +116,11 @@ impl Look<'_> {
     /// The frame beside an equally soft plate, both as if the receiver under the toy were matt.
     pub(super) fn photograph(&self, scene: &Scene) -> Result<Photograph, AlignError> {
         let photograph = Photograph::new(scene, self.input, None).with_plate_as_soft(self.plate_spread);
+        self.freed(photograph, scene)
+    }
+
+    /// A photograph beside its equally soft plate, both as if the receiver under the toy were matt.
+    fn freed(&self, photograph: Photograph, scene: &Scene) -> Result<Photograph, AlignError> {
         Ok(match self.reflection {
             Some(found) => photograph.freed_of(scene, self.input, found)?,
             None => photograph,

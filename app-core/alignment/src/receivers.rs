@@ -48,6 +48,21 @@ impl SeenReceiver {
         self.plane_from_camera * plane_from_camera.inverse()
     }
 
+    /// Its corners, in camera space.
+    pub(super) fn corners(&self) -> [DVec3; 4] {
+        let camera_from_plane = self.plane_from_camera.inverse();
+        let DVec2 { x, y } = self.half_extent_m;
+        [(x, y), (-x, y), (x, -y), (-x, -y)].map(|(x, z)| camera_from_plane.transform_point3(DVec3::new(x, 0.0, z)))
+    }
+
+    /// The same in the space of another camera.
+    fn seen_from(&self, camera_from_other: &DMat4) -> Self {
+        Self {
+            plane_from_camera: self.plane_from_camera * *camera_from_other,
+            half_extent_m: self.half_extent_m,
+        }
+    }
+
     /// Half its sides, in metres.
     pub(super) fn half_extent_m(&self) -> DVec2 {
         self.half_extent_m
@@ -116,7 +131,11 @@ fn ray(k: &Intrinsics, at: IVec2) -> DVec3 {
 
 /// The nearest receiver that a pixel shows: its index, and the point in camera space.
 pub(super) fn receiver_at(receivers: &[SeenReceiver], k: &Intrinsics, at: IVec2) -> Option<(usize, DVec3)> {
-    let ray = ray(k, at);
+    nearest_hit(receivers, ray(k, at))
+}
+
+/// The nearest receiver that a ray of depth 1 from the camera meets, and the point.
+fn nearest_hit(receivers: &[SeenReceiver], ray: DVec3) -> Option<(usize, DVec3)> {
     let hits = receivers.iter().enumerate();
     let hits = hits.filter_map(|(index, receiver)| Some((index, receiver.depth_m(ray)?)));
     let nearest = hits.min_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -155,11 +174,64 @@ pub(super) fn plate_for(plates: &[Plate], receivers: &[SeenReceiver], camera: &C
 
 fn carried(picture: &Picture, from: &Camera, receivers: &[SeenReceiver], to: &Camera) -> Picture {
     let plate_camera_from_camera = from.world_from_camera.inverse() * to.world_from_camera;
+    let camera_from_plate_camera = plate_camera_from_camera.inverse();
+    let seen_by_plate: Vec<SeenReceiver> = receivers
+        .iter()
+        .map(|receiver| receiver.seen_from(&camera_from_plate_camera))
+        .collect();
     let color = |at: IVec2| {
-        let (_, point) = receiver_at(receivers, &to.intrinsics, at)?;
+        let (shown, point) = receiver_at(receivers, &to.intrinsics, at)?;
         let point = plate_camera_from_camera.transform_point3(point);
-        picture.sample(from.intrinsics.pixel_of(point)?)
+        let px = from.intrinsics.pixel_of(point)?;
+        // Another receiver may hide it from the plate's camera, which may also see its other side.
+        let (in_plate, _) = nearest_hit(&seen_by_plate, from.intrinsics.ray(px))?;
+        picture.sample(px).filter(|_| in_plate == shown)
     };
     let pixels = places(picture.size_px).map(|at| color(at).unwrap_or(UNKNOWN));
     Picture::of(picture.size_px, pixels.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A camera at some metres to the right above a table, that looks straight down.
+    fn camera(right_m: f64) -> Camera {
+        let world_from_camera = DMat4::from_translation(DVec3::new(right_m, 0.5, 0.0))
+            * DMat4::from_rotation_x(-std::f64::consts::FRAC_PI_2);
+        Camera {
+            intrinsics: Intrinsics {
+                fx_px: 60.0,
+                fy_px: 60.0,
+                cx_px: 50.0,
+                cy_px: 50.0,
+            },
+            world_from_camera,
+        }
+    }
+
+    #[test]
+    fn a_plate_shows_nothing_where_a_thing_hid_the_table_from_its_camera() {
+        let (here, there) = (camera(0.2), camera(-0.2));
+        let level_at = |height_m: f64, half_m: f64| Receiver {
+            name: String::new(),
+            world_from_plane: DMat4::from_translation(DVec3::Y * height_m),
+            half_extent_m: DVec2::splat(half_m),
+            surface: Surface::Textured,
+        };
+        let camera_from_world = here.world_from_camera.inverse();
+        let receivers = [level_at(0.0, 1.0), level_at(0.1, 0.05)]
+            .map(|receiver| SeenReceiver::new(&receiver, &camera_from_world));
+        let size_px = IVec2::splat(100);
+        let plate = Picture::of(size_px, vec![[0.5; 3]; 10_000]);
+        let carried = carried(&plate, &there, &receivers, &here);
+        let color_of = |point: DVec3| {
+            let px = here.intrinsics.pixel_of(camera_from_world.transform_point3(point)).unwrap();
+            carried.get(px.floor().as_ivec2())
+        };
+        // The rays of the plate's camera to places up to .11 m right of the origin pass below the top's border.
+        assert_eq!(color_of(DVec3::X * 0.09), None);
+        assert!(color_of(DVec3::X * 0.13).is_some());
+        assert!(color_of(DVec3::Y * 0.1).is_some());
+    }
 }

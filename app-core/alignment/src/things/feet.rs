@@ -10,8 +10,8 @@ use crate::picture::{Level, index_in, places};
 use crate::receivers::SeenReceiver;
 use app_scene::scene::Light;
 
-/// Number of steps of a picture's width in which feet are looked for.
-const STEPS_A_WIDTH: i32 = 640;
+/// Number of steps of a picture's longer side in which feet are looked for.
+const STEPS_A_SIDE: i32 = 640;
 /// Most steps without pixels of a thing between one of its pixels and the next one below it: marks
 /// have gaps of single pixels, and two things are further apart.
 const LARGEST_GAP: u32 = 3;
@@ -102,7 +102,7 @@ impl<'a> Feet<'a> {
                 -k.fy_px * down.y - k.cy_px * down.z,
                 -down.z,
             ),
-            step_px: f64::from(bodies.size_px.x.max(STEPS_A_WIDTH)) / f64::from(STEPS_A_WIDTH),
+            step_px: f64::from(bodies.size_px.max_element().max(STEPS_A_SIDE)) / f64::from(STEPS_A_SIDE),
             lines: Vec::new(),
         };
         feet.lines = feet.lines();

@@ -1,7 +1,7 @@
 //! Corrects listed planes of things, such as the top of a book that a tracker gave some millimetres
 //! off or larger than it is: height and tilt by the toy's shadow, extents by edges of the plate.
 
-use glam::{DMat4, DVec3, DVec4, IVec2};
+use glam::{DMat4, DVec2, DVec3, DVec4, IVec2};
 
 use super::extent::{Extent, LEVEL};
 use super::inner::certain;
@@ -11,6 +11,7 @@ use crate::picture::{Level, places};
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
 use crate::report::PlaneAlignment;
+use app_scene::scene::Intrinsics;
 use app_scene::things::Mark;
 
 /// Least cosine between the normals of a plane that is corrected and of the receiver: steeper ones
@@ -46,16 +47,45 @@ pub(super) fn solids(
 ) -> Option<impl Fn(IVec2) -> bool + use<>> {
     let table = receivers.get(GROUND)?;
     let tops = receivers.iter().skip(GROUND + 1);
-    let slices: Vec<SeenReceiver> = tops
+    let solids: Vec<Solid> = tops
         .filter(|top| height_m(top, table).is_some())
-        .flat_map(|top| slices(top, table, border_m))
+        .map(|top| Solid::new(slices(top, table, border_m).collect(), level))
         .collect();
-    let (has_tops, intrinsics) = (!slices.is_empty(), level.intrinsics);
-    let is_shown = move |at| {
-        let mut slices = slices.iter();
-        slices.any(|slice| slice.point_at(&intrinsics, at).is_some())
-    };
+    let (has_tops, intrinsics) = (!solids.is_empty(), level.intrinsics);
+    let is_shown = move |at| solids.iter().any(|solid| solid.is_shown(&intrinsics, at));
     Some(is_shown).filter(|_| has_tops)
+}
+
+/// What is below a top, in slices.
+struct Solid {
+    slices: Vec<SeenReceiver>,
+    /// The rectangle of pixels beyond which none of them is seen.
+    first_px: IVec2,
+    last_px: IVec2,
+}
+
+impl Solid {
+    fn new(slices: Vec<SeenReceiver>, level: &Level) -> Self {
+        let corners = slices.iter().flat_map(SeenReceiver::corners);
+        let corners: Option<Vec<DVec2>> = corners.map(|corner| level.intrinsics.pixel_of(corner)).collect();
+        let size_px = level.frame.size_px.as_dvec2();
+        // A corner behind the camera has no pixel.
+        let corners = corners.unwrap_or_else(|| vec![DVec2::ZERO, size_px]);
+        let of = |extreme: fn(DVec2, DVec2) -> DVec2, from: DVec2| {
+            let px = corners.iter().copied().fold(from, extreme);
+            px.clamp(DVec2::ZERO, size_px).floor().as_ivec2()
+        };
+        Self {
+            first_px: of(DVec2::min, size_px),
+            last_px: of(DVec2::max, DVec2::ZERO),
+            slices,
+        }
+    }
+
+    fn is_shown(&self, intrinsics: &Intrinsics, at: IVec2) -> bool {
+        let is_near = at.cmpge(self.first_px).all() && at.cmple(self.last_px).all();
+        is_near && self.slices.iter().any(|slice| slice.point_at(intrinsics, at).is_some())
+    }
 }
 
 /// The solid below a top, a border larger, from the largest height at which that may be down to the table: the

@@ -6,7 +6,7 @@
 //! differ although none should. From them a thing **grows** over the plate, along its own colours
 //! and up to the next edge (`grown`), against pixels that are known to show the receiver. A thing
 //! that frame and plate both show in the toy's place is **before the toy**; a thing in the plate
-//! alone makes the plate wrong; and a thing in the frame alone matters if it hides the toy.
+//! alone makes the plate wrong; and a thing in the frame alone matters if it hides the toy or is large.
 
 mod by_shadow;
 mod cast;
@@ -15,6 +15,7 @@ mod colored_extent;
 mod colors;
 mod edges;
 mod expected_light;
+mod exposure;
 mod extent;
 mod feet;
 mod foot_line;
@@ -22,6 +23,7 @@ mod found;
 pub(crate) mod groups;
 mod grown;
 mod inner;
+mod interpolate;
 mod known;
 mod listed;
 mod measured;
@@ -62,6 +64,7 @@ pub(crate) use plate_mended::{is_of_wrong_plate, with_mended_plate};
 
 use codes::Codes;
 use expected_light::ExpectedLight;
+use exposure::{gain, gains, plate_codes};
 use found::Found;
 use grown::Grown;
 use memory::Place;
@@ -73,7 +76,6 @@ use shade::Brightness;
 pub(crate) use sight::Sight;
 use standing::standing;
 use toy::{Toy, is_shade};
-use upright::{gain, gains};
 use wrong_plate::wrong_plate;
 
 /// Maximum number of pixels of the level for the search: more take longer and find no more.
@@ -152,6 +154,17 @@ impl Sight<'_> {
         let memory = Memory::new(place, frame.clone(), found.known(frame.size_px));
         if found.is_empty() {
             return (None, memory);
+        }
+        let largest_px = self.pyramid.level(0).frame.size_px;
+        if !found.planes.is_empty() {
+            // Things are searched again with these among the receivers.
+            let sighting = Sighting {
+                size_px: largest_px,
+                marks: vec![Mark::None; places(largest_px).count()],
+                raised: Vec::new(),
+                planes: found.planes,
+            };
+            return (Some(sighting), memory);
         }
         let (size_px, marks) = self.marks(level, &found);
         let marks = match self.memory {
@@ -335,7 +348,7 @@ impl Sight<'_> {
     /// The level without the shadow that the plate alone may show; `None` without a plate.
     fn restored<'b>(&self, (level, frame): (&'b Level, &Codes), toy: &Toy) -> Option<Restored<'b>> {
         let compared = self.compared(level)?;
-        let plate = Codes::of(level.plate.as_ref()?);
+        let plate = plate_codes(level, level, &compared.pixels)?;
         let Some(light) = Brightness::of_plate(&compared.pixels, (frame, &plate), &toy.coverage) else {
             return Some(Restored {
                 level: Cow::Borrowed(level),
@@ -345,9 +358,10 @@ impl Sight<'_> {
             });
         };
         let level = light.restored(level);
+        let compared = self.compared(&level).unwrap_or(compared);
         Some(Restored {
-            plate: Codes::of(level.plate.as_ref()?),
-            compared: self.compared(&level).unwrap_or(compared),
+            plate: plate_codes(&level, &level, &compared.pixels)?,
+            compared,
             level: Cow::Owned(level),
             in_plate: Some(light),
         })
@@ -368,11 +382,15 @@ impl Sight<'_> {
                 Some((thing, on))
             })
             .collect();
-        let stands_on = |thing: usize| (0..MAX_RECEIVERS).max_by_key(|on| counts[thing][*on][0]);
+        // None of the receivers' pixels may show it, as those of a thing beyond the table.
+        let stands_on = |thing: usize| {
+            let most = (0..MAX_RECEIVERS).max_by_key(|on| counts[thing][*on][0]);
+            most.filter(|on| counts[thing][*on][0] > 0)
+        };
         let stands_on: Vec<Option<usize>> = (0..grown.n_things()).map(stands_on).collect();
         let is_of_receiver = |(thing, on): (usize, usize)| {
             let [n_seeds, n] = counts[thing][on];
-            stands_on[thing] != Some(on) && (n_seeds as f32) < OF_PLANE * n as f32
+            stands_on[thing].is_some_and(|stood| stood != on) && (n_seeds as f32) < OF_PLANE * n as f32
         };
         pixels
             .into_iter()
@@ -408,10 +426,8 @@ impl Sight<'_> {
         let size_px = largest.frame.size_px;
         let per_px = self.per_px(level);
         let toy = Toy::of(self, largest);
-        let codes = largest
-            .plate
-            .as_ref()
-            .map(|plate| [Codes::of(&largest.frame), Codes::of(plate)]);
+        let plate = plate_codes(largest, level, found.compared);
+        let codes = plate.map(|plate| [Codes::of(&largest.frame), plate]);
         let is_own = |at: IVec2, frame: &Codes| {
             let color = frame.get(at);
             color.is_some_and(|color| found.is_own_color_in_frame(color))

@@ -6,7 +6,8 @@
 use glam::IVec2;
 
 use super::groups::cross;
-use super::shade::{interpolate, logarithm};
+use super::interpolate::interpolate;
+use super::shade::logarithm;
 use crate::picture::{Color, Mask, Picture, UNKNOWN, index_in, places};
 use crate::raster::Coverage;
 use app_scene::things::Mark;

@@ -24,7 +24,7 @@ const BESIDE_PX: i32 = 2;
 const FARTHEST_PX: DVec2 = DVec2::new(110.0, 80.0);
 const NEAREST_PX: f64 = 6.0;
 const STEP_PX: f64 = 2.0;
-const OF_WIDTH_PX: f64 = 640.0;
+const OF_SIDE_PX: f64 = 640.0;
 /// Last step of the search from the best offsets in pixels.
 const FINEST_PX: f64 = 0.25;
 /// Number of surrounding pixels that are compared at each offset, and in the end; the second ones
@@ -148,9 +148,9 @@ impl Hidden<'_> {
         Some(self.marks[index_in(self.level.frame.size_px, at)?])
     }
 
-    /// Pixels of this picture per pixel of one of 640.
+    /// Pixels of this picture per pixel of one whose longer side has 640.
     fn scale(&self) -> f64 {
-        f64::from(self.level.frame.size_px.x) / OF_WIDTH_PX
+        f64::from(self.level.frame.size_px.max_element()) / OF_SIDE_PX
     }
 
     /// The place in the first receiver's plane that a pixel shows; `None` if it shows another one.

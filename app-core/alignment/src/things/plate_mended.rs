@@ -6,7 +6,9 @@
 
 use glam::IVec2;
 
-use super::shade::{interpolate, logarithm};
+use super::interpolate::interpolate;
+use super::shade::logarithm;
+use crate::median::median;
 use crate::picture::{Color, Level, Mask, Picture, UNKNOWN, places};
 use crate::raster::Coverage;
 use app_scene::things::Mark;
@@ -14,8 +16,8 @@ use app_scene::things::Mark;
 /// Distance in pixels from the toy's given place within which the frame may show the toy.
 const OF_TOY_PX: i32 = 4;
 
-/// The level with the frame in place of wrong parts of the plate, and a smooth estimate where the toy
-/// may be. The marks are those of the level's pixels.
+/// The level with the frame, at the plate's exposure, in place of wrong parts of the plate, and a smooth
+/// estimate where the toy may be. The marks are those of the level's pixels.
 pub(crate) fn with_mended_plate(level: &Level, coverage: &Coverage, marks: &[Mark]) -> Level {
     let size_px = level.frame.size_px;
     let Some(plate) = &level.plate else {
@@ -28,9 +30,14 @@ pub(crate) fn with_mended_plate(level: &Level, coverage: &Coverage, marks: &[Mar
         }
     }
     let is_of_toy = |at: IVec2| coverage.is_near(at, OF_TOY_PX);
+    let seen = |at: &IVec2| !wrong.has(*at) && !is_of_toy(*at);
+    let gains = gains(places(size_px).filter(seen), [&level.frame, plate]).unwrap_or([1.0; 3]);
     let known = |at: IVec2| match wrong.has(at) {
         true if is_of_toy(at) => None,
-        true => level.frame.get(at),
+        true => {
+            let color = level.frame.get(at)?;
+            Some([0, 1, 2].map(|channel| color[channel] / gains[channel]))
+        }
         false => plate.get(at),
     };
     let mut colors: Vec<Color> = places(size_px)
@@ -51,6 +58,20 @@ pub(crate) fn with_mended_plate(level: &Level, coverage: &Coverage, marks: &[Mar
         plate: Some(Picture::of(size_px, mended.collect())),
         ..level.clone()
     }
+}
+
+/// Exposure of the frame over that of the plate, for each channel, by the median of some pixels: most of
+/// them are in no shadow. `None` if none of them is bright in both.
+fn gains(at: impl Iterator<Item = IVec2>, [frame, plate]: [&Picture; 2]) -> Option<Color> {
+    let ratio = |at: IVec2| {
+        let [frame, plate] = [frame.get(at)?, plate.get(at)?];
+        let ratio = [0, 1, 2].map(|channel| frame[channel] / plate[channel]);
+        let is_known = ratio.iter().all(|ratio| ratio.is_finite() && *ratio > 0.0);
+        is_known.then_some(ratio)
+    };
+    let ratios: Vec<Color> = at.filter_map(ratio).collect();
+    let of = |channel: usize| median(ratios.iter().map(|ratio| ratio[channel]), f32::total_cmp);
+    Some([of(0)?, of(1)?, of(2)?])
 }
 
 /// Whether the plate does not show the place at a mark.

@@ -4,14 +4,13 @@
 //! right. Its light is measured against the frame: in the open, and up to a factor within the toy's
 //! shadow, whose depth is not known well yet. Likewise a thing that the toy hides is as in the plate,
 //! but in the light of its visible part. Where the toy hides the place, the light is interpolated.
-//!
-//! Source: Pérez et al. 2003 (interpolation with given differences), for logarithms of light.
 
 use glam::{DVec2, IVec2};
 
 use super::codes::{Codes, UNLIKE_CODES, from_shaded};
-use super::groups::{STEPS, groups, place_of};
+use super::groups::{groups, place_of};
 use super::grown::Grown;
+use super::interpolate::interpolate;
 use crate::lights::Compared;
 use crate::median::median;
 use crate::picture::{Color, Level, Mask, Picture, UNKNOWN, bilinear, index_in, places, square};
@@ -51,9 +50,6 @@ const SHARP: f32 = 0.1;
 /// Margin around a shadow in the plate, and around the toy without measurements, in pixels.
 const AROUND_PX: i32 = 8;
 const HIDDEN_PX: i32 = 2;
-/// Number of rounds of the interpolation, and its relaxation factor.
-const N_ROUNDS: usize = 300;
-const RELAXATION: f32 = 1.9;
 
 /// Light at the pixels of a level, as a share of its usual amount.
 #[derive(Clone)]
@@ -287,37 +283,4 @@ fn smoothed(own: &[Color], size_px: IVec2) -> Vec<Color> {
         if is_near { mean } else { *here }
     };
     places(size_px).zip(own).map(|(at, own)| mean(at, own)).collect()
-}
-
-/// Sets some unknown pixels so that each differs from its neighbours as `measured` says, or not at
-/// all where that is unknown. Source: Young 1954 (successive over-relaxation).
-pub(super) fn interpolate(light: &mut [Color], (measured, size_px): (&[Color], IVec2), of: &[IVec2]) {
-    for round in 0..N_ROUNDS {
-        // At first what is known spreads from the border.
-        let relaxation = if 4 * round < N_ROUNDS { 1.0 } else { RELAXATION };
-        for at in of {
-            let Some(index) = index_in(size_px, *at) else {
-                continue;
-            };
-            let (mut sum, mut n) = ([0.0; 3], 0.0);
-            for other in STEPS.iter().filter_map(|step| index_in(size_px, *at + *step)) {
-                if !light[other][0].is_nan() {
-                    let step = [0, 1, 2].map(|channel| measured[index][channel] - measured[other][channel]);
-                    let step = if step[0].is_nan() { [0.0; 3] } else { step };
-                    sum = [0, 1, 2].map(|channel| sum[channel] + light[other][channel] + step[channel]);
-                    n += 1.0;
-                }
-            }
-            if n > 0.0 {
-                let mean = sum.map(|sum| sum / n);
-                let before = if light[index][0].is_nan() {
-                    mean
-                } else {
-                    light[index]
-                };
-                light[index] =
-                    [0, 1, 2].map(|channel| before[channel] + relaxation * (mean[channel] - before[channel]));
-            }
-        }
-    }
 }

@@ -8,6 +8,7 @@
 use glam::{DVec3, IVec2};
 
 use super::codes::codes_of;
+use super::exposure::gain;
 use super::feet::{Bodies, Feet, WITHIN_PX, pixel_of, shadow_of};
 use super::found::Found;
 use super::groups::{cross, in_level};
@@ -15,7 +16,7 @@ use super::memory::Memory;
 use super::sight::Sight;
 use crate::lights::Compared;
 use crate::median::{median, part_of};
-use crate::picture::{Color, Level, brightness, index_in, places};
+use crate::picture::{Level, brightness, index_in, places};
 use crate::receivers::SeenReceiver;
 use app_scene::scene::Light;
 use app_scene::things::{Mark, RaisedPoint};
@@ -135,23 +136,6 @@ struct Known {
     gain: f32,
     /// For each light and pixel of the level, the part of the receiver's light that the toy takes from it.
     taken: Vec<Vec<f32>>,
-}
-
-/// Exposure of the frame over that of the plate, for each channel.
-pub(super) fn gains(level: &Level, compared: &[Compared]) -> Option<Color> {
-    let of = |channel: usize| gain(level, compared, |color| color[channel]);
-    Some([of(0)?, of(1)?, of(2)?])
-}
-
-/// The same for one value of their colours.
-pub(super) fn gain(level: &Level, compared: &[Compared], value: impl Fn(&Color) -> f32) -> Option<f32> {
-    let of = |pixel: &Compared| {
-        let frame = value(&level.frame.get(pixel.at)?);
-        let plate = value(&level.plate.as_ref()?.get(pixel.at)?);
-        let gain = frame / (plate * value(&pixel.ratio));
-        gain.is_finite().then_some(gain)
-    };
-    median(compared.iter().filter_map(of), f32::total_cmp)
 }
 
 impl Upright<'_> {
