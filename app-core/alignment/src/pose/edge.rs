@@ -159,14 +159,18 @@ impl<'a> Edges<'a> {
 
     /// The statistics of each piece under these optics.
     pub(super) fn pieces(&self, optics: Optics) -> Vec<Piece> {
-        let of = |spread_px| Spread::new(self.coverage, Covariance::round(spread_px));
+        let of = |spread_px| self.spread(Covariance::round(spread_px));
         let wider = (optics.overshoot > 0.0).then(|| of(optics.spread_px.hypot(SHARPENED_PX)));
         self.pieces_by(&of(optics.spread_px), wider.as_ref(), optics.overshoot)
     }
 
     /// The same for a lens with this blur.
     pub(super) fn pieces_of(&self, lens: Covariance) -> Vec<Piece> {
-        self.pieces_by(&Spread::new(self.coverage, lens), None, 0.0)
+        self.pieces_by(&self.spread(lens), None, 0.0)
+    }
+
+    fn spread(&self, lens: Covariance) -> Spread {
+        Spread::new(self.coverage, lens, self.pixels.iter().map(|pixel| pixel.at))
     }
 
     fn pieces_by(&self, spread: &Spread, wider: Option<&Spread>, overshoot: f64) -> Vec<Piece> {
@@ -313,7 +317,7 @@ fn slope_of_code(linear: f64) -> f64 {
     255.0 / f64::from(slope)
 }
 
-/// Coverage blurred by a lens.
+/// Coverage blurred by a lens, at some pixels.
 struct Spread {
     origin_px: IVec2,
     size_px: IVec2,
@@ -322,25 +326,38 @@ struct Spread {
 }
 
 impl Spread {
-    fn new(coverage: &Coverage, covariance: Covariance) -> Self {
+    fn new(coverage: &Coverage, covariance: Covariance, pixels: impl Iterator<Item = IVec2>) -> Self {
         if covariance.widest_px() < LEAST_SPREAD_PX {
             return Self::of(coverage, IVec2::ZERO, Covariance::NONE);
         }
-        let axes = taps_of(covariance);
+        let [first, second] = taps_of(covariance);
         let reach = |taps: &[(IVec2, f32)]| {
             let offsets = taps.iter().map(|(offset, _)| offset.abs());
             offsets.fold(IVec2::ZERO, IVec2::max)
         };
-        let mut spread = Self::of(coverage, reach(&axes[0]) + reach(&axes[1]), covariance);
-        for taps in &axes {
-            let along = |place: IVec2| {
-                taps.iter()
-                    .map(|(offset, weight)| weight * spread.place(place + *offset))
-                    .sum()
+        let spread = Self::of(coverage, reach(&first) + reach(&second), covariance);
+        let at: Vec<IVec2> = pixels.map(|at| at - spread.origin_px).collect();
+        let read = at
+            .iter()
+            .flat_map(|at| second.iter().map(move |(offset, _)| *at + *offset));
+        spread.blurred(&first, read).blurred(&second, at.iter().copied())
+    }
+
+    /// Blurred along an axis at some places; unknown at all others, which are 0.
+    fn blurred(self, taps: &[(IVec2, f32)], at: impl Iterator<Item = IVec2>) -> Self {
+        let mut values = vec![0.0; self.values.len()];
+        let mut are_known = vec![false; values.len()];
+        for place in at {
+            let index = index_in(self.size_px, place);
+            let Some(index) = index.filter(|index| !std::mem::replace(&mut are_known[*index], true)) else {
+                continue;
             };
-            spread.values = places(spread.size_px).map(along).collect();
+            let values_along = taps
+                .iter()
+                .map(|(offset, weight)| weight * self.place(place + *offset));
+            values[index] = values_along.sum();
         }
-        spread
+        Self { values, ..self }
     }
 
     /// The unblurred coverage, with a margin around it.

@@ -334,8 +334,10 @@ impl<'a> Search<'a> {
     }
 
     fn fit(&mut self, placement: &Placement) -> Option<Fit> {
-        let (fine, share) = self.matte(placement, None, FINEST)?;
-        let (wide, _) = self.matte(placement, None, WIDE)?;
+        let posed = self.posed(placement, None);
+        let beside = posed.beside(self.pyramid.level(0));
+        let measured = |band| enough(matte::measure(&beside, &posed.elements, band), &posed.elements);
+        let ((fine, share), (wide, _)) = (measured(FINEST)?, measured(WIDE)?);
         Some(Fit {
             loss_px2: FINEST.loss_px2(&fine),
             wide_loss_px2: WIDE.loss_px2(&wide),
