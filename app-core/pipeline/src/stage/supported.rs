@@ -6,7 +6,8 @@ use glam::{DMat4, DVec3};
 use crate::frame::warning::Warning;
 use crate::geometry::anchored::AnchoredReceiver;
 use app_scene::geometry::nearest_receivers::nearest_receivers;
-use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS, Receiver};
+use app_scene::geometry::used_lights::UsedLights;
+use app_scene::scene::{Light, MAX_RECEIVERS, Receiver};
 
 /// Supported receivers.
 pub(crate) struct Receivers {
@@ -44,7 +45,7 @@ impl Receivers {
 pub(crate) struct Lights {
     /// The list from which they are selected: the scene's, or a frame's own.
     pub(crate) listed: Vec<Light>,
-    /// The first [`MAX_LIGHTS`] that are above any receiver.
+    /// The used ones.
     pub(crate) used: Vec<Light>,
     /// Indices of `used` in `listed`.
     pub(crate) indices: Vec<usize>,
@@ -58,27 +59,21 @@ impl Lights {
             .iter()
             .map(|receiver| receiver.world_from_plane.inverse())
             .collect();
-        let is_above_any = |light: &Light| {
-            planes_from_world
-                .iter()
-                .any(|plane_from_world| light.is_above(plane_from_world))
-        };
-        let (mut indices, below): (Vec<usize>, Vec<usize>) =
-            (0..listed.len()).partition(|index| is_above_any(&listed[*index]));
+        let used = UsedLights::new(listed, &planes_from_world);
+        let used_of_list = used.of(listed);
         let mut warnings = Vec::new();
-        if !below.is_empty() {
-            warnings.push(Warning::LightsBelowReceivers { lights: below });
+        if !used.below.is_empty() {
+            warnings.push(Warning::LightsBelowReceivers { lights: used.below });
         }
-        if indices.len() > MAX_LIGHTS {
+        if used.n_left_out > 0 {
             warnings.push(Warning::LightsLeftOut {
-                n_lights: indices.len() - MAX_LIGHTS,
+                n_lights: used.n_left_out,
             });
-            indices.truncate(MAX_LIGHTS);
         }
         Self {
             listed: listed.to_vec(),
-            used: indices.iter().map(|index| listed[*index]).collect(),
-            indices,
+            used: used_of_list,
+            indices: used.indices,
             warnings,
         }
     }

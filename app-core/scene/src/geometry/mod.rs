@@ -6,3 +6,4 @@ pub mod disc;
 pub mod edges;
 pub mod nearest_receivers;
 pub mod opaque;
+pub mod used_lights;
