@@ -66,11 +66,12 @@ pub(crate) fn photograph_from_plate(level: &Level) -> Option<DQuat> {
             })
             .collect(),
     });
+    let patches = Patches::of(&plate);
     let matches: Vec<Match> = photograph
         .corners()
         .into_iter()
         .filter_map(|corner| {
-            let found = plate.find(&photograph, corner);
+            let found = patches.find(photograph.patch(corner)?, corner);
             (!found.is_empty()).then(|| Match {
                 of_photograph: ray(&level.intrinsics, corner),
                 of_plate: found.into_iter().map(|at| ray(&level.intrinsics, at)).collect(),
@@ -174,17 +175,49 @@ impl Gray {
         0.5 * (xx + yy - ((xx - yy).powi(2) + 4.0 * xy * xy).sqrt())
     }
 
-    /// Matches of another picture's neighbourhood of a place in this picture, the best first.
-    fn find(&self, other: &Self, place: IVec2) -> Vec<IVec2> {
-        let Some(template) = other.patch(place) else {
-            return Vec::new();
-        };
+    /// Every other pixel around a place, minus the mean and of unit length; `None` near the border,
+    /// or without contrast.
+    fn patch(&self, place: IVec2) -> Option<Patch> {
+        let mut patch = [0.0; 49];
+        for (value, step) in patch.iter_mut().zip(places(IVec2::splat(HALF_PX + 1))) {
+            *value = self.at(place + 2 * step - HALF_PX);
+        }
+        let mean = patch.iter().sum::<f32>() / 49.0;
+        let length = patch
+            .iter()
+            .map(|value| (value - mean).powi(2))
+            .sum::<f32>()
+            .sqrt();
+        (length.is_finite() && length > 0.0).then(|| patch.map(|value| (value - mean) / length))
+    }
+}
+
+/// A neighbourhood of a place.
+type Patch = [f32; 49];
+
+/// The neighbourhoods of all places of a picture.
+struct Patches {
+    size_px: IVec2,
+    patches: Vec<Option<Patch>>,
+}
+
+impl Patches {
+    fn of(gray: &Gray) -> Self {
+        let patches = places(gray.size_px).map(|place| gray.patch(place));
+        Self {
+            size_px: gray.size_px,
+            patches: patches.collect(),
+        }
+    }
+
+    /// Matches of a place's neighbourhood in another picture, the best first.
+    fn find(&self, template: Patch, place: IVec2) -> Vec<IVec2> {
         #[allow(clippy::cast_possible_truncation, reason = "pixels")]
         let reach_px = (REACH * f64::from(self.size_px.x)) as i32;
         let around = places(IVec2::splat(2 * reach_px + 1)).map(|step| place + step - reach_px);
         let mut like: Vec<(f32, IVec2)> = around
             .filter_map(|at| {
-                let patch = self.patch(at)?;
+                let patch = self.patches[index_in(self.size_px, at)?]?;
                 let correlation: f32 = patch.iter().zip(&template).map(|(a, b)| a * b).sum();
                 (correlation >= LEAST_CORRELATION).then_some((correlation, at))
             })
@@ -201,21 +234,5 @@ impl Gray {
             }
         }
         found
-    }
-
-    /// Every other pixel around a place, minus the mean and of unit length; `None` near the border,
-    /// or without contrast.
-    fn patch(&self, place: IVec2) -> Option<[f32; 49]> {
-        let mut patch = [0.0; 49];
-        for (value, step) in patch.iter_mut().zip(places(IVec2::splat(HALF_PX + 1))) {
-            *value = self.at(place + 2 * step - HALF_PX);
-        }
-        let mean = patch.iter().sum::<f32>() / 49.0;
-        let length = patch
-            .iter()
-            .map(|value| (value - mean).powi(2))
-            .sum::<f32>()
-            .sqrt();
-        (length.is_finite() && length > 0.0).then(|| patch.map(|value| (value - mean) / length))
     }
 }

@@ -19,9 +19,9 @@ use crate::picture::{Level, Mask};
 use crate::pose::{self, Standing};
 use crate::shape::Shape;
 use crate::things::groups::{groups, place_of};
-use crate::toy_search::{Followed, FoundToy, Search, distinguished};
+use crate::toy_search::{Followed, FoundToy, Search};
 use app_scene::frame::FrameInput;
-use app_scene::scene::Scene;
+use app_scene::scene::{Camera, Scene};
 
 /// Number of starting turns about the table's normal.
 const N_TURNS: u32 = 12;
@@ -29,11 +29,11 @@ const N_TURNS: u32 = 12;
 const N_FOLLOWED: usize = 8;
 /// Maximum number of refined poses.
 const N_REFINED: usize = 3;
-/// Largest distance between the outlines of a pose and the picture, in pixels, at which the pose is
-/// refined.
+/// Largest distance between the outlines of a pose and the picture, in pixels of the largest level, at
+/// which the pose is refined.
 const MOST_REFINED_PX: f64 = 2.0;
 /// Following ends once that many guesses lead to the same pose with an outline within that
-/// distance, in pixels.
+/// distance, in pixels of the largest level.
 const N_AGREED: usize = 2;
 const AGREED_PX: f64 = 0.6;
 /// Smallest share of the picture that can be a toy.
@@ -67,7 +67,7 @@ impl TableChange {
     /// As [`Aligner::align`](crate::Aligner::align).
     pub fn of(scene: &Scene, input: &FrameInput) -> Result<Self, AlignError> {
         check(scene, input)?;
-        let photograph = Photograph::new(scene, input, None);
+        let photograph = Photograph::new(scene, input);
         let tiny = photograph.pyramid().at_most(pose::TINY_PIXELS);
         if tiny.plate.is_none() {
             return Ok(Self::None);
@@ -83,7 +83,7 @@ impl TableChange {
         regions.sort_by_key(|region| Reverse(region.len()));
         let mut objects = regions
             .iter()
-            .filter_map(|region| object(region, scene, (input, size_px)));
+            .filter_map(|region| object(region, scene, (&input.camera, &tiny)));
         Ok(match objects.next() {
             Some(object) => Self::Object(object),
             None if are_at_border => Self::AtBorder,
@@ -93,20 +93,18 @@ impl TableChange {
 }
 
 /// A region of a reduced picture as an object on the first receiver; `None` above its horizon.
-fn object(region: &[IVec2], scene: &Scene, (input, size_px): (&FrameInput, IVec2)) -> Option<NewObject> {
-    let to_picture = f64::from(scene.width_px) / f64::from(size_px.x.max(1));
+fn object(region: &[IVec2], scene: &Scene, (camera, tiny): (&Camera, &Level)) -> Option<NewObject> {
     let n = region.len() as f64;
     let sum: DVec2 = region.iter().map(|at| at.as_dvec2() + 0.5).sum();
+    let ray = tiny.intrinsics.ray(sum / n);
     Some(NewObject {
-        at: on_receiver(scene, input, to_picture * sum / n)?,
-        share: n / f64::from(size_px.x * size_px.y),
+        at: on_receiver(scene, &camera.world_from_camera, ray)?,
+        share: n / f64::from(tiny.frame.size_px.element_product()),
     })
 }
 
-/// Intersection of a pixel's ray with the first receiver, in the world; `None` above its horizon.
-fn on_receiver(scene: &Scene, input: &FrameInput, pixel: DVec2) -> Option<DVec3> {
-    let ray = input.camera.intrinsics.ray(pixel);
-    let world_from_camera = input.camera.world_from_camera;
+/// Intersection of a camera's ray with the first receiver, in the world; `None` above its horizon.
+fn on_receiver(scene: &Scene, world_from_camera: &DMat4, ray: DVec3) -> Option<DVec3> {
     let (eye, ray) = (
         world_from_camera.w_axis.truncate(),
         world_from_camera.transform_vector3(ray),
@@ -321,14 +319,15 @@ impl StandingSearch {
             return Ok(Stage::Follow(waiting));
         };
         self.followed.push(followed);
+        let outline_px = search.in_picture_px(&followed);
         if self
             .best
             .and_then(|best| best.outline_px)
-            .is_none_or(|px| followed.outline_px < px)
+            .is_none_or(|px| outline_px < px)
         {
             self.best = Some(StandingPose {
                 world_from_object: followed.world_from_object,
-                outline_px: Some(followed.outline_px),
+                outline_px: Some(outline_px),
             });
         }
         let same = self.followed.iter().filter(|other| {
@@ -370,7 +369,7 @@ impl StandingSearch {
         };
         self.found.extend(search.refine(&pose.world_from_object)?);
         self.found.sort_by(|a, b| a.outline_px.total_cmp(&b.outline_px));
-        if let Some(best) = distinguished(self.found.clone()).first() {
+        if let Some(best) = search.distinguished(self.found.clone()).first() {
             self.best = Some(StandingPose {
                 world_from_object: best.world_from_object,
                 outline_px: Some(best.outline_px),

@@ -12,7 +12,7 @@ use glam::{DMat4, DVec3, IVec2};
 use crate::camera::{Finder, corrected};
 use crate::error::{AlignError, check};
 use crate::hand::photograph_from_plate;
-use crate::photograph::{MOST_OUTLINE_PX, Photograph};
+use crate::photograph::Photograph;
 use crate::picture::{Level, Picture, Pyramid};
 use crate::placed_receivers::planes_under;
 use crate::pose::{self, Paint, Start};
@@ -27,7 +27,7 @@ pub use crate::pose::ViewDirection;
 const N_FOLLOWED: usize = 24;
 /// Largest number of poses that are fully refined.
 const N_REFINED: usize = 6;
-/// Largest distance of a pose's outline for refinement, in pixels.
+/// Largest distance of a pose's outline for refinement, in pixels of the largest level.
 const MOST_REFINED_PX: f64 = 2.0;
 /// Number of guesses that must lead to a pose: a single one may match by chance.
 const LEAST_SUPPORT: usize = 2;
@@ -41,7 +41,7 @@ const SAME_TURN_RAD: f64 = 0.1;
 /// Side of the cells that points of a silhouette are merged in, over the toy's radius.
 const CELL: f64 = 0.02;
 /// Another pose is a rival if its outline's distance is at most this multiple of the best one's,
-/// plus this many pixels.
+/// plus this many pixels of the largest level.
 const RIVAL: f64 = 1.5;
 const RIVAL_PX: f64 = 0.1;
 /// A rival whose colour difference is at most this multiple of the best one's is ambiguous with it.
@@ -104,11 +104,12 @@ pub fn find_toy(
     let mut scene = Scene::clone(scene);
     scene.uncertainty.are_receivers_guessed = true;
     let mut cameras = Finder::default();
-    register_plates(&mut scene, input, &mut cameras);
+    let turned: Vec<Option<Camera>> = scene.plates.iter().map(|plate| turned(plate, input)).collect();
+    register_plates(&mut scene, input, (&turned, &mut cameras));
     let search = Search::new(Arc::new(scene.clone()), input.clone())?;
     let followed = search.followed(directions)?;
-    let nearest_px = followed.first().map(|pose| pose.outline_px);
-    let mut found = distinguished(search.refined(&followed)?);
+    let nearest_px = followed.first().map(|pose| search.in_picture_px(pose));
+    let mut found = search.distinguished(search.refined(&followed)?);
     if let [one] = &mut found[..] {
         // The plates were registered by a guess of the table's plane, which is now known from the
         // toy.
@@ -117,7 +118,7 @@ pub fn find_toy(
             receiver.world_from_plane = *world_from_table;
         }
         let before = scene.plates.clone();
-        if register_plates(&mut scene, input, &mut cameras) {
+        if register_plates(&mut scene, input, (&turned, &mut cameras)) {
             let search = Search::new(Arc::new(scene.clone()), input.clone())?;
             match search.refine(&one.world_from_object)? {
                 Some(refined) => *one = refined,
@@ -132,12 +133,26 @@ pub fn find_toy(
     })
 }
 
-/// Corrects the cameras of the plates, each relative to the photograph. Returns whether any
-/// changed.
-fn register_plates(scene: &mut Scene, input: &FrameInput, cameras: &mut Finder) -> bool {
+/// A plate's camera if it stood at the photograph's, by common corners of both pictures; `None` if it is
+/// not turned, or if these do not tell.
+fn turned(plate: &Plate, input: &FrameInput) -> Option<Camera> {
+    let photograph_from_plate = photograph_from_plate(&level_with(plate, input))?;
+    Some(Camera {
+        world_from_camera: input.camera.world_from_camera * DMat4::from_quat(photograph_from_plate),
+        ..plate.camera
+    })
+}
+
+/// Corrects the cameras of the plates, each relative to the photograph; `turned` are those by common
+/// corners. Returns whether any changed.
+fn register_plates(
+    scene: &mut Scene,
+    input: &FrameInput,
+    (turned, cameras): (&[Option<Camera>], &mut Finder),
+) -> bool {
     let mut is_any_moved = false;
-    for plate in &mut scene.plates {
-        let camera = registered(plate, input, &scene.receivers, cameras);
+    for (plate, turned) in scene.plates.iter_mut().zip(turned) {
+        let camera = registered((plate, *turned), input, &scene.receivers, cameras);
         is_any_moved |= camera != plate.camera;
         plate.camera = camera;
     }
@@ -146,15 +161,16 @@ fn register_plates(scene: &mut Scene, input: &FrameInput, cameras: &mut Finder) 
 
 /// The camera of a plate relative to the photograph: the best estimate from the given one, from a
 /// wider search, and from common corners.
-fn registered(plate: &Plate, input: &FrameInput, receivers: &[Receiver], cameras: &mut Finder) -> Camera {
+fn registered(
+    (plate, turned): (&Plate, Option<Camera>),
+    input: &FrameInput,
+    receivers: &[Receiver],
+    cameras: &mut Finder,
+) -> Camera {
     let from_hand = PoseUncertainty {
         position_m: Some(HAND_M),
         rotation_rad: Some(HAND_RAD),
     };
-    let turned = photograph_from_plate(&level_with(plate, input)).map(|turn| Camera {
-        world_from_camera: plate.camera.world_from_camera * DMat4::from_quat(turn),
-        ..plate.camera
-    });
     let starts = [
         Some((plate.camera, PoseUncertainty::default())),
         Some((plate.camera, from_hand)),
@@ -215,13 +231,14 @@ pub(crate) struct Search {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Followed {
     pub(crate) world_from_object: DMat4,
+    /// Distance of the outline, in pixels of the largest level.
     pub(crate) outline_px: f64,
 }
 
 impl Search {
     pub(crate) fn new(scene: Arc<Scene>, input: FrameInput) -> Result<Self, AlignError> {
         Ok(Self {
-            photograph: Photograph::new(&scene, &input, None),
+            photograph: Photograph::new(&scene, &input),
             upright: Shape::new(&scene, &input.world_from_object)?,
             scene,
             input,
@@ -234,6 +251,11 @@ impl Search {
             self.upright.merged(CELL * self.upright.radius_m),
             self.photograph.pyramid().at_most(pose::TINY_PIXELS),
         )
+    }
+
+    /// Distance of a followed outline, in pixels of the picture.
+    pub(crate) fn in_picture_px(&self, followed: &Followed) -> f64 {
+        self.photograph.pyramid().picture_px() * followed.outline_px
     }
 
     /// The best guesses, followed by coarse and fine rounds, the nearest outline first.
@@ -314,7 +336,7 @@ impl Search {
     pub(crate) fn refine(&self, world_from_object: &DMat4) -> Result<Option<FoundToy>, AlignError> {
         let given = self.input.clone().with_world_from_object(*world_from_object);
         let pose = self.photograph.pose(&self.scene, &given, None)?;
-        let Some(report) = pose.report.filter(|report| report.shown_px() <= MOST_OUTLINE_PX) else {
+        let Some(report) = pose.report.filter(|_| pose.is_seen()) else {
             return Ok(None);
         };
         // Motion from its given upright place.
@@ -327,6 +349,21 @@ impl Search {
             deviation: report.deviation,
             world_from_tables: planes_under(&self.scene, &pose.world_from_object, up)?,
         }))
+    }
+
+    /// The possible poses among those sorted by their outlines: the best one by its colours among
+    /// similar outlines, and those that are ambiguous with it.
+    pub(crate) fn distinguished(&self, found: Vec<FoundToy>) -> Vec<FoundToy> {
+        let rival_px = RIVAL_PX * self.photograph.pyramid().picture_px();
+        let Some(most_px) = found.first().map(|best| RIVAL * best.outline_px + rival_px) else {
+            return found;
+        };
+        let mut rivals: Vec<FoundToy> = found;
+        rivals.retain(|rival| rival.outline_px <= most_px);
+        rivals.sort_by(|a, b| a.color_difference.total_cmp(&b.color_difference));
+        let most = rivals.first().map_or(0.0, |best| ALIKE * best.color_difference);
+        rivals.retain(|rival| rival.color_difference <= most);
+        rivals
     }
 
     pub(crate) fn are_one(&self, a: &DMat4, b: &DMat4) -> bool {
@@ -371,18 +408,4 @@ impl Search {
         }
         Ok(if n > 0.0 { sum / n } else { MOST_DIFFERENT })
     }
-}
-
-/// The possible poses among those sorted by their outlines: the best one by its colours among
-/// similar outlines, and those that are ambiguous with it.
-pub(crate) fn distinguished(found: Vec<FoundToy>) -> Vec<FoundToy> {
-    let Some(most_px) = found.first().map(|best| RIVAL * best.outline_px + RIVAL_PX) else {
-        return found;
-    };
-    let mut rivals: Vec<FoundToy> = found;
-    rivals.retain(|rival| rival.outline_px <= most_px);
-    rivals.sort_by(|a, b| a.color_difference.total_cmp(&b.color_difference));
-    let most = rivals.first().map_or(0.0, |best| ALIKE * best.color_difference);
-    rivals.retain(|rival| rival.color_difference <= most);
-    rivals
 }
