@@ -8,17 +8,19 @@ use glam::{DMat4, DQuat, DVec3};
 
 use crate::pose::{Plane, feet};
 use crate::shape::Shape;
+use app_scene::geometry::nearest_receivers::nearest_to_toy;
 use app_scene::scene::{Receiver, Scene};
 use app_scene::toy::ToyError;
 
-/// All receivers of a scene, moved as one so that the toy stands on the most level of them; `None`
+/// All receivers of a scene, moved as one so that the toy stands on the nearest of the most level; `None`
 /// if the toy has no three feet that support it.
 pub(super) fn placed_receivers(
     scene: &Scene,
     world_from_object: &DMat4,
 ) -> Result<Option<Vec<Receiver>>, ToyError> {
     let shape = Shape::new(scene, world_from_object)?;
-    let planes = scene.receivers.iter().map(plane_of);
+    let nearest = nearest_to_toy(scene, world_from_object);
+    let planes = nearest.into_iter().map(|index| plane_of(&scene.receivers[index]));
     let Some(plane) = Plane::most_level(planes, DVec3::Y) else {
         return Ok(None);
     };

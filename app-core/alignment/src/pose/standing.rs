@@ -13,6 +13,8 @@ use crate::shape::Shape;
 pub(super) const DEVIATION_M: f64 = 1.5e-4;
 /// Largest inclination of a standing toy, in radians.
 const MOST_LEAN_RAD: f64 = 0.12;
+/// Difference of the inclinations, in radians, of planes that are equally level: a tracker's error.
+const AS_LEVEL_RAD: f64 = 0.01;
 /// Largest inclination of a guessed plane against the toy's feet, in radians: beyond it, the toy
 /// stands on other feet.
 const MOST_GUESSED_LEAN_RAD: f64 = 0.5;
@@ -41,9 +43,15 @@ pub(crate) struct Ground {
 }
 
 impl Plane {
-    /// The most level of some planes: a toy that touches a wall does not stand on it.
+    /// The first of the most level of some planes: a toy that touches a wall does not stand on it.
     pub(crate) fn most_level(planes: impl Iterator<Item = Self>, up: DVec3) -> Option<Self> {
-        planes.max_by(|a, b| a.normal.dot(up).total_cmp(&b.normal.dot(up)))
+        let planes = planes.map(|plane| (plane.normal.angle_between(up), plane));
+        let planes: Vec<(f64, Self)> = planes.collect();
+        let least_rad = planes.iter().map(|(tilt_rad, _)| *tilt_rad).reduce(f64::min)?;
+        let level = planes
+            .into_iter()
+            .find(|(tilt_rad, _)| *tilt_rad <= least_rad + AS_LEVEL_RAD);
+        level.map(|(_, plane)| plane)
     }
 
     /// Distance of a point on the side of the normal, in metres.
