@@ -2,26 +2,29 @@
 
 mod base;
 mod conditions;
+mod unlit;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DMat4, DVec3};
 
-use super::lights::{Counted, FoundLight, Hints, InitialLight, Relight, Watched};
+use super::lights::{FoundLight, Hints, InitialLight, Relight};
 use super::picture::{Mask, Picture, Pyramid};
 use super::receivers::{SeenReceiver, plate_for};
 use super::report::{AssumedLight, EstimatedLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::rigid_motion::Matrix6;
 use super::shape::Shape;
-use super::without_people::without_people;
+use super::without_people::people;
 use super::{lights, pose};
 use crate::no_light::NoLight;
 use crate::probe::TrackedLight;
 use app_scene::frame::FrameInput;
-use app_scene::scene::{Light, LightUncertainty, Plate, PoseUncertainty, Scene, check};
+use app_scene::geometry::nearest_receivers::nearest_to_toy;
+use app_scene::scene::{Light, LightUncertainty, PoseUncertainty, Scene, check};
 use app_scene::toy::ToyError;
+use unlit::UnlitToy;
 
-/// Largest distance between the outlines of pose and picture, in pixels, of a successful estimate.
+/// Largest distance between the outlines of pose and picture, in pixels of the largest level, of a successful estimate.
 pub(super) const MOST_OUTLINE_PX: f64 = 1.0;
 /// Largest distance of the lowest point of a resting toy from its plane, over its radius.
 const RESTING: f64 = 0.05;
@@ -35,32 +38,59 @@ const ROUNDING: f64 = 1e-6;
 pub(super) struct Photograph {
     pyramid: Arc<Pyramid>,
     receivers: Vec<SeenReceiver>,
+    /// The place of each in the scene's list, and those of all others.
+    in_scene: Vec<usize>,
     camera_from_world: DMat4,
+    /// What does not depend on lights, once lights were judged.
+    unlit: OnceLock<UnlitToy>,
 }
 
 impl Photograph {
-    /// Withheld pixels are not read, nor are those of people.
-    pub(super) fn new(scene: &Scene, input: &FrameInput, withheld: Option<&Mask>) -> Self {
+    /// The pixels of people are not read.
+    pub(super) fn new(scene: &Scene, input: &FrameInput) -> Self {
+        Self::without(scene, input, people(input).as_ref())
+    }
+
+    /// Pixels that must not be read are unknown; those of people are among them.
+    pub(super) fn without(scene: &Scene, input: &FrameInput, unread: Option<&Mask>) -> Self {
         let camera_from_world = input.camera.world_from_camera.inverse();
         let receivers = SeenReceiver::near(scene, &input.world_from_object, &camera_from_world);
         let plate = plate_for(&scene.plates, &receivers, &input.camera);
-        let withheld = without_people(input, withheld.cloned());
-        let frame = Picture::without(input.image.rgba(), withheld.as_ref());
+        let frame = Picture::without(input.image.rgba(), unread);
+        let pyramid = Pyramid::new(frame, plate, input.camera.intrinsics);
+        Self::of(scene, input, Arc::new(pyramid))
+    }
+
+    /// With pictures of the input's camera.
+    pub(super) fn of(scene: &Scene, input: &FrameInput, pyramid: Arc<Pyramid>) -> Self {
+        let camera_from_world = input.camera.world_from_camera.inverse();
         Self {
-            pyramid: Arc::new(Pyramid::new(frame, plate, input.camera.intrinsics)),
-            receivers,
+            pyramid,
+            receivers: SeenReceiver::near(scene, &input.world_from_object, &camera_from_world),
+            in_scene: nearest_to_toy(scene, &input.world_from_object),
             camera_from_world,
+            unlit: OnceLock::new(),
+        }
+    }
+
+    /// With the receivers around a toy in another place, the nearest first.
+    pub(super) fn around_toy(self, scene: &Scene, world_from_object: &DMat4) -> Self {
+        Self {
+            receivers: SeenReceiver::near(scene, world_from_object, &self.camera_from_world),
+            in_scene: nearest_to_toy(scene, world_from_object),
+            unlit: OnceLock::new(),
+            ..self
         }
     }
 
     /// With the plate blurred as the pose estimate found the photograph; 0 for no blur.
-    pub(super) fn with_plate_spread(mut self, deviation_px: f64) -> Self {
-        if deviation_px > 0.0
-            && let Some(pyramid) = self.pyramid.with_plate_spread(deviation_px)
-        {
-            self.pyramid = Arc::new(pyramid);
+    pub(super) fn with_plate_spread(self, deviation_px: f64) -> Self {
+        let is_soft = deviation_px > 0.0;
+        let softened = is_soft.then(|| self.pyramid.with_plate_spread(deviation_px));
+        match softened.flatten() {
+            Some(pyramid) => self.with_pictures(pyramid),
+            None => self,
         }
-        self
     }
 
     pub(super) fn pyramid(&self) -> &Arc<Pyramid> {
@@ -133,6 +163,7 @@ impl Photograph {
             Some(false) => return None,
             None => RESTING * shape.radius_m,
         };
+        // The nearest first.
         let receivers = self.receivers.iter();
         let planes = receivers.filter_map(|receiver| receiver.plane_under(&shape.points, most_m));
         let up = self.camera_from_world.transform_vector3(DVec3::Y);
@@ -198,6 +229,7 @@ impl Photograph {
         let Some(found) = found else {
             return FoundPose {
                 world_from_object: *start,
+                picture_px: self.pyramid.picture_px(),
                 plate_spread_px: 0.0,
                 covariance: None,
                 report: None,
@@ -213,6 +245,7 @@ impl Photograph {
         let picture_px = self.pyramid.picture_px();
         FoundPose {
             world_from_object,
+            picture_px,
             plate_spread_px: found.plate_spread_px,
             covariance: is_better.then_some(found.covariance),
             report: Some(PoseAlignment {
@@ -269,39 +302,11 @@ impl Photograph {
         }))
     }
 
-    /// The loss that lights leave, with the toy in its place; `None` if too little of the receivers
-    /// is visible.
-    pub(super) fn watch(
-        &self,
-        scene: &Scene,
-        input: &FrameInput,
-        lights: (&[Light], Counted),
-    ) -> Result<Option<Watched>, ToyError> {
+    /// The light in this photograph over that in its plate; `None` without a plate.
+    pub(super) fn relight(&self, scene: &Scene, input: &FrameInput) -> Result<Option<Relight>, ToyError> {
         let shape = self.shape(scene, &input.world_from_object)?;
-        let world_from_camera = &input.camera.world_from_camera;
-        Ok(lights::watch(
-            lights,
-            &shape,
-            &self.receivers,
-            &self.pyramid,
-            world_from_camera,
-        ))
-    }
-
-    /// The scene's plates relit like this photograph; `None` without a plate.
-    pub(super) fn relit_plates(
-        &self,
-        scene: &Scene,
-        input: &FrameInput,
-    ) -> Result<Option<Vec<Plate>>, ToyError> {
-        let shape = self.shape(scene, &input.world_from_object)?;
-        let relight = Relight::of(&shape, &self.receivers, &self.pyramid, &self.camera_from_world);
-        let place = (scene, &input.world_from_object);
-        Ok(relight.map(|relight| {
-            let plates = scene.plates.iter();
-            let relit = plates.map(|plate| relight.plate(plate, place));
-            relit.collect()
-        }))
+        let (receivers, pyramid) = (&self.receivers, &self.pyramid);
+        Ok(Relight::of(&shape, receivers, pyramid, &self.camera_from_world))
     }
 
     /// Unlisted lights, with the toy in its place of uncertainty `pose`; around a probe's
@@ -411,6 +416,8 @@ pub(super) type EstimatedLights = Result<Vec<EstimatedLight>, NoLight>;
 pub(super) struct FoundPose {
     /// The pose, from object space.
     pub(super) world_from_object: DMat4,
+    /// Pixels of the picture per pixel of the largest level.
+    pub(super) picture_px: f64,
     /// The blur that makes the plate as soft as the photograph, in pixels of the largest level; 0
     /// if they are equally soft.
     pub(super) plate_spread_px: f64,
@@ -423,7 +430,8 @@ pub(super) struct FoundPose {
 impl FoundPose {
     /// Whether the outline fits the picture's.
     pub(super) fn is_seen(&self) -> bool {
-        self.report.is_some_and(|pose| pose.shown_px() <= MOST_OUTLINE_PX)
+        let most_px = MOST_OUTLINE_PX * self.picture_px;
+        self.report.is_some_and(|pose| pose.shown_px() <= most_px)
     }
 
     /// Whether it is within the uncertainty of the given pose.

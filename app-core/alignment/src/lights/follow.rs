@@ -2,6 +2,7 @@
 
 use glam::{DMat4, IVec2};
 
+use super::coarse_in;
 use super::lamp::Lamp;
 use super::prior::Prior;
 use super::shadows::{LEAST_PIXELS, ROBUST_FAR, ROBUST_NEAR, Shadows};
@@ -48,7 +49,8 @@ impl Followed {
         let priors = lamps.iter().map(|lamp| Prior::given(lamp, &known)).collect();
         let mut raster = Rasterizer::default();
         let level = view.pyramid.level(Pyramid::SMALLEST);
-        let smallest = Shadows::new(&mut raster, (view.shape, view.receivers), level, None);
+        let coarse = coarse_in(view.shape, level);
+        let smallest = Shadows::new(&mut raster, (&coarse, view.receivers), level, None);
         if smallest.pixels.len() < LEAST_PIXELS {
             return None;
         }
@@ -87,8 +89,10 @@ impl Followed {
         for _ in 0..n_rounds {
             shadows.step(&mut raster, &mut self.lamps, &self.priors, self.robust)?;
         }
-        let shading = shadows.shading(&mut raster, &self.lamps, self.robust);
-        shading.has_light_of_all(self.lamps.len()).then_some(shading.loss)
+        let taken = shadows.taken_of_all(&mut raster, &self.lamps);
+        let shaded = shadows.shaded(&taken);
+        let shading = shaded.fit(view.receivers.len(), self.robust);
+        shaded.has_light_of_all(&shading).then_some(shading.loss)
     }
 }
 

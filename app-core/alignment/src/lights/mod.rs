@@ -36,7 +36,7 @@ mod wide;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
-use super::picture::Pyramid;
+use super::picture::{Level, Pyramid};
 use super::raster::Rasterizer;
 use super::receivers::SeenReceiver;
 use super::report::{AssumedLight, EstimatedLight, LightAlignment, LightDeviation, PoseDeviation};
@@ -54,7 +54,7 @@ use prior::Prior;
 pub(super) use reflection::{FoundReflection, reflected, reflection};
 pub(super) use relight::Relight;
 pub(super) use search::scores;
-pub(super) use watch::{Counted, Watched, watch};
+pub(super) use watch::{Counted, Unlit, Watched, watch};
 
 use shadows::{LEAST_PIXELS, ROBUST_FAR, ROBUST_NEAR, Shadows, WIDE_PENUMBRA_PX};
 
@@ -66,6 +66,8 @@ const FAR_STEP_RAD: f64 = 2.0 * SEARCH_STEP_RAD;
 const MOST_SEARCH_RAD: f64 = std::f64::consts::PI / 3.0;
 /// Number of points over a lamp then.
 const N_SEARCH_POINTS: usize = 7;
+/// Side of the cells, in pixels of a level, in which a toy's points are merged for a search there.
+const COARSE_PX: f64 = 0.5;
 /// Gauss-Newton rounds: level, number, and scale of the weights.
 const ROUNDS: [(usize, usize, f64); 3] = [(3, 4, ROBUST_FAR), (2, 4, ROBUST_NEAR), (1, 3, ROBUST_NEAR)];
 
@@ -150,12 +152,9 @@ pub(super) fn find(
     let mut raster = Rasterizer::default();
     let priors: Vec<Prior> = given.iter().map(|lamp| Prior::given(lamp, uncertainty)).collect();
     let mut lamps = given.clone();
-    let smallest = Shadows::new(
-        &mut raster,
-        (shape, receivers),
-        pyramid.level(Pyramid::SMALLEST),
-        None,
-    );
+    let level = pyramid.level(Pyramid::SMALLEST);
+    let coarse = coarse_in(shape, level);
+    let smallest = Shadows::new(&mut raster, (&coarse, receivers), level, None);
     smallest.search(&mut raster, &mut lamps, uncertainty);
     let mut losses = None;
     let mut deviations_rad = Vec::new();
@@ -174,11 +173,14 @@ pub(super) fn find(
         for _ in 0..n_rounds {
             deviations_rad = shadows.step(&mut raster, &mut lamps, &priors, robust)?;
         }
-        let shadings = [&given, &lamps].map(|lamps| shadows.shading(&mut raster, lamps, robust));
-        if !shadings[1].has_light_of_all(lamps.len()) {
+        let as_given = shadows.shading(&mut raster, &given, robust);
+        let taken = shadows.taken_of_all(&mut raster, &lamps);
+        let shaded = shadows.shaded(&taken);
+        let shading = shaded.fit(receivers.len(), robust);
+        if !shaded.has_light_of_all(&shading) {
             return None;
         }
-        losses = Some(shadings.map(|shading| shading.loss));
+        losses = Some([as_given.loss, shading.loss]);
         if lamps
             .iter()
             .all(|lamp| shadows.penumbra_px(lamp) > WIDE_PENUMBRA_PX)
@@ -254,6 +256,11 @@ impl Shadows<'_> {
             (*lamp, taken[index]) = (best.1, best.2);
         }
     }
+}
+
+/// A shape as fine as a level shows it.
+fn coarse_in(shape: &Shape, level: &Level) -> Shape {
+    shape.merged_in_px(COARSE_PX, level)
 }
 
 /// Steps to directions on a disc around a lamp's own, within a radius if one is known.

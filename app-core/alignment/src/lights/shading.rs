@@ -39,6 +39,7 @@ pub(super) struct Shaded<'a> {
 }
 
 /// Factors of each receiver and channel.
+#[derive(Debug)]
 pub(super) struct Shading {
     pub(super) factors: Vec<[Factors; 3]>,
     /// Mean robust loss of a channel of a pixel, in variances; of the factors before the last
@@ -54,13 +55,10 @@ impl Shading {
         shares.sum::<f64>() / 3.0
     }
 
-    /// Whether each of the lamps has positive light, over all receivers and channels.
-    pub(super) fn has_light_of_all(&self, n_lamps: usize) -> bool {
-        let given = |lamp: usize| -> f64 {
-            let factors = self.factors.iter().flatten();
-            factors.map(|factors| factors[FIRST_LAMP + lamp]).sum()
-        };
-        (0..n_lamps).all(|lamp| given(lamp) > 0.0)
+    /// A lamp's light, over all receivers and channels.
+    fn light_of(&self, lamp: usize) -> f64 {
+        let factors = self.factors.iter().flatten();
+        factors.map(|factors| factors[FIRST_LAMP + lamp]).sum()
     }
 }
 
@@ -130,6 +128,16 @@ impl Shaded<'_> {
             shading = self.refit(&shading, scale);
         }
         shading
+    }
+
+    /// Whether a shading has positive light of each lamp whose shadow is visible.
+    pub(super) fn has_light_of_all(&self, shading: &Shading) -> bool {
+        let is_visible = |taken: &[f32]| {
+            let mut both = taken.iter().zip(self.pixels);
+            both.any(|(taken, pixel)| *taken > 0.0 && pixel.has_evidence())
+        };
+        let mut lamps = self.lamps.iter().enumerate();
+        lamps.all(|(lamp, taken)| shading.light_of(lamp) > 0.0 || !is_visible(taken))
     }
 
     /// Mean robust loss of a shading, for a channel of the pixels with a property; 0 without any.

@@ -41,7 +41,7 @@ const GROWN: f64 = 1.5;
 pub(super) struct Shadows<'a> {
     pub(super) caster: Caster<'a>,
     pub(super) pixels: Vec<ReceiverPixel>,
-    ambient: Vec<Ambient>,
+    pub(super) ambient: Vec<Ambient>,
     /// Light on the place without a toy, relative to that at the toy's foot.
     unshadowed: Vec<f32>,
     /// Whether a plate shows the receivers without the toy.
@@ -86,7 +86,6 @@ impl<'a> Shadows<'a> {
         let size_px = level.frame.size_px;
         let corners = project(shape.points.iter().copied(), &level.intrinsics);
         let coverage = raster.coverage(&corners, &shape.faces, size_px);
-        let caster = Caster::new(shape, receivers, level.intrinsics, size_px).softened(level.softened_px);
         let is_wanted =
             |at: IVec2| rect.is_none_or(|[low, high]| at.cmpge(low).all() && at.cmple(high).all());
         let around = (shape.centre, REACH * shape.radius_m);
@@ -99,10 +98,24 @@ impl<'a> Shadows<'a> {
             around,
             is_wanted,
         );
+        let shadows = Self::of((shape, receivers), level, (pixels, Vec::new()));
         Self {
-            ambient: caster.ambient(raster, &pixels, N_DIRECTIONS),
-            caster,
-            has_plate,
+            ambient: shadows.caster.ambient(raster, &shadows.pixels, N_DIRECTIONS),
+            ..shadows
+        }
+    }
+
+    /// Receiver pixels of a level, with the ambient light that the toy blocks there.
+    pub(super) fn of(
+        (shape, receivers): (&'a Shape, &'a [SeenReceiver]),
+        level: &Level,
+        (pixels, ambient): (Vec<ReceiverPixel>, Vec<Ambient>),
+    ) -> Self {
+        let caster = Caster::new(shape, receivers, level.intrinsics, level.frame.size_px);
+        Self {
+            ambient,
+            caster: caster.softened(level.softened_px),
+            has_plate: level.plate.is_some(),
             is_rough: false,
             unshadowed: vec![1.0; pixels.len()],
             pixels,

@@ -2,10 +2,13 @@
 
 use glam::DMat4;
 
+use super::cast::Ambient;
 use super::lamp::Lamp;
+use super::receiver_pixels::ReceiverPixel;
 use super::relight::Relight;
+use super::shading::Shading;
 use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
-use crate::picture::Pyramid;
+use crate::picture::{Level, Pyramid};
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
 use crate::shape::Shape;
@@ -41,32 +44,59 @@ const SHADOWED: f32 = 0.5;
 /// are left beside two hands.
 const LEAST_SHADOWED: usize = 40;
 
+/// A small picture with its plate in the picture's own light, and the shadows in it without any lamp.
+#[derive(Debug)]
+pub(crate) struct Unlit {
+    level: Level,
+    pixels: Vec<ReceiverPixel>,
+    ambient: Vec<Ambient>,
+    no_light: Shading,
+}
+
+impl Unlit {
+    /// `None` if too little of the receivers is visible, and without a plate.
+    pub(crate) fn of(
+        (shape, receivers): (&Shape, &[SeenReceiver]),
+        pyramid: &Pyramid,
+        camera_from_world: &DMat4,
+    ) -> Option<Self> {
+        let relight = Relight::of(shape, receivers, pyramid, camera_from_world)?;
+        let level = relight.level(pyramid.level(pyramid.smallest_for_shadows()));
+        let mut raster = Rasterizer::default();
+        let shadows = Shadows::new(&mut raster, (shape, receivers), &level, None);
+        if shadows.pixels.len() < LEAST_PIXELS {
+            return None;
+        }
+        let no_light = shadows.shading(&mut raster, &[], ROBUST_FAR);
+        let Shadows { pixels, ambient, .. } = shadows;
+        Some(Self {
+            level,
+            pixels,
+            ambient,
+            no_light,
+        })
+    }
+}
+
 /// The loss that given lights leave in a picture; the intensity of each, and the light on the
-/// receivers without a toy, are fitted anew. `None` if too little of the receivers, or of the shadows that
-/// count, is visible, and without a plate.
+/// receivers without a toy, are fitted anew. `None` if too little of the shadows that count is visible.
 ///
 /// Measured on six captures and the bundled session, in all their frames: .001 to .019 with exact
 /// lights, .010 to .058 with one that is a degree off, .11 to .35 with one that is four.
 pub(crate) fn watch(
     (lights, counted): (&[Light], Counted),
-    shape: &Shape,
-    receivers: &[SeenReceiver],
-    pyramid: &Pyramid,
-    world_from_camera: &DMat4,
+    unlit: &Unlit,
+    (shape, receivers): (&Shape, &[SeenReceiver]),
+    camera_from_world: &DMat4,
 ) -> Option<Watched> {
-    let camera_from_world = world_from_camera.inverse();
     let lamps = lights
         .iter()
-        .map(|light| Lamp::new(light, &camera_from_world, shape.centre));
+        .map(|light| Lamp::new(light, camera_from_world, shape.centre));
     let lamps = lamps.collect::<Option<Vec<_>>>()?;
     let mut raster = Rasterizer::default();
-    let relight = Relight::of(shape, receivers, pyramid, &camera_from_world)?;
-    let level = relight.level(pyramid.level(pyramid.smallest_for_shadows()));
-    let mut shadows = Shadows::new(&mut raster, (shape, receivers), &level, None);
-    if shadows.pixels.len() < LEAST_PIXELS {
-        return None;
-    }
-    let no_light = shadows.shading(&mut raster, &[], ROBUST_FAR);
+    let no_light = &unlit.no_light;
+    let known = (unlit.pixels.clone(), unlit.ambient.clone());
+    let mut shadows = Shadows::of((shape, receivers), &unlit.level, known);
     let first_taken = shadows.taken_of_all(&mut raster, &lamps);
     let shading = shadows.shaded(&first_taken).fit(receivers.len(), ROBUST_FAR);
     shadows.light(&lamps, &shading);
@@ -83,7 +113,7 @@ pub(crate) fn watch(
             if n_shadowed < LEAST_SHADOWED {
                 return None;
             }
-            let without = shadows.shaded(&[]).loss(&no_light, ROBUST_FAR, is_shadowed);
+            let without = shadows.shaded(&[]).loss(no_light, ROBUST_FAR, is_shadowed);
             (without, lit.loss(&with_lights, ROBUST_FAR, is_shadowed))
         }
     };

@@ -1,6 +1,6 @@
 //! The conditions of a photograph: its softness, and the other things in it.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DMat4;
 
@@ -12,7 +12,6 @@ use crate::picture::Pyramid;
 use crate::things::Colored;
 use crate::{gloss, lights, pose, softness, things};
 use app_scene::frame::FrameInput;
-use app_scene::geometry::nearest_receivers::nearest_to_toy;
 use app_scene::gloss::Gloss;
 use app_scene::grain::Grain;
 use app_scene::scene::{Camera, Light, Scene};
@@ -34,8 +33,13 @@ pub(crate) struct Sighted {
 impl Photograph {
     /// With the plate blurred by a spread, in pixels of the picture.
     pub(crate) fn with_plate_as_soft(self, spread: Spread) -> Self {
-        let picture_px = self.pyramid.picture_px();
-        self.with_plate_spread(spread.mean_px() / picture_px)
+        let in_level = spread.times(self.pyramid.picture_px().powi(-2));
+        let is_soft = spread != Spread::NONE;
+        let softened = is_soft.then(|| self.pyramid.with_softened_plate(in_level));
+        match softened.flatten() {
+            Some(pyramid) => self.with_pictures(pyramid),
+            None => self,
+        }
     }
 
     /// With unknown pixels at things and at wrong parts of the plate.
@@ -48,11 +52,13 @@ impl Photograph {
     }
 
     /// The same place and camera with other pictures.
-    fn with_pictures(&self, pyramid: Pyramid) -> Self {
+    pub(super) fn with_pictures(&self, pyramid: Pyramid) -> Self {
         Self {
             pyramid: Arc::new(pyramid),
             receivers: self.receivers.clone(),
+            in_scene: self.in_scene.clone(),
             camera_from_world: self.camera_from_world,
+            unlit: OnceLock::new(),
         }
     }
 
@@ -162,7 +168,6 @@ impl Photograph {
                 ..Sighted::default()
             });
         };
-        let in_scene = nearest_to_toy(scene, &input.world_from_object);
         let planes = found.planes.into_iter().map(|found| {
             let name = if found.report.is_upright() {
                 "a side".to_owned()
@@ -172,7 +177,9 @@ impl Photograph {
             let receiver = found.plane.receiver(name, &input.camera.world_from_camera);
             FoundReceiver {
                 receiver,
-                instead_of: found.instead_of.and_then(|index| in_scene.get(index).copied()),
+                instead_of: found
+                    .instead_of
+                    .and_then(|index| self.in_scene.get(index).copied()),
                 report: found.report,
             }
         });
@@ -255,11 +262,10 @@ impl Photograph {
 
     /// The same for an outline whose blur is in pixels of the largest level.
     fn sharpness_beside(&self, outline: &pose::OutlineBlur<'_>, outline_px: Option<f64>) -> Sharpness {
-        let (level, picture_px) = (self.pyramid.level(0), self.pyramid.picture_px());
-        let coverage = pose::covered(outline.shape(), level);
+        let picture_px = self.pyramid.picture_px();
+        let levels = (0..=Pyramid::SMALLEST).map(|level| self.pyramid.level(level));
         let in_level = softness::sharpness(
-            level,
-            &coverage,
+            levels.map(|level| (level, pose::covered(outline.shape(), level))),
             &softness::Outline {
                 px: outline_px,
                 directed: &|| outline.directed(),
