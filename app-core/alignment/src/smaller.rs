@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use app_scene::geometry::color::{linear_from_srgb, linear_of_codes};
+use app_scene::geometry::color::{CodesOfLinear, linear_of_codes};
 use app_scene::scene::Image;
 
 /// Side of a block in pixels.
@@ -14,12 +14,7 @@ pub(super) fn smaller(image: &Arc<Image>, n_halvings: u32) -> Arc<Image> {
     if n_halvings == 0 {
         return Arc::clone(image);
     }
-    let light_of = linear_of_codes();
-    // A code covers half the distance to its neighbours.
-    let mut ends = [0.0_f32; 255];
-    for (code, end) in (0..u8::MAX).zip(&mut ends) {
-        *end = linear_from_srgb((f32::from(code) + 0.5) / 255.0);
-    }
+    let (light_of, codes) = (linear_of_codes(), CodesOfLinear::new());
     let side = 1_usize << n_halvings;
     let part = 1.0 / (side * side) as f32;
     let [width_px, height_px] = [image.width_px, image.height_px].map(|px| px >> n_halvings);
@@ -34,11 +29,7 @@ pub(super) fn smaller(image: &Arc<Image>, n_halvings: u32) -> Arc<Image> {
                     sums = [0, 1, 2].map(|channel| sums[channel] + light_of[usize::from(pixel[channel])]);
                 }
             }
-            let code = |sum: f32| {
-                let light = part * sum;
-                u8::try_from(ends.partition_point(|end| *end < light)).unwrap_or(u8::MAX)
-            };
-            rgba8.extend(sums.map(code));
+            rgba8.extend(sums.map(|sum| codes.code(part * sum)));
             rgba8.push(u8::MAX);
         }
     }

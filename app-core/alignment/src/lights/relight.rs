@@ -10,7 +10,7 @@ use crate::picture::{Level, Picture, Pyramid, UNKNOWN, places};
 use crate::raster::{Rasterizer, project};
 use crate::receivers::{SeenReceiver, receiver_at};
 use crate::shape::Shape;
-use app_scene::geometry::color::{code_of_linear, linear_of_codes};
+use app_scene::geometry::color::{CodesOfLinear, linear_of_codes};
 use app_scene::scene::{Camera, Image, Plate, Scene};
 
 /// Distance from the toy to which the light is estimated, over the toy's radius.
@@ -83,7 +83,7 @@ impl Relight {
         } = &plate.camera;
         let seen = SeenReceiver::near(scene, world_from_object, &world_from_camera.inverse());
         let here_from_there = self.camera_from_world * *world_from_camera;
-        let linear_of_code = linear_of_codes();
+        let (linear_of_code, codes) = (linear_of_codes(), CodesOfLinear::new());
         let Image {
             width_px,
             height_px,
@@ -101,7 +101,7 @@ impl Relight {
             };
             for (code, ratio) in texel.iter_mut().zip(ratio) {
                 let linear = linear_of_code[usize::from(*code)] * ratio.clamp(LEAST, MOST);
-                *code = code_of_linear(linear);
+                *code = codes.code(linear);
             }
         }
         Plate {

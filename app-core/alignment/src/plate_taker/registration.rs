@@ -6,6 +6,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::reduced::Reduced;
+use crate::median::{DEVIATION_OF_MEDIAN, median};
 
 /// Number of unknowns: shift along both axes, turn, zoom; gain and offset of the codes.
 const N_UNKNOWN: usize = 6;
@@ -130,17 +131,9 @@ impl<'a> Fit<'a> {
 
     /// Spread of the residuals: a median absolute deviation, at least a third of a code.
     fn spread(&self, residuals: &[Option<f32>]) -> f32 {
-        let mut sizes: Vec<f32> = residuals
-            .iter()
-            .flatten()
-            .map(|residual| residual.abs())
-            .collect();
-        if sizes.is_empty() {
-            return 1.0;
-        }
-        let middle = sizes.len() / 2;
-        let (_, median, _) = sizes.select_nth_unstable_by(middle, f32::total_cmp);
-        (1.4826 * *median).max(0.3)
+        let sizes = residuals.iter().flatten().map(|residual| residual.abs());
+        let spread = |median: f32| (DEVIATION_OF_MEDIAN as f32 * median).max(0.3);
+        median(sizes, f32::total_cmp).map_or(1.0, spread)
     }
 
     /// The step of the unknowns that reduces the residuals.

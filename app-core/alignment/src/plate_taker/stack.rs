@@ -6,7 +6,7 @@ use glam::{DMat4, DQuat, DVec3};
 
 use super::reduced::Reduced;
 use app_scene::camera_frame::CameraImage;
-use app_scene::geometry::color::{linear_from_srgb, linear_of_codes};
+use app_scene::geometry::color::{CodesOfLinear, linear_of_codes};
 use app_scene::scene::{Camera, Image, Intrinsics, Plate};
 
 /// Pictures from a camera that did not move.
@@ -69,16 +69,9 @@ impl Stack {
     }
 
     fn mean(&self) -> Image {
-        // A code covers half the distance to its neighbours.
-        let mut ends = [0.0_f32; 255];
-        for (code, end) in (0..u8::MAX).zip(&mut ends) {
-            *end = linear_from_srgb((f32::from(code) + 0.5) / 255.0);
-        }
+        let codes = CodesOfLinear::new();
         let part = 1.0 / self.n as f32;
-        let code = |sum: &f32| {
-            let light = part * sum;
-            u8::try_from(ends.partition_point(|end| *end < light)).unwrap_or(u8::MAX)
-        };
+        let code = |sum: &f32| codes.code(part * sum);
         let mut rgba8 = Vec::with_capacity(self.sums.len() / 3 * 4);
         for pixel in self.sums.chunks_exact(3) {
             rgba8.extend(pixel.iter().map(code));

@@ -31,6 +31,36 @@ pub fn code_of_linear(linear: f32) -> u8 {
     (255.0 * srgb_from_linear(linear.clamp(0.0, 1.0))).round() as u8
 }
 
+/// The codes of linear light by a table: as [`code_of_linear`], for many pixels.
+pub struct CodesOfLinear {
+    /// The most light of each code but the last.
+    ends: [f32; 255],
+}
+
+impl CodesOfLinear {
+    /// The table.
+    #[must_use]
+    pub fn new() -> Self {
+        // A code covers half the distance to its neighbours.
+        let end = |code: usize| linear_from_srgb((code as f32 + 0.5) / 255.0);
+        Self {
+            ends: std::array::from_fn(end),
+        }
+    }
+
+    /// The code nearest to light.
+    #[must_use]
+    pub fn code(&self, linear: f32) -> u8 {
+        u8::try_from(self.ends.partition_point(|end| *end < linear)).unwrap_or(u8::MAX)
+    }
+}
+
+impl Default for CodesOfLinear {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 /// The derivative of [`linear_from_srgb`] at a linear value in [0, 1]: linear light per unit of the
 /// encoded value.
 #[must_use]
