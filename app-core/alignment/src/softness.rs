@@ -65,9 +65,22 @@ pub(super) struct Outline<'a> {
 }
 
 /// The softness of a photograph, from its texture relative to the plate's and from the blur of its
-/// outline. Only a soft picture is tested for a motion.
-pub(super) fn sharpness(level: &Level, coverage: &Coverage, outline: &Outline<'_>) -> Sharpness {
-    let textures = Textures::new(level, coverage);
+/// outline. Only a soft picture is tested for a motion. If the toy fills the region around it in the largest level,
+/// `levels`, each half as large as the one before, are measured as far as needed.
+pub(super) fn sharpness<'a>(
+    levels: impl Iterator<Item = (&'a Level, Coverage)>,
+    outline: &Outline<'_>,
+) -> Sharpness {
+    let mut measured = levels.enumerate();
+    let textures = measured.find_map(|(index, (level, coverage))| {
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_possible_wrap,
+            reason = "a handful of levels"
+        )]
+        let level_px = 2.0_f64.powi(index as i32);
+        Textures::new(level, &coverage, level_px)
+    });
     let plate_spread = textures.as_ref().and_then(Textures::over_plate);
     let of_outline = outline.px.unwrap_or(0.0);
     let widest_px = plate_spread.map_or(0.0, Spread::widest_px);
@@ -121,11 +134,13 @@ struct Textures {
     frame: Grey,
     plate: Grey,
     is_used: Vec<bool>,
+    /// Their pixels, in those of the largest level.
+    level_px: f64,
 }
 
 impl Textures {
     /// `None` if too few pixels show the plate in the same light.
-    fn new(level: &Level, coverage: &Coverage) -> Option<Self> {
+    fn new(level: &Level, coverage: &Coverage, level_px: f64) -> Option<Self> {
         let plate = level.plate.as_ref()?;
         let (origin_px, size_px) = window(coverage, level.frame.size_px)?;
         let read = |picture: &super::picture::Picture| {
@@ -175,6 +190,7 @@ impl Textures {
             frame,
             plate,
             is_used,
+            level_px,
         })
     }
 
@@ -203,7 +219,7 @@ impl Textures {
         let is_met = measurements
             .iter()
             .all(|one| one.correlation < LEAST_CORRELATION || one.correlation >= CORRELATION);
-        is_met.then_some(spread)
+        is_met.then(|| spread.times(self.level_px.powi(2)))
     }
 
     /// The same as a motion, beside what the outline tells.
@@ -213,7 +229,9 @@ impl Textures {
             values: roots.values.iter().map(|root| root * root).collect(),
         };
         let pictures = [&light(&self.frame), &light(&self.plate)];
-        motion::measured(pictures, &self.is_used, outline)
+        let outline = outline.map(|outline| outline.times(self.level_px.powi(-2)));
+        let motion = motion::measured(pictures, &self.is_used, outline);
+        motion.map(|motion| motion.times(self.level_px.powi(2)))
     }
 }
 
