@@ -294,6 +294,13 @@ impl Pyramid {
         Some(self.with_largest(self.levels[0].with_plate_spread(deviation_px)?))
     }
 
+    /// With the plate blurred by a spread in pixels of the largest level; `None` without a plate.
+    pub(super) fn with_softened_plate(&self, spread: Spread) -> Option<Self> {
+        let largest = &self.levels[0];
+        let plate = largest.plate.as_ref()?.softened(spread);
+        Some(self.with_largest(largest.with_plate(plate, spread.mean_px())))
+    }
+
     /// With unknown pixels of the photograph at marks of the largest level.
     pub(super) fn clear_of(&self, marks: &[Mark]) -> Self {
         let mut level = self.levels[0].clone();
@@ -310,6 +317,15 @@ impl Pyramid {
         Self {
             levels: Self::levels_of(level),
             ..*self
+        }
+    }
+
+    /// Changes the projection, in pixels of the photograph.
+    pub(super) fn set_intrinsics(&mut self, intrinsics: Intrinsics) {
+        let mut of_level = intrinsics.scaled(self.picture_px.recip());
+        for level in &mut self.levels {
+            level.intrinsics = of_level;
+            of_level = of_level.scaled(0.5);
         }
     }
 
@@ -366,12 +382,17 @@ impl Level {
     /// a plate.
     pub(super) fn with_plate_spread(&self, deviation_px: f64) -> Option<Self> {
         let plate = self.plate.as_ref()?.spread(deviation_px);
-        Some(Self {
+        Some(self.with_plate(plate, deviation_px))
+    }
+
+    /// With a plate that was blurred by this standard deviation in pixels.
+    fn with_plate(&self, plate: Picture, deviation_px: f64) -> Self {
+        Self {
             intrinsics: self.intrinsics,
             frame: self.frame.clone(),
             plate: Some(plate),
             softened_px: self.softened_px.hypot(deviation_px),
-        })
+        }
     }
 
     fn halved(&self) -> Self {
@@ -423,6 +444,14 @@ impl Mask {
         if let Some(index) = index_in(self.size_px, at) {
             self.pixels[index] = true;
         }
+    }
+
+    /// The marks of this mask and of another one of the same size.
+    pub(super) fn with(mut self, other: &Self) -> Self {
+        for (own, other) in self.pixels.iter_mut().zip(&other.pixels) {
+            *own |= *other;
+        }
+        self
     }
 
     /// The mask with a square around each mark.

@@ -1,5 +1,7 @@
 //! Trials of a number, each with the pose and the lights that fit it best.
 
+use std::sync::Arc;
+
 use glam::{DMat4, DVec3};
 
 use super::unknown::{Taken, Unknown};
@@ -52,6 +54,8 @@ pub(super) struct Trials<'a> {
     /// The scene with that plate alone.
     scene: Scene,
     cameras: Finder,
+    /// The pictures of the latest trial, if those of all others are the same.
+    pictures: Option<Arc<Pyramid>>,
     /// At least one trial.
     tried: Vec<Tried>,
     level: usize,
@@ -74,7 +78,8 @@ impl<'a> Trials<'a> {
         let mut scene = scene.clone().with_plates(vec![given.clone()]);
         let mut cameras = Finder::default();
         let taken = unknown.taken(0.0, &given, input).ok_or(Unseen)?;
-        let (photograph, camera) = photograph(&mut scene, &mut cameras, taken);
+        let (photograph, camera) = photograph(&mut scene, &mut cameras, taken, None);
+        let pictures = unknown.pictures(&given, input, &photograph);
         let (world_from_object, outline_px) =
             posed(&scene, &photograph, (&input.world_from_object, Start::Given))?;
         let shape = photograph.shape(&scene, &world_from_object).map_err(|_| Unseen)?;
@@ -96,6 +101,7 @@ impl<'a> Trials<'a> {
             given,
             scene,
             cameras,
+            pictures,
             tried,
             level: Pyramid::SMALLEST,
             around,
@@ -110,12 +116,14 @@ impl<'a> Trials<'a> {
             given,
             scene,
             cameras,
+            pictures,
             tried,
             level,
             around,
         } = self;
         let taken = unknown.taken(at, given, input).ok_or(Unseen)?;
-        let (photograph, camera) = photograph(scene, cameras, taken);
+        let (photograph, camera) = photograph(scene, cameras, taken, pictures.take());
+        *pictures = unknown.pictures(given, input, &photograph);
         let near = nearest_to(tried, at).ok_or(Unseen)?;
         let (world_from_object, outline_px) = if tried[near].at == at {
             (tried[near].world_from_object, tried[near].outline_px)
@@ -158,7 +166,9 @@ impl<'a> Trials<'a> {
         let followed = first.followed.clone();
         let world_from_object = first.world_from_object;
         let taken = self.unknown.taken(0.0, &self.given, self.input).ok_or(Unseen)?;
-        let (photograph, _) = photograph(&mut self.scene, &mut self.cameras, taken);
+        let pictures = self.pictures.take();
+        let (photograph, _) = photograph(&mut self.scene, &mut self.cameras, taken, pictures);
+        self.pictures = self.unknown.pictures(&self.given, self.input, &photograph);
         let shape = photograph
             .shape(&self.scene, &world_from_object)
             .map_err(|_| Unseen)?;
@@ -198,15 +208,34 @@ fn nearest_to(tried: &[Tried], at: f64) -> Option<usize> {
     (0..tried.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
+/// Whether a plate was taken from a frame's place.
+fn is_from_place(plate: &Plate, camera: &Camera) -> bool {
+    let world_from_plate = &plate.camera.world_from_camera;
+    world_from_plate.abs_diff_eq(camera.world_from_camera, SAME_CAMERA)
+}
+
+impl Unknown {
+    /// The pictures of a trial, if all others have the same: not if a lens bends them, or if they show a plate from
+    /// another place.
+    fn pictures(self, plate: &Plate, input: &FrameInput, photograph: &Photograph) -> Option<Arc<Pyramid>> {
+        let is_of_place =
+            is_from_place(plate, &input.camera) && plate.camera.intrinsics == input.camera.intrinsics;
+        let are_same = is_of_place && !matches!(self, Self::Lens(_));
+        are_same.then(|| Arc::clone(photograph.pyramid()))
+    }
+}
+
 /// A frame with a number, and its camera: if no plate was taken from there, it is estimated
-/// relative to the plate.
-fn photograph(scene: &mut Scene, cameras: &mut Finder, taken: Taken) -> (Photograph, Camera) {
+/// relative to the plate. `pictures` are those of an earlier trial, if they are the same.
+fn photograph(
+    scene: &mut Scene,
+    cameras: &mut Finder,
+    taken: Taken,
+    pictures: Option<Arc<Pyramid>>,
+) -> (Photograph, Camera) {
     let Taken { plate, frame } = taken;
     let mut camera = frame.camera;
-    let is_same = plate
-        .camera
-        .world_from_camera
-        .abs_diff_eq(camera.world_from_camera, SAME_CAMERA);
+    let is_same = is_from_place(&plate, &camera);
     scene.plates = vec![plate];
     if !is_same {
         let found = cameras.find(
@@ -219,7 +248,14 @@ fn photograph(scene: &mut Scene, cameras: &mut Finder, taken: Taken) -> (Photogr
         }
     }
     let seen = frame.with_camera(camera);
-    (Photograph::new(scene, &seen, None), camera)
+    let photograph = match pictures {
+        Some(mut pictures) => {
+            Arc::make_mut(&mut pictures).set_intrinsics(camera.intrinsics);
+            Photograph::of(scene, &seen, pictures)
+        }
+        None => Photograph::new(scene, &seen),
+    };
+    (photograph, camera)
 }
 
 /// The pose with the best outline.
