@@ -66,10 +66,15 @@ impl Aligner {
         };
         let as_given = seen.input.clone().with_world_from_object(input.world_from_object);
         // The first look made the plate as soft as the outline seemed.
-        let clear = Photograph::new(&self.scene, &as_given, None)
+        let people = seen.view.people.as_ref();
+        let clear = Photograph::without(&self.scene, &as_given, people.map(AsRef::as_ref))
             .clear_of(&misleading.only(|mark| !is_of_wrong_plate(mark)))
             .with_mended_plate(&self.scene, &as_given, &misleading)?;
-        let again = self.posed(clear, input, (as_given, seen.view.camera_report))?;
+        let again = self.posed(
+            (clear, people.cloned()),
+            input,
+            (as_given, seen.view.camera_report),
+        )?;
         if !again.view.is_trusted(MOST_OUTLINE_PX) || (is_trusted && !is_sharp(&again)) {
             return Ok(seen);
         }

@@ -28,7 +28,7 @@ impl LightSearch {
     /// As [`Aligner::align`](super::Aligner::align).
     pub fn of(scene: &Scene, input: &FrameInput) -> Result<Option<Self>, AlignError> {
         check(scene, input)?;
-        let photograph = Photograph::new(scene, input, None);
+        let photograph = Photograph::new(scene, input);
         let shape = photograph.shape(scene, &input.world_from_object)?;
         let view = photograph.seen(&shape);
         let world_from_camera = &input.camera.world_from_camera;

@@ -32,7 +32,7 @@ pub struct Alignment {
     pub things: Option<Things>,
     /// The softness of the picture.
     pub sharpness: Sharpness,
-    /// The noise of the picture and of its plate from the same view; `None` if the picture
+    /// The noise of the picture and of its plate, as seen by its camera; `None` if the picture
     /// is clean, or if its grain is unknown.
     pub grain: Option<Grain>,
     /// The reflection of the receiver below the toy; `None` if it is matt, as far as the picture shows.

@@ -40,21 +40,21 @@ impl FoundPlanes {
 
     /// Things whose planes are to be searched, if a search is due: `may_be_alike` once those in the
     /// place's own colours, too, since these are sought anywhere.
-    pub(super) fn wanted(&mut self, may_be_alike: bool) -> Option<Colored> {
+    pub(super) fn wanted(&self, may_be_alike: bool) -> Option<Colored> {
         if !self.are_wanted() {
             return None;
         }
-        let is_alike = may_be_alike && !std::mem::replace(&mut self.is_alike_searched, true);
-        Some(if is_alike {
+        Some(if may_be_alike && !self.is_alike_searched {
             Colored::Alike
         } else {
             Colored::Otherwise
         })
     }
 
-    /// Adds the result of a search in a view that shows things; whether it found any.
-    pub(super) fn take(&mut self, planes: Vec<FoundReceiver>) -> bool {
+    /// Adds the result of a search for the planes of such things in a view that shows things; whether it found any.
+    pub(super) fn take(&mut self, planes: Vec<FoundReceiver>, planes_of: Option<Colored>) -> bool {
         self.n_searches += 1;
+        self.is_alike_searched |= planes_of == Some(Colored::Alike);
         let is_any = !planes.is_empty();
         self.n_before = self.found.len();
         self.report.extend(planes.iter().map(|found| found.report));
@@ -62,16 +62,17 @@ impl FoundPlanes {
         is_any
     }
 
-    /// The largest loss of the tops that the latest search found; `None` if it found none.
+    /// The largest loss of the tops that the latest search found by the toy's shadow; `None` if it found none.
     pub(super) fn latest_loss(&self) -> Option<f64> {
         let latest = self.found[self.n_before..].iter().map(|found| &found.report);
-        let tops = latest.filter(|plane| !plane.is_upright());
+        // Those that edges alone have corrected have no loss.
+        let tops = latest.filter(|plane| !plane.is_upright() && plane.losses != [0.0; 2]);
         tops.map(|plane| plane.losses[1]).reduce(f64::max)
     }
 
-    /// With as many searches as another count has.
+    /// With the searches that another count has.
     pub(super) fn count_as(&mut self, other: &Self) {
-        self.n_searches = other.n_searches;
+        (self.n_searches, self.is_alike_searched) = (other.n_searches, other.is_alike_searched);
     }
 
     /// Adds all planes to a scene that has none of them.

@@ -16,14 +16,15 @@ use app_scene::scene::{Light, LightUncertainty, PoseUncertainty, Scene, Uncertai
 use app_scene::toy::ToyError;
 
 impl Aligner {
-    /// Finds or watches the lights of a view; in the first one they correct the toy's pose.
+    /// Finds or watches the lights of a view; in the first one that shows the toy at its place they correct its pose.
     pub(super) fn with_lights(
         &mut self,
         mut seen: Seen,
         kept: Option<KeptLights>,
         given: Arc<[Light]>,
     ) -> Result<Seen, ToyError> {
-        let (is_first, before) = (kept.is_none(), Arc::clone(&self.scene));
+        let is_known = |kept: &KeptLights| kept.are_settled || self.are_shadows_withheld;
+        let (is_first, before) = (!kept.as_ref().is_some_and(is_known), Arc::clone(&self.scene));
         let mut lights = match kept {
             Some(kept) if self.are_shadows_withheld => kept,
             kept => self.look_at_lights(kept, given, &seen)?,

@@ -8,6 +8,7 @@ use super::lights::{Watched, is_resized};
 use super::photograph::{EstimatedLights, FoundLights};
 use super::report::{AssumedLight, LightAlignment};
 use crate::probe::TrackedLight;
+use app_scene::geometry::used_lights::UsedLights;
 use app_scene::scene::Light;
 
 /// Loss without any light below which no shadow is visible: noise and the light model leave as
@@ -49,9 +50,14 @@ pub(super) struct KeptLights {
     pub(super) is_long: bool,
     /// Whether what a list leaves unexplained in the latest view is of a thing before the toy.
     pub(super) is_beside_thing: bool,
+    /// Whether a view that shows the toy at its place was searched for lights and things.
+    pub(super) are_settled: bool,
+    /// Number of views without a plate that followed one in which no light was found. They are searched
+    /// again in the first, second, fourth, eighth... of these: each search takes seconds.
+    pub(super) n_unlit: u32,
     /// Their loss in the view of the estimate.
     explained: Option<Watched>,
-    /// The latest view with their shadows.
+    /// The latest view; `None` if it shows none of their shadows.
     latest: Option<Watched>,
     /// The view of a failed search.
     in_vain: Option<Watched>,
@@ -73,6 +79,8 @@ impl KeptLights {
             assumed: None,
             is_long: false,
             is_beside_thing: false,
+            are_settled: false,
+            n_unlit: 0,
             explained: None,
             latest: None,
             in_vain: None,
@@ -143,7 +151,7 @@ impl KeptLights {
         watched.unexplained <= MOST_UNEXPLAINED
     }
 
-    /// The fraction of the latest shadows that a list leaves unexplained, if that is too much.
+    /// The fraction of the latest view's shadows that a list leaves unexplained, if that is too much.
     pub(super) fn misfit(&self) -> Option<f64> {
         let is_misfit = self.is_list_that_leaves_too_much() && !self.is_beside_thing;
         self.latest.filter(|_| is_misfit).map(|latest| latest.unexplained)
@@ -184,6 +192,17 @@ impl KeptLights {
             latest: Some(now),
             ..self
         }
+    }
+
+    /// A list with these lights in place of those that are used of it; `None` if the list stays.
+    pub(super) fn in_list(&self, listed: &[Light], used: &UsedLights) -> Option<Arc<[Light]>> {
+        let applied = self.applied.as_ref()?;
+        let are_of_list = self.discovered.is_none() && !self.is_long;
+        Some(if are_of_list {
+            used.replaced(listed, applied)
+        } else {
+            Arc::clone(applied)
+        })
     }
 
     /// The lights that frames are shown with.
@@ -237,19 +256,24 @@ impl KeptLights {
         self.applied = Some(lights);
     }
 
-    /// Adds another view, and returns whether it needs other lights.
-    pub(super) fn watch(&mut self, now: Watched) -> bool {
-        if now.shadows < LEAST_SHADOWS {
-            return false;
-        }
-        self.latest = Some(now);
+    /// Adds another view, `None` if it does not show their shadows, and returns whether it needs other lights.
+    pub(super) fn watch(&mut self, now: Option<Watched>) -> bool {
+        self.latest = now.filter(|now| now.shadows >= LEAST_SHADOWS);
+        let Some(now) = self.latest else {
+            // An assumed light stays in a view that does not show the shadows.
+            return now.is_none() && !self.is_assumed();
+        };
         let is_as_before = self.explained.is_some_and(|then| is_as_well_explained(now, then));
         !is_as_before && !self.in_vain.is_some_and(|before| is_alike(before, now))
     }
 
-    /// Whether lights that leave `now` unexplained replace these, which fail to explain a view.
+    /// Whether lights that leave `now` unexplained replace these, which fail to explain a view: they must explain it as
+    /// well as these explained theirs, or at all.
     pub(super) fn are_replaced_by(&self, now: Watched) -> bool {
-        self.explained.is_none_or(|then| is_as_well_explained(now, then))
+        match self.explained {
+            Some(then) => is_as_well_explained(now, then),
+            None => Self::are_explained(now),
+        }
     }
 
     /// Records a view in which no better lights were found.
@@ -257,13 +281,13 @@ impl KeptLights {
         self.in_vain = Some(now);
     }
 
-    /// The unexplained fraction of the latest shadows; `None` without lights.
+    /// The unexplained fraction of the latest view's shadows; `None` if it shows none, and without lights.
     pub(super) fn unexplained(&self) -> Option<f64> {
         let latest = self.latest.filter(|_| !self.in_use().is_empty());
         latest.map(|latest| latest.unexplained)
     }
 
-    /// The unexplained fraction of the latest shadows; `None` if they are unchanged.
+    /// The unexplained fraction of the latest view's shadows; `None` if it shows none, or if they are unchanged.
     pub(super) fn doubt(&self) -> Option<f64> {
         let (then, latest) = (self.explained?, self.latest?);
         (!is_as_well_explained(latest, then)).then_some(latest.unexplained)

@@ -89,14 +89,16 @@ use glam::DMat4;
 use crate::probe::ProbeReport;
 use adapted::MOST_ADAPTED_PX;
 use app_scene::frame::FrameInput;
+use app_scene::geometry::used_lights::UsedLights;
 use app_scene::gloss::Gloss;
-use app_scene::scene::{Plate, Scene};
+use app_scene::scene::{Light, Plate, Scene};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 use before_toy::LightsOfView;
 use kept_lights::KeptLights;
 use kept_reflection::KeptReflection;
 use photograph::{MOST_OUTLINE_PX, Photograph};
+use picture::Mask;
 use ratio::{Ratio, Unknown};
 use view::{AlignedView, Seen};
 
@@ -256,14 +258,16 @@ impl Aligner {
     /// or the toy cannot be posed.
     pub fn align(&mut self, input: &FrameInput) -> Result<Alignment, AlignError> {
         error::check(&self.scene, input)?;
-        let given = input.lights_in(&self.scene);
+        let listed = input.lights_in(&self.scene);
+        let used = UsedLights::near(&self.scene, &listed, &input.world_from_object);
+        let given = used.of(&listed);
         let input = &self.with_ratio(input, &given)?;
         let is_view_known = self.view.as_ref().is_some_and(|view| view.is_of(input));
         // Estimated lights stay as long as the list does not change.
         let kept = self.lights.take().filter(|lights| lights.given == given);
         if is_view_known && kept.is_some() {
             self.lights = kept;
-            return Ok(self.aligned(input));
+            return Ok(self.aligned(input, (&listed, &used)));
         }
         self.align_plates();
         if given.is_empty() && self.probe.is_none() {
@@ -287,17 +291,16 @@ impl Aligner {
             self.held = Some(seen.view.world_from_object);
         }
         self.view = Some(seen.view);
-        Ok(self.aligned(input))
+        Ok(self.aligned(input, (&listed, &used)))
     }
 
     /// The view with the model adapted to the toy, in the first view that shows a difference. The pose stays.
     fn with_adapted_model(&mut self, mut seen: Seen) -> Result<Seen, ToyError> {
+        let is_near = seen.view.is_trusted(MOST_ADAPTED_PX);
+        let picture_px = seen.view.picture_px;
         let Some(pose) = &mut seen.view.report else {
             return Ok(seen);
         };
-        // Limits are in pixels of the largest level, which may be smaller than the picture.
-        let picture_px = seen.photograph.pyramid().picture_px();
-        let is_near = pose.shown_px() <= MOST_ADAPTED_PX * picture_px;
         let is_tried = self.model.is_some() || self.n_adaptations >= MOST_ADAPTATIONS;
         if is_tried || !is_near || !pose::adapt::is_doubtful(pose, picture_px) {
             return Ok(seen);
@@ -332,26 +335,30 @@ impl Aligner {
 
     /// Camera and pose in a new view.
     fn see(&mut self, input: &FrameInput, kept: Option<&KeptLights>) -> Result<Seen, ToyError> {
-        let withheld = self.withheld(input, (&input.camera, CAMERA_GROWN), kept)?;
-        let withheld = without_people::without_people(input, withheld);
+        let people = without_people::people(input).map(Arc::new);
+        let unread = |withheld: Option<Mask>| match (withheld, &people) {
+            (Some(withheld), Some(people)) => Some(Arc::new(withheld.with(people))),
+            (withheld, people) => withheld.map(Arc::new).or(people.clone()),
+        };
+        let withheld = unread(self.withheld(input, (&input.camera, CAMERA_GROWN), kept)?);
         let Scene {
             plates, receivers, ..
         } = &*self.scene;
-        let given = (input.image.rgba(), &input.camera, withheld.as_ref());
+        let given = (input.image.rgba(), &input.camera, withheld.as_deref());
         let found = self
             .cameras
             .find(given, (plates, receivers), &self.scene.uncertainty.camera);
         let (camera, camera_report) = camera::corrected(&input.camera, found);
         let input_seen = input.clone().with_camera(camera);
-        let withheld = self.withheld(input, (&camera, POSE_GROWN), kept)?;
-        let photograph = Photograph::new(&self.scene, &input_seen, withheld.as_ref());
-        self.posed(photograph, input, (input_seen, camera_report))
+        let withheld = unread(self.withheld(input, (&camera, POSE_GROWN), kept)?);
+        let photograph = Photograph::without(&self.scene, &input_seen, withheld.as_deref());
+        self.posed((photograph, people), input, (input_seen, camera_report))
     }
 
     /// The view of an input's toy in a photograph, whose input has the estimated camera and the given pose.
     fn posed(
         &self,
-        photograph: Photograph,
+        (photograph, people): (Photograph, Option<Arc<Mask>>),
         input: &FrameInput,
         (mut input_seen, camera_report): (FrameInput, Option<CameraAlignment>),
     ) -> Result<Seen, ToyError> {
@@ -362,18 +369,22 @@ impl Aligner {
         Ok(Seen {
             view: AlignedView {
                 image: input.image.clone(),
+                people,
                 given_camera: input.camera,
                 given: input.world_from_object,
                 camera: input_seen.camera,
                 camera_report,
                 world_from_object: found.world_from_object,
+                picture_px: found.picture_px,
                 plate_spread_px: found.plate_spread_px,
                 covariance: found.covariance,
                 report: found.report,
                 grain: photograph.grain(sharpness.plate_spread),
                 sharpness,
             },
-            photograph: photograph.with_plate_spread(found.plate_spread_px),
+            photograph: photograph
+                .around_toy(&self.scene, &found.world_from_object)
+                .with_plate_spread(found.plate_spread_px),
             input: input_seen,
         })
     }
@@ -398,7 +409,8 @@ impl Aligner {
         }
     }
 
-    fn aligned(&mut self, input: &FrameInput) -> Alignment {
+    /// The result in the latest view, whose list of lights this is.
+    fn aligned(&mut self, input: &FrameInput, (listed, used): (&[Light], &UsedLights)) -> Alignment {
         let reported = std::mem::replace(&mut self.reported_scene, Arc::clone(&self.scene));
         let (view, lights) = (self.view.as_ref(), self.lights.as_ref());
         let discovered = lights.and_then(|lights| lights.discovered.as_ref());
@@ -421,8 +433,9 @@ impl Aligner {
             is_relit: self.is_relit,
             planes: self.planes.report.clone(),
         };
-        let applied = lights.and_then(|lights| lights.applied.clone());
-        let off = report.pose.filter(|pose| pose.shown_px() > MOST_OUTLINE_PX);
+        let applied = lights.and_then(|lights| lights.in_list(listed, used));
+        let is_off = view.is_some_and(|view| !view.is_trusted(MOST_OUTLINE_PX));
+        let off = report.pose.filter(|_| is_off);
         let warnings = off.map(|pose| AlignmentWarning::Misaligned {
             outline_px: pose.shown_px(),
         });

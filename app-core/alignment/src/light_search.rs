@@ -7,10 +7,11 @@ use super::Aligner;
 use super::kept_lights::KeptLights;
 use super::lights::{Counted, Watched};
 use super::photograph::{MOST_OUTLINE_PX, Photograph};
+use super::receivers::nearest;
 use super::view::Seen;
 use crate::no_light::NoLight;
 use crate::things::{self, Colored};
-use app_scene::scene::{Light, LightUncertainty, MAX_LIGHTS, Scene};
+use app_scene::scene::{Light, LightUncertainty, MAX_LIGHTS, Plate, Scene};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 
@@ -42,13 +43,9 @@ impl Aligner {
         };
         let lights = KeptLights::listed(given, found);
         let watched = self.watch(&lights, seen)?;
-        // If a list states the uncertainty of its directions, nothing is searched beyond.
-        let is_bounded = self.scene.uncertainty.lights.direction_rad.is_some();
-        match watched {
-            Some(left) if !is_bounded && KeptLights::leaves_too_much(left) => {
-                self.search_beyond_list((lights, left), seen)
-            }
-            _ => Ok(lights.seen(watched)),
+        match watched.filter(|left| KeptLights::leaves_too_much(*left)) {
+            Some(left) => self.search_beyond_list((lights, left), seen),
+            None => Ok(lights.seen(watched)),
         }
     }
 
@@ -59,13 +56,16 @@ impl Aligner {
         (near, left): (KeptLights, Watched),
         seen: &Seen,
     ) -> Result<KeptLights, ToyError> {
-        let others = self.find_anywhere(Arc::clone(&near.given), seen)?;
-        let watched = self.watch(&others, seen)?;
-        if watched.is_some_and(|watched| others.stand_in_for(watched, left)) {
-            return Ok(others.seen(watched));
-        }
-        if let Some(line) = self.line_for((&near, left), seen)? {
-            return Ok(line);
+        // If a list states the uncertainty of its directions, nothing is searched beyond.
+        if self.scene.uncertainty.lights.direction_rad.is_none() {
+            let others = self.find_anywhere(Arc::clone(&near.given), seen)?;
+            let watched = self.watch(&others, seen)?;
+            if watched.is_some_and(|watched| others.stand_in_for(watched, left)) {
+                return Ok(others.seen(watched));
+            }
+            if let Some(line) = self.line_for((&near, left), seen)? {
+                return Ok(line);
+            }
         }
         let list = near.left_as_given();
         let watched = self.watch(&list, seen)?;
@@ -130,13 +130,17 @@ impl Aligner {
     /// Lights of an earlier view, or new ones if a lamp was moved or switched on.
     pub(super) fn watch_lights(&mut self, mut kept: KeptLights, seen: &Seen) -> Result<KeptLights, ToyError> {
         let now = self.watch(&kept, seen)?;
-        // An assumed light stays in a view that does not show the shadows.
-        let is_asked_for = match now {
-            Some(now) => kept.watch(now),
-            None => !kept.is_assumed(),
-        };
+        let is_asked_for = kept.watch(now);
         if !kept.are_found() && is_asked_for {
-            return self.find_lights(kept.given, seen);
+            let is_shown = self.scene.plates.is_empty() && seen.view.is_trusted(DISCOVERY_OUTLINE_PX);
+            kept.n_unlit += u32::from(is_shown);
+            if is_shown && !kept.n_unlit.is_power_of_two() {
+                return Ok(kept);
+            }
+            let n_unlit = kept.n_unlit;
+            let mut found = self.find_lights(kept.given, seen)?;
+            found.n_unlit = n_unlit;
+            return Ok(found);
         }
         let Some(now) = now.filter(|_| is_asked_for) else {
             return Ok(kept);
@@ -165,6 +169,8 @@ impl Aligner {
         given: Arc<[Light]>,
         seen: &Seen,
     ) -> Result<KeptLights, ToyError> {
+        // What an untrusted view before left is no result.
+        let are_kept = kept.as_ref().is_some_and(|kept| kept.are_settled);
         let known: Arc<[Light]> = kept
             .as_ref()
             .map_or(Arc::clone(&given), |kept| kept.in_use().into());
@@ -180,7 +186,7 @@ impl Aligner {
             None
         } else {
             // A plane is not fitted under lights that may be degrees off.
-            let planes_of = kept.as_ref().and_then(|_| self.planes.wanted(false));
+            let planes_of = are_kept.then(|| self.planes.wanted(false)).flatten();
             match self.look_for_things(&known, seen, planes_of)? {
                 Looked::Things(things) => things,
                 Looked::Planes(again) => return self.look_at_lights(kept, given, &again),
@@ -189,7 +195,6 @@ impl Aligner {
         let clear = things.as_ref().map(|things| seen.clear_of(things));
         let looked_at = clear.as_ref().unwrap_or(seen);
         let before = Arc::clone(&self.scene);
-        let are_kept = kept.is_some();
         let mut lights = match kept {
             Some(kept) => self.watch_lights(kept, looked_at)?,
             None => self.find_lights(Arc::clone(&given), looked_at)?,
@@ -247,6 +252,7 @@ impl Aligner {
         }
         lights.is_beside_thing = lights.is_list_that_leaves_too_much()
             && self.explain_own_shadows(&lights, (seen, things.as_ref()))?;
+        lights.are_settled = are_kept || are_trusted;
         things::adopt(&mut self.things, things);
         Ok(lights)
     }
@@ -261,7 +267,7 @@ impl Aligner {
         let before = (planes_of, self.memories[0].as_ref());
         let sighted = seen.photograph.things(&self.scene, &seen.input, lights, before)?;
         self.memories[1] = sighted.memory;
-        if planes_of.is_none() || sighted.things.is_none() || !self.planes.take(sighted.planes) {
+        if planes_of.is_none() || sighted.things.is_none() || !self.planes.take(sighted.planes, planes_of) {
             return Ok(Looked::Things(sighted.things));
         }
         self.planes.add_latest_to(&mut self.scene);
@@ -275,16 +281,40 @@ impl Aligner {
     /// Lights that explain a view in place of those at the time of the plates, and the scene with
     /// plates in their light; `None` if they do not explain it as well.
     fn relight(&self, kept: &KeptLights, seen: &Seen) -> Result<Option<(KeptLights, Arc<Scene>)>, ToyError> {
-        let Some(plates) = seen.photograph.relit_plates(&self.scene, &seen.input)? else {
+        let scene = self.scene.as_ref();
+        // Plates that were relit before have lost what was too bright or too dark for their codes.
+        let given = scene.clone().with_plates(self.plates_as_given());
+        let again = self
+            .is_relit
+            .then(|| Seen::again(&given, seen.view.clone(), &seen.input));
+        let seen = again.as_ref().unwrap_or(seen);
+        let Some(relight) = seen.photograph.relight(&given, &seen.input)? else {
             return Ok(None);
         };
-        let relit = Self::new(Scene::clone(&self.scene).with_plates(plates));
-        let seen = Seen::again(&relit.scene, seen.view.clone(), &seen.input);
-        let others = relit.estimate_lights(Arc::clone(&kept.given), &seen)?;
-        let now = relit
-            .watch(&others, &seen)?
-            .filter(|now| kept.are_replaced_by(*now));
-        Ok(now.map(|now| (others.in_place_of(kept, now), relit.scene)))
+        let toy = &seen.input.world_from_object;
+        let relit = |plate: &Plate| relight.plate(plate, (&given, toy));
+        // A view reads the nearest plate alone.
+        let nearest = nearest(&given.plates, &seen.input.camera);
+        let nearest = nearest.into_iter().take(1).map(relit).collect();
+        let trial = Self::new(scene.clone().with_plates(nearest));
+        let seen = Seen::again(&trial.scene, seen.view.clone(), &seen.input);
+        let others = trial.estimate_lights(Arc::clone(&kept.given), &seen)?;
+        let now = trial.watch(&others, &seen)?;
+        Ok(now.filter(|now| kept.are_replaced_by(*now)).map(|now| {
+            let plates = given.plates.iter().map(relit).collect();
+            let scene = Arc::new(scene.clone().with_plates(plates));
+            (others.in_place_of(kept, now), scene)
+        }))
+    }
+
+    /// The plates as they were photographed, with their estimated cameras.
+    fn plates_as_given(&self) -> Vec<Plate> {
+        let both = self.given.plates.iter().zip(&self.scene.plates);
+        let plates = both.map(|(given, Plate { camera, .. })| Plate {
+            camera: *camera,
+            image: Arc::clone(&given.image),
+        });
+        plates.collect()
     }
 
     /// The loss of lights in a view; `None` if the view does not constrain them.

@@ -10,8 +10,9 @@ use super::photograph::Photograph;
 use super::report::PlaneAlignment;
 use super::things::Memory;
 use app_scene::frame::FrameInput;
+use app_scene::geometry::used_lights::UsedLights;
 use app_scene::gloss::Gloss;
-use app_scene::scene::Scene;
+use app_scene::scene::{Light, Scene};
 use app_scene::sharpness::Spread;
 
 /// Observes frames of one scene that are shown as given.
@@ -64,10 +65,12 @@ impl Observer {
 
     fn look(&mut self, scene: &Scene, input: &FrameInput) -> Result<FrameInput, AlignError> {
         let known = self.scene(scene);
-        let photograph = Photograph::new(&known, input, None);
+        let photograph = Photograph::new(&known, input);
         let (sharpness, is_toy_seen) = photograph.sharpness_as_given(&known, &input.world_from_object)?;
         let grain = photograph.grain(sharpness.plate_spread);
-        let lights = input.lights_in(&known);
+        let listed = input.lights_in(&known);
+        let used = UsedLights::near(&known, &listed, &input.world_from_object);
+        let lights: Vec<Light> = used.of(&listed);
         // It belongs to the receiver under the toy: found planes and later frames do not change it.
         let soft = photograph.with_plate_as_soft(sharpness.plate_spread);
         if is_toy_seen {
@@ -85,7 +88,7 @@ impl Observer {
         let sighted = photograph.things(&known, input, &lights, (planes_of, before.as_ref()))?;
         let mut things = sighted.things;
         self.memory = sighted.memory;
-        if planes_of.is_some() && things.is_some() && self.planes.take(sighted.planes) {
+        if planes_of.is_some() && things.is_some() && self.planes.take(sighted.planes, planes_of) {
             let known = self.scene(scene);
             photograph = look.photograph(&known)?;
             let sighted = photograph.things(&known, input, &lights, (None, before.as_ref()))?;
@@ -115,7 +118,7 @@ pub(super) struct Look<'a> {
 impl Look<'_> {
     /// The frame beside an equally soft plate, both as if the receiver under the toy were matt.
     pub(super) fn photograph(&self, scene: &Scene) -> Result<Photograph, AlignError> {
-        let photograph = Photograph::new(scene, self.input, None).with_plate_as_soft(self.plate_spread);
+        let photograph = Photograph::new(scene, self.input).with_plate_as_soft(self.plate_spread);
         self.freed(photograph, scene)
     }
 

@@ -6,6 +6,7 @@ use super::error::{self, AlignError};
 use super::report::LensAlignment;
 use super::{Aligner, ratio};
 use app_scene::frame::FrameInput;
+use app_scene::geometry::used_lights::UsedLights;
 use app_scene::scene::{Light, Scene};
 
 impl Aligner {
@@ -43,7 +44,9 @@ impl Aligner {
     /// As [`Self::align`].
     pub fn lens(&self, input: &FrameInput) -> Result<LensAlignment, AlignError> {
         error::check(&self.scene, input)?;
-        let given = input.lights_in(&self.scene);
+        let listed = input.lights_in(&self.scene);
+        let used = UsedLights::near(&self.scene, &listed, &input.world_from_object);
+        let given = used.of(&listed);
         let lights = self.about(&given, input)?;
         Ok(ratio::find_lens(&self.scene, input, &lights))
     }

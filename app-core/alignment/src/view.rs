@@ -1,9 +1,12 @@
 //! A view: one picture with its camera, and the pose of the toy in it.
 
+use std::sync::Arc;
+
 use glam::DMat4;
 
 use super::lights::FoundReflection;
 use super::photograph::Photograph;
+use super::picture::Mask;
 use super::report::{CameraAlignment, PoseAlignment};
 use super::rigid_motion::Matrix6;
 use app_scene::camera_frame::CameraImage;
@@ -26,11 +29,15 @@ pub(super) struct Seen {
 #[derive(Clone, Debug)]
 pub(super) struct AlignedView {
     pub(super) image: CameraImage,
+    /// The pixels of people in it; `None` if there are none.
+    pub(super) people: Option<Arc<Mask>>,
     pub(super) given_camera: Camera,
     pub(super) given: DMat4,
     pub(super) camera: Camera,
     pub(super) camera_report: Option<CameraAlignment>,
     pub(super) world_from_object: DMat4,
+    /// Pixels of the picture per pixel of the level in which the pose was found.
+    pub(super) picture_px: f64,
     pub(super) plate_spread_px: f64,
     /// Covariance of the pose by its outline; `None` if it is not an estimate.
     pub(super) covariance: Option<Matrix6>,
@@ -47,7 +54,8 @@ impl Seen {
             .with_camera(view.camera)
             .with_world_from_object(view.world_from_object);
         Self {
-            photograph: Photograph::new(scene, &input, None).with_plate_spread(view.plate_spread_px),
+            photograph: Photograph::without(scene, &input, view.people.as_deref())
+                .with_plate_spread(view.plate_spread_px),
             view,
             input,
         }
@@ -84,8 +92,9 @@ impl AlignedView {
             && self.given == input.world_from_object
     }
 
-    /// Whether the outline fits the picture's, within some pixels.
+    /// Whether the outline fits the picture's, within some pixels of the largest level.
     pub(super) fn is_trusted(&self, most_px: f64) -> bool {
-        self.report.is_some_and(|pose| pose.shown_px() <= most_px)
+        self.report
+            .is_some_and(|pose| pose.shown_px() <= most_px * self.picture_px)
     }
 }

@@ -5,12 +5,9 @@ use glam::UVec2;
 use super::picture::{Mask, places};
 use app_scene::frame::FrameInput;
 
-/// A mask with the pixels of people, each grown by a pixel of theirs; the given one if there are
-/// none.
-pub(super) fn without_people(input: &FrameInput, withheld: Option<Mask>) -> Option<Mask> {
-    let Some(people) = input.people.as_ref().filter(|people| people.has_any()) else {
-        return withheld;
-    };
+/// The pixels of people, each grown by a pixel of their mask; `None` if there are none.
+pub(super) fn people(input: &FrameInput) -> Option<Mask> {
+    let people = input.people.as_ref().filter(|people| people.has_any())?;
     let size_px = UVec2::from_array(input.image.size_px());
     let mut mask = Mask::new(size_px.as_ivec2());
     for at in places(size_px.as_ivec2()) {
@@ -18,10 +15,5 @@ pub(super) fn without_people(input: &FrameInput, withheld: Option<Mask>) -> Opti
             mask.mark(at);
         }
     }
-    let mut mask = mask.grown(size_px.x.div_ceil(people.size_px().x).cast_signed());
-    if let Some(withheld) = withheld {
-        let both = places(size_px.as_ivec2()).filter(|at| withheld.has(*at));
-        both.for_each(|at| mask.mark(at));
-    }
-    Some(mask)
+    Some(mask.grown(size_px.x.div_ceil(people.size_px().x).cast_signed()))
 }
