@@ -58,7 +58,7 @@ function showNumbers() {
       ofAll && " Flicker: RMSE of what changes from frame to frame, less what changes in the truth.",
       means.some(of => (of.floor_rmse ?? null) !== null) && ` ${FLOOR_WORDS}`),
     el("div", { class: "columns" },
-      means.some(of => of.scores) && table(`Mean over ${frames(means[0].n_scored)} that move${left}`, heads,
+      means.some(of => of.scores) && table(`Mean over ${frames(means[0].n_scored, "moving ")}${left}`, heads,
         [...byRegion(means.map(of => of.scores)), ...floor(means.map(of => of.floor_rmse))]),
       table(`Frame ${own.index}${isMoving(own) ? "" : ": passed through"}`, heads,
         [...byRegion(data.presets.map(preset => entry(preset).scores)), ...floor(data.presets.map(preset => entry(preset).floor_rmse))]),
@@ -67,7 +67,7 @@ function showNumbers() {
     el("details", { open: wasOpen }, el("summary", {}, "Shadow, frame by frame"), curves(),
       table("Choose a number to go to its frame", ["frame", ...heads.slice(1)], everyFrame)));
 }
-const frames = n => `${n} ${n === 1 ? "frame" : "frames"}`;
+const frames = (n, kind = "") => `${n} ${kind}${n === 1 ? "frame" : "frames"}`;
 const listed = list => list.length > 8 ? `${list.slice(0, 8).join(", ")} and ${list.length - 8} more` : list.join(", ");
 
 /* Error over time: a line for each preset, broken where frames were passed through; a click goes to the frame there. */
