@@ -52,7 +52,8 @@ impl SeenReceiver {
     pub(super) fn corners(&self) -> [DVec3; 4] {
         let camera_from_plane = self.plane_from_camera.inverse();
         let DVec2 { x, y } = self.half_extent_m;
-        [(x, y), (-x, y), (x, -y), (-x, -y)].map(|(x, z)| camera_from_plane.transform_point3(DVec3::new(x, 0.0, z)))
+        [(x, y), (-x, y), (x, -y), (-x, -y)]
+            .map(|(x, z)| camera_from_plane.transform_point3(DVec3::new(x, 0.0, z)))
     }
 
     /// The same in the space of another camera.
@@ -226,7 +227,10 @@ mod tests {
         let plate = Picture::of(size_px, vec![[0.5; 3]; 10_000]);
         let carried = carried(&plate, &there, &receivers, &here);
         let color_of = |point: DVec3| {
-            let px = here.intrinsics.pixel_of(camera_from_world.transform_point3(point)).unwrap();
+            let px = here
+                .intrinsics
+                .pixel_of(camera_from_world.transform_point3(point))
+                .unwrap();
             carried.get(px.floor().as_ivec2())
         };
         // The rays of the plate's camera to places up to .11 m right of the origin pass below the top's border.

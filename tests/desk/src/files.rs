@@ -5,8 +5,8 @@ use std::io;
 use anyhow::{Context, ensure};
 use app_core::session::{Files, MAX_INDEX_BYTES, index_bytes};
 use serde::Serialize;
-use serde_json::ser::{Formatter, Serializer};
 use serde_json::Value;
+use serde_json::ser::{Formatter, Serializer};
 
 pub use app_core::session::{Folder, FolderError, INDEX_FILE as SESSION_FILE};
 

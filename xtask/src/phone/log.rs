@@ -55,9 +55,11 @@ fn fetch_iphone(xcrun: &Path, folder: &Path, app: &IphoneApp) -> Result<()> {
     copy.args(["devicectl", "device", "copy", "from", "--device", device]);
     copy.args(["--domain-type", "appDataContainer", "--domain-identifier"]);
     copy.arg(app.bundle.as_deref().unwrap_or(super::ios::BUNDLE));
-    command::run(copy.args(["--source", "Documents", "--destination"]).arg(&partial)).context(
-        "devicectl comes with Xcode 15; --bundle names the identifier that the app was signed with",
-    )?;
+    command::run(
+        copy.args(["--source", "Documents", "--destination"])
+            .arg(&partial),
+    )
+    .context("devicectl comes with Xcode 15; --bundle names the identifier that the app was signed with")?;
     replace(folder, &partial)
 }
 
@@ -169,7 +171,10 @@ mod tests {
         for (script, reason) in [("true", "no log.txt"), ("exit 1", "adb comes with")] {
             let error = fetch_android(&stand_in(&folder, script), &to).expect_err("no log");
             assert!(error.to_string().contains(reason), "{error}");
-            assert!(to.join("log.txt").exists() && to.join("toy.mcap").exists(), "{reason}");
+            assert!(
+                to.join("log.txt").exists() && to.join("toy.mcap").exists(),
+                "{reason}"
+            );
         }
         fs::remove_dir_all(folder).expect("a folder");
     }

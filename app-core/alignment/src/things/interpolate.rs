@@ -88,8 +88,13 @@ fn relax(light: &mut [Color], (measured, size_px): (&[Color], IVec2), index: usi
     }
     if n > 0.0 {
         let mean = sum.map(|sum| sum / n);
-        let before = if light[index][0].is_nan() { mean } else { light[index] };
-        light[index] = [0, 1, 2].map(|channel| before[channel] + RELAXATION * (mean[channel] - before[channel]));
+        let before = if light[index][0].is_nan() {
+            mean
+        } else {
+            light[index]
+        };
+        light[index] =
+            [0, 1, 2].map(|channel| before[channel] + RELAXATION * (mean[channel] - before[channel]));
     }
 }
 

@@ -84,7 +84,11 @@ impl Solid {
 
     fn is_shown(&self, intrinsics: &Intrinsics, at: IVec2) -> bool {
         let is_near = at.cmpge(self.first_px).all() && at.cmple(self.last_px).all();
-        is_near && self.slices.iter().any(|slice| slice.point_at(intrinsics, at).is_some())
+        is_near
+            && self
+                .slices
+                .iter()
+                .any(|slice| slice.point_at(intrinsics, at).is_some())
     }
 }
 

@@ -138,7 +138,11 @@ fn moments(rig: &Rig, clip: &Clip) -> Vec<f64> {
         times.dedup();
         times
     };
-    let mut moments = in_order(scales(clip).flat_map(|channel| sign_changes(rig, channel)).collect());
+    let mut moments = in_order(
+        scales(clip)
+            .flat_map(|channel| sign_changes(rig, channel))
+            .collect(),
+    );
     let keys = scales(clip).flat_map(|channel| channel.track.times_secs.iter().copied());
     let keys = in_order(keys.collect());
     let middles = keys.windows(2).map(|pair| f64::midpoint(pair[0], pair[1]));

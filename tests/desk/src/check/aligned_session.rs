@@ -102,9 +102,8 @@ fn correct(index: &mut Value, alignments: &Alignments, assumed: Assumed) -> usiz
             index["lights"] = entries.into();
         }
         let is_other_camera = focal_ratio != 1.0 || has_other_lens;
-        n_corrected += usize::from(
-            is_moved || is_scaled || is_camera_moved || found.is_some() || is_other_camera,
-        );
+        n_corrected +=
+            usize::from(is_moved || is_scaled || is_camera_moved || found.is_some() || is_other_camera);
     }
     n_corrected
 }

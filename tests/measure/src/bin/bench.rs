@@ -20,8 +20,8 @@ use desk::output::{make_folder, remove_file, write_png, write_whole};
 use desk::program::{exit_code, open_session, print, repository};
 use desk::shaders::ShaderArgs;
 use measure::bench::{
-    Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, claims_drawing, claims_summary, csv, file_names,
-    front_drawing, json, rebuild, rebuilt_table, table,
+    Options, Row, basin, basin_csv, basin_drawing, basin_table, bench, claims_drawing, claims_summary, csv,
+    file_names, front_drawing, json, rebuild, rebuilt_table, table,
 };
 use measure::sized::{SizePx, parse_size};
 

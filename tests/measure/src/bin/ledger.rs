@@ -60,7 +60,8 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let own_px = [session.scene().width_px, session.scene().height_px];
     let size_px = args.size.unwrap_or(own_px);
     let scene = sized_scene(session.scene(), size_px);
-    let first = first_moved(&session)?.context("no frame shows the toy in another pose or at another place")?;
+    let first =
+        first_moved(&session)?.context("no frame shows the toy in another pose or at another place")?;
     let (scene, input) = observed(&scene, &sized_input(&first, size_px))?;
     let [width, height] = size_px;
     let mut text = String::new();
@@ -111,4 +112,3 @@ fn draw_scaling(folder: &Path) -> anyhow::Result<()> {
     }
     Ok(())
 }
-

@@ -77,7 +77,10 @@ fn a_session_whose_index_fits_can_be_opened_when_it_is_written_anew() {
 fn an_index_that_no_reader_takes_is_not_written() {
     let index = long(60_000);
     let error = index_text(&index).unwrap_err().to_string();
-    assert!(error.starts_with(&format!("{SESSION_FILE}: would have ")), "{error}");
+    assert!(
+        error.starts_with(&format!("{SESSION_FILE}: would have ")),
+        "{error}"
+    );
     let folder = Temporary::new("too-long");
     let stored = Stored::open(BUNDLED_SESSION).unwrap();
     for name in ["folder", "recording.mcap"] {

@@ -202,7 +202,8 @@ fn what_is_not_read_as_meant_is_named_with_its_file() {
 
 #[test]
 fn every_picture_of_a_probe_is_looked_at() {
-    let index = json!({ "probe": { "image": "a.jpg", "pictures": [{ "image": "b.jpg" }, { "image": "c.png" }] } });
+    let index =
+        json!({ "probe": { "image": "a.jpg", "pictures": [{ "image": "b.jpg" }, { "image": "c.png" }] } });
     let pictures = [
         ("a.jpg", jpeg(None, Some(TURNED))),
         ("b.jpg", jpeg(None, Some(TURNED))),

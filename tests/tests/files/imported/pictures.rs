@@ -77,7 +77,10 @@ fn a_session_that_could_not_be_opened_is_refused_at_once() {
         ..lacking()
     });
     let named = toy.display().to_string();
-    assert!(error.starts_with(&named) && error.contains("triangles"), "{error}");
+    assert!(
+        error.starts_with(&named) && error.contains("triangles"),
+        "{error}"
+    );
 }
 
 #[test]

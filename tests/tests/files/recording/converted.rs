@@ -109,7 +109,10 @@ fn nothing_is_written_over_or_out_of_the_folder() {
     for name in ["own.mcap", "new/own.mcap", "new/folder"] {
         let inside = own.join(name);
         let error = write(&session, None, &inside).unwrap_err().to_string();
-        assert!(error.ends_with("lies in the session itself: name a path outside of it"), "{error}");
+        assert!(
+            error.ends_with("lies in the session itself: name a path outside of it"),
+            "{error}"
+        );
         assert!(write_transforms(&session, &inside).is_err(), "{name}");
     }
     assert!(files(&own) == before && !own.join("new").exists());

@@ -239,7 +239,10 @@ fn tetrahedron_scaled_by(scales: &[f32]) -> Toy {
     let indices = glb.u16s("SCALAR", &[0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]);
     glb.json["meshes"][0]["primitives"][0] =
         json!({ "attributes": { "POSITION": position }, "indices": indices });
-    let times: Vec<f32> = (0_u16..).zip(scales).map(|(key, _)| f32::from(key) / 24.0).collect();
+    let times: Vec<f32> = (0_u16..)
+        .zip(scales)
+        .map(|(key, _)| f32::from(key) / 24.0)
+        .collect();
     let values: Vec<f32> = scales.iter().flat_map(|scale| [*scale, 1.0, 1.0]).collect();
     let keys = [glb.floats("SCALAR", &times), glb.floats("VEC3", &values)];
     glb.animate("flip", "scale", "LINEAR", keys);

@@ -165,9 +165,7 @@ fn findings(
 }
 
 fn worst_jump(label: Label, along: &str, steps: &[Step]) -> Option<Row> {
-    let median_of = |value: fn(&Step) -> f64| {
-        median(steps.iter().map(value).collect()).unwrap_or(0.0)
-    };
+    let median_of = |value: fn(&Step) -> f64| median(steps.iter().map(value).collect()).unwrap_or(0.0);
     let is_photographed = steps
         .iter()
         .all(|step| step.truth.is_some_and(|gap| gap.rms > 0.0));
