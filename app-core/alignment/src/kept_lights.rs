@@ -322,3 +322,58 @@ fn is_as_well_explained(now: Watched, then: Watched) -> bool {
 fn is_alike(before: Watched, now: Watched) -> bool {
     (now.left() - before.left()).abs() <= DIFFERS * before.left()
 }
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+
+    const SHADOWS: f64 = 5.0;
+
+    fn left(unexplained: f64) -> Watched {
+        Watched {
+            shadows: SHADOWS,
+            unexplained,
+        }
+    }
+
+    /// A list whose lights were estimated in a view that leaves this much unexplained.
+    fn list_in(unexplained: f64) -> KeptLights {
+        let found = FoundLights {
+            applied: None,
+            report: Vec::new(),
+            errors: [1.0; 2],
+        };
+        KeptLights::listed(Arc::from([]), Some(found)).seen(Some(left(unexplained)))
+    }
+
+    #[test]
+    fn lights_that_leave_too_much_replace_none_that_leave_as_much() {
+        let mut list = list_in(0.3);
+        assert!(list.watch(Some(left(0.45))));
+        assert!(!list.are_replaced_by(left(0.3)));
+        assert!(!list.are_replaced_by(left(1.0)));
+        assert!(list.are_replaced_by(left(0.05)));
+        // The same view again is not searched again.
+        list.searched_in_vain(left(0.45));
+        assert!(!list.watch(Some(left(0.45))));
+    }
+
+    #[test]
+    fn lights_must_explain_a_view_as_well_as_others_explained_theirs() {
+        let list = list_in(0.01);
+        assert!(list.are_replaced_by(left(0.03)));
+        assert!(!list.are_replaced_by(left(0.08)));
+    }
+
+    #[test]
+    fn a_view_without_shadows_leaves_nothing_unexplained() {
+        let mut list = list_in(0.3);
+        assert_eq!(list.misfit().unwrap(), 0.3);
+        for faint in [None, Some(Watched { shadows: 0.1, unexplained: 1.0 })] {
+            list.watch(faint);
+            assert_eq!((list.misfit(), list.doubt()), (None, None));
+        }
+    }
+}

@@ -40,7 +40,7 @@ fn disturbed(axis: DVec3, mm: DVec3, deg: f64) -> FrameInput {
     input
 }
 
-fn corners() -> Vec<DVec3> {
+pub(super) fn corners() -> Vec<DVec3> {
     let (scene, _) = &*SESSION;
     let bounds = scene.toy.bounds_of_pose(&scene.physical_pose).unwrap();
     let bounds = Bounds {
@@ -80,7 +80,7 @@ fn corners_apart_px([a, b]: [DMat4; 2]) -> f64 {
     distances.fold(0.0, f64::max)
 }
 
-fn turned_light(deg: f64, size: f64) -> Light {
+pub(super) fn turned_light(deg: f64, size: f64) -> Light {
     match SESSION.0.lights[0] {
         Light::Sphere {
             position_in_world,
@@ -97,7 +97,7 @@ fn turned_light(deg: f64, size: f64) -> Light {
     }
 }
 
-fn direction(light: &Light) -> DVec3 {
+pub(super) fn direction(light: &Light) -> DVec3 {
     match light {
         Light::Sphere {
             position_in_world, ..

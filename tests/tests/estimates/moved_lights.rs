@@ -10,7 +10,7 @@ use app_core::alignment::{Aligner, Alignment, AlignmentWarning};
 use app_core::frame::FrameInput;
 use app_core::gpu::AdapterChoice;
 use app_core::preset::Preset;
-use app_core::scene::{Image, Light, Scene};
+use app_core::scene::{Image, Light, PoseUncertainty, Scene};
 use app_core::wgpu::{Instance, InstanceDescriptor};
 use desk::alignment::SeenLight;
 use desk::metrics::score;
@@ -161,6 +161,20 @@ fn a_shadow_that_no_light_casts_is_said() {
     );
 }
 
+/// What lights leave unexplained is said of the views that show their shadows.
+#[test]
+fn a_view_without_shadows_says_nothing_about_lights() {
+    let before = shot(vec![bulb(50.0, 30.0)]);
+    let input = before.input.clone();
+    let mut aligner = Aligner::new(before.scene.clone());
+    let unexplained = |image: &Arc<Image>, aligner: &mut Aligner| {
+        let found = aligner.align(&input.clone().with_image(image.clone())).unwrap();
+        found.report.unexplained
+    };
+    assert!(unexplained(input.image.rgba(), &mut aligner).is_some());
+    assert_eq!(unexplained(&before.scene.plates[0].image, &mut aligner), None);
+}
+
 /// A picture with every other column of 24 pixels at half its codes, except for the centre with the
 /// toy.
 fn with_dark_bars(image: &Image) -> Image {
@@ -213,4 +227,47 @@ fn plates_follow_a_moved_lamp() {
         relit[0] < 0.3 * outdated[0],
         "{relit:?}, with the old plate {outdated:?}"
     );
+}
+
+/// The texels of a patch of a picture's lower border.
+fn patch(image: &Image) -> impl Iterator<Item = usize> + use<> {
+    const SIDE_PX: u32 = 32;
+    let (width_px, height_px) = (image.width_px, image.height_px);
+    let rows = height_px - SIDE_PX..height_px;
+    rows.flat_map(move |y| (width_px / 2..width_px / 2 + SIDE_PX).map(move |x| (y * width_px + x) as usize))
+}
+
+/// A picture with a bright patch.
+fn with_patch(image: &Image, code: u8) -> Arc<Image> {
+    let mut image = image.clone();
+    for texel in patch(&image) {
+        image.rgba8[4 * texel..4 * texel + 3].fill(code);
+    }
+    Arc::new(image)
+}
+
+/// Plates are relit from what was photographed: what was too bright for their codes comes back.
+#[test]
+fn plates_are_as_photographed_once_a_lamp_is_back() {
+    const CODE: u8 = 250;
+    let mut before = shot(vec![bulb(50.0, 30.0)]);
+    let bright = shot(vec![Lamp::bulb(toward(60.0, 60.0), 0.01, 0.7)]);
+    let plate = &mut before.scene.plates[0];
+    plate.image = with_patch(&plate.image, CODE);
+    let lamps = std::mem::take(&mut before.scene.lights);
+    before.scene.uncertainty.camera = PoseUncertainty {
+        position_m: Some(0.0),
+        rotation_rad: Some(0.0),
+    };
+    let mut aligner = Aligner::new(before.scene.clone());
+    let [_, moved, back] = [(&before, CODE), (&bright, u8::MAX), (&before, CODE)].map(|(shot, code)| {
+        let image = with_patch(shot.input.image.rgba(), code);
+        aligner.align(&shot.input.clone().with_image(image)).unwrap()
+    });
+    assert!(moved.report.is_relit, "{:?}", moved.report);
+    assert!(off_deg(&lamps, &back) < 0.15, "{:?}", back.report);
+    let relit = &aligner.scene().plates[0].image;
+    let off_codes = patch(relit).map(|texel| CODE.abs_diff(relit.rgba8[4 * texel]));
+    let most_off = off_codes.max();
+    assert!(most_off < Some(3), "{most_off:?} codes");
 }

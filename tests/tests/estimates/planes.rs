@@ -13,7 +13,7 @@ use measure::photographer::{Ground, Lamp, Paint, Quality, Shot, World};
 use measure::random::Random;
 
 /// Tolerance of its height in metres: a shadow moves by a pixel for each millimetre.
-const HEIGHT_M: f64 = 0.001;
+pub(super) const HEIGHT_M: f64 = 0.001;
 const TILT_RAD: f64 = 0.03;
 /// Tolerance of a light's direction, in radians.
 const LIGHT_RAD: f64 = 0.005;
@@ -28,7 +28,7 @@ const NOISE_MM: f64 = 5.0;
 const DEPTH_PX: UVec2 = UVec2::new(256, 144);
 
 /// The table's paint, times a brightness.
-fn waves(brightness: f64) -> Paint {
+pub(super) fn waves(brightness: f64) -> Paint {
     Paint::Waves {
         color: brightness * DVec3::new(0.45, 0.35, 0.25),
         amount: 0.2,
@@ -37,7 +37,7 @@ fn waves(brightness: f64) -> Paint {
 }
 
 /// A plane that catches the shadow of the boxes, and is turned against them.
-fn board(height_m: f64, tilt_rad: f64) -> DMat4 {
+pub(super) fn board(height_m: f64, tilt_rad: f64) -> DMat4 {
     board_at(-0.1, height_m, tilt_rad)
 }
 
@@ -73,7 +73,7 @@ fn boxes(planes: &[(DMat4, DVec2)], paint: &Paint) -> World {
 }
 
 /// The same with planes of a paint.
-fn painted(planes: &[(DMat4, DVec2)], paint: &Paint) -> (Scene, Shot) {
+pub(super) fn painted(planes: &[(DMat4, DVec2)], paint: &Paint) -> (Scene, Shot) {
     let world = boxes(planes, paint);
     let shot = Shot::of(&world).unwrap();
     let mut scene = shot.scene.clone();
