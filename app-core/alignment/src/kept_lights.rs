@@ -371,7 +371,13 @@ mod tests {
     fn a_view_without_shadows_leaves_nothing_unexplained() {
         let mut list = list_in(0.3);
         assert_eq!(list.misfit().unwrap(), 0.3);
-        for faint in [None, Some(Watched { shadows: 0.1, unexplained: 1.0 })] {
+        for faint in [
+            None,
+            Some(Watched {
+                shadows: 0.1,
+                unexplained: 1.0,
+            }),
+        ] {
             list.watch(faint);
             assert_eq!((list.misfit(), list.doubt()), (None, None));
         }

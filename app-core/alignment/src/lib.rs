@@ -31,7 +31,8 @@
 //! It runs on the processor. At 1280 x 720 one core of a desktop takes 0.5 to 1.3 s for a pose, once a view, and
 //! 1 to 7 s for the lights, once a session, growing with the number of triangles and lights. A camera takes about
 //! as long as a pose, once a view and once for each of the first 32 plates; unlisted lights 1 to 5 s, and a focal
-//! length 2 to 12 s more, once a session.
+//! length 2 to 12 s more, once a session. If no light is found without a plate, the first, second, fourth,
+//! eighth... view after that is searched again.
 
 #![forbid(unsafe_code)]
 

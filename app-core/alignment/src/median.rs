@@ -4,6 +4,9 @@ use std::cmp::Ordering;
 
 /// Standard deviation of a normal distribution over its median absolute deviation.
 pub(crate) const DEVIATION_OF_MEDIAN: f64 = 1.4826;
+/// The same for light.
+#[allow(clippy::cast_possible_truncation, reason = "a constant, to 7 digits")]
+pub(crate) const DEVIATION_OF_MEDIAN_32: f32 = DEVIATION_OF_MEDIAN as f32;
 
 /// The median of a list, with a total order such as [`f32::total_cmp`]; the larger of two central
 /// values, `None` for an empty list.

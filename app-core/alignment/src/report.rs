@@ -26,8 +26,8 @@ pub struct AlignmentReport {
     /// The toy's model, adapted to its outline; `None` if it is unchanged.
     pub model: Option<ModelAlignment>,
     /// The lights, in the order of the list, without those that are not used: beyond the fourth, or
-    /// below all receivers. Empty if they were not estimated: none is listed, there is no plate, the toy's pose is too uncertain, or the picture shows
-    /// too little of their shadows.
+    /// below all receivers. Empty if they were not estimated: none is listed, there is no plate, the
+    /// toy's pose is too uncertain, or the picture shows too little of their shadows.
     pub lights: Vec<LightAlignment>,
     /// Error of the predicted shadows with the given and with the estimated lights: mean squares
     /// over receivers, in units of the expected error by noise and light model. `None` if lights

@@ -16,7 +16,7 @@ use super::background::QUADRATIC;
 use super::lamp::Lamp;
 use super::shading::{FIRST_LAMP, Factors, Shading};
 use super::shadows::{LEAST_PIXELS, ROBUST_FAR, Shadows};
-use crate::median::{DEVIATION_OF_MEDIAN, median};
+use crate::median::{DEVIATION_OF_MEDIAN_32, median};
 use crate::picture::{Color, Level, brightness, index_in, noise_deviation, places};
 use crate::raster::{Rasterizer, project};
 use crate::receivers::SeenReceiver;
@@ -395,7 +395,7 @@ impl<'a> Mixture<'a> {
             .iter()
             .filter(|compared| compared.receiver > 0.5 && compared.is_changed());
         let away = median(near.map(Compared::away), f32::total_cmp).unwrap_or(0.0);
-        (DEVIATION_OF_MEDIAN as f32 * away).clamp(LEAST_DEVIATION, FIRST_DEVIATION)
+        (DEVIATION_OF_MEDIAN_32 * away).clamp(LEAST_DEVIATION, FIRST_DEVIATION)
     }
 }
 

@@ -6,7 +6,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::reduced::Reduced;
-use crate::median::{DEVIATION_OF_MEDIAN, median};
+use crate::median::{DEVIATION_OF_MEDIAN_32, median};
 
 /// Number of unknowns: shift along both axes, turn, zoom; gain and offset of the codes.
 const N_UNKNOWN: usize = 6;
@@ -132,7 +132,7 @@ impl<'a> Fit<'a> {
     /// Spread of the residuals: a median absolute deviation, at least a third of a code.
     fn spread(&self, residuals: &[Option<f32>]) -> f32 {
         let sizes = residuals.iter().flatten().map(|residual| residual.abs());
-        let spread = |median: f32| (DEVIATION_OF_MEDIAN as f32 * median).max(0.3);
+        let spread = |median: f32| (DEVIATION_OF_MEDIAN_32 * median).max(0.3);
         median(sizes, f32::total_cmp).map_or(1.0, spread)
     }
 
