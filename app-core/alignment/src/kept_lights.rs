@@ -325,7 +325,6 @@ fn is_alike(before: Watched, now: Watched) -> bool {
 
 #[cfg(test)]
 mod tests {
-    #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
     use super::*;
 
