@@ -325,7 +325,6 @@ fn is_alike(before: Watched, now: Watched) -> bool {
 
 #[cfg(test)]
 mod tests {
-
     use super::*;
 
     const SHADOWS: f64 = 5.0;

@@ -2,10 +2,9 @@
 
 use glam::{DMat4, IVec2};
 
-use super::coarse_in;
 use super::lamp::Lamp;
 use super::prior::Prior;
-use super::shadows::{LEAST_PIXELS, ROBUST_FAR, ROBUST_NEAR, Shadows};
+use super::shadows::{CELL_PX, LEAST_PIXELS, ROBUST_FAR, ROBUST_NEAR, Shadows};
 use crate::picture::Pyramid;
 use crate::raster::Rasterizer;
 use crate::receivers::SeenReceiver;
@@ -49,7 +48,7 @@ impl Followed {
         let priors = lamps.iter().map(|lamp| Prior::given(lamp, &known)).collect();
         let mut raster = Rasterizer::default();
         let level = view.pyramid.level(Pyramid::SMALLEST);
-        let coarse = coarse_in(view.shape, level);
+        let coarse = view.shape.merged_in_px(CELL_PX, level);
         let smallest = Shadows::new(&mut raster, (&coarse, view.receivers), level, None);
         if smallest.pixels.len() < LEAST_PIXELS {
             return None;

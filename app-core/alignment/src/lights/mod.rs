@@ -36,7 +36,7 @@ mod wide;
 
 use glam::{DMat4, DVec2, DVec3, IVec2};
 
-use super::picture::{Level, Pyramid};
+use super::picture::Pyramid;
 use super::raster::Rasterizer;
 use super::receivers::SeenReceiver;
 use super::report::{AssumedLight, EstimatedLight, LightAlignment, LightDeviation, PoseDeviation};
@@ -56,7 +56,7 @@ pub(super) use relight::Relight;
 pub(super) use search::scores;
 pub(super) use watch::{Counted, Unlit, Watched, watch};
 
-use shadows::{LEAST_PIXELS, ROBUST_FAR, ROBUST_NEAR, Shadows, WIDE_PENUMBRA_PX};
+use shadows::{CELL_PX, LEAST_PIXELS, ROBUST_FAR, ROBUST_NEAR, Shadows, WIDE_PENUMBRA_PX};
 
 /// Spacing of the directions that are tried around the given one.
 const SEARCH_STEP_RAD: f64 = 3.5 * std::f64::consts::PI / 180.0;
@@ -66,8 +66,6 @@ const FAR_STEP_RAD: f64 = 2.0 * SEARCH_STEP_RAD;
 const MOST_SEARCH_RAD: f64 = std::f64::consts::PI / 3.0;
 /// Number of points over a lamp then.
 const N_SEARCH_POINTS: usize = 7;
-/// Side of the cells, in pixels of a level, in which a toy's points are merged for a search there.
-const COARSE_PX: f64 = 0.5;
 /// Gauss-Newton rounds: level, number, and scale of the weights.
 const ROUNDS: [(usize, usize, f64); 3] = [(3, 4, ROBUST_FAR), (2, 4, ROBUST_NEAR), (1, 3, ROBUST_NEAR)];
 
@@ -153,7 +151,7 @@ pub(super) fn find(
     let priors: Vec<Prior> = given.iter().map(|lamp| Prior::given(lamp, uncertainty)).collect();
     let mut lamps = given.clone();
     let level = pyramid.level(Pyramid::SMALLEST);
-    let coarse = coarse_in(shape, level);
+    let coarse = shape.merged_in_px(CELL_PX, level);
     let smallest = Shadows::new(&mut raster, (&coarse, receivers), level, None);
     smallest.search(&mut raster, &mut lamps, uncertainty);
     let mut losses = None;
@@ -256,11 +254,6 @@ impl Shadows<'_> {
             (*lamp, taken[index]) = (best.1, best.2);
         }
     }
-}
-
-/// A shape as fine as a level shows it.
-fn coarse_in(shape: &Shape, level: &Level) -> Shape {
-    shape.merged_in_px(COARSE_PX, level)
 }
 
 /// Steps to directions on a disc around a lamp's own, within a radius if one is known.

@@ -18,6 +18,9 @@ pub(super) const ROBUST_FAR: f64 = 30.0;
 pub(super) const ROBUST_NEAR: f64 = 8.0;
 /// Width of every penumbra, in pixels of a level, above which a larger level adds no information.
 pub(super) const WIDE_PENUMBRA_PX: f64 = 5.0;
+/// Side of the cells, in pixels of a level, in which a toy's points are merged for a search of directions
+/// there: no finer than the level shows it.
+pub(super) const CELL_PX: f64 = 0.5;
 /// Number of pixels beside the toy that an estimate needs.
 pub(super) const LEAST_PIXELS: usize = 100;
 /// Width of a penumbra below which the lamp's size is unconstrained, in pixels.

@@ -4,9 +4,10 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DMat4;
 
+use super::unlit::UnlitToy;
 use super::{MOST_OUTLINE_PX, Photograph, base};
 use crate::found_planes::FoundReceiver;
-use crate::lights::FoundReflection;
+use crate::lights::{Counted, FoundReflection, Unlit, Watched};
 use crate::measured_points::MeasuredPoints;
 use crate::picture::Pyramid;
 use crate::things::Colored;
@@ -87,6 +88,26 @@ impl Photograph {
         let shape = self.shape(scene, &input.world_from_object)?;
         let marks = base::marks_beyond(&shape, &self.receivers, self.pyramid.level(0));
         Ok(marks.map(|marks| self.with_unknown(&marks)))
+    }
+
+    /// The loss that lights leave, with the toy in its place; `None` if too little of the receivers
+    /// is visible.
+    pub(crate) fn watch(
+        &self,
+        scene: &Scene,
+        input: &FrameInput,
+        lights: (&[Light], Counted),
+    ) -> Result<Option<Watched>, ToyError> {
+        let shape = self.shape(scene, &input.world_from_object)?;
+        let posed = (&shape, &self.receivers[..]);
+        let unlit = || {
+            let unlit = Unlit::of(posed, &self.pyramid, &self.camera_from_world);
+            UnlitToy::new(scene, input, unlit)
+        };
+        let known = self.unlit.get_or_init(unlit);
+        let anew = (!known.is_of(scene, input)).then(unlit);
+        let unlit = anew.as_ref().unwrap_or(known).unlit.as_ref();
+        Ok(unlit.and_then(|unlit| lights::watch(lights, unlit, posed, &self.camera_from_world)))
     }
 
     /// Reflection of the receiver below the toy, in given lights; `None` if the picture does not
