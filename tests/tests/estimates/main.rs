@@ -5,7 +5,6 @@
 mod alignment;
 mod bundled;
 mod discovery;
-mod exposed_things;
 mod focal_length;
 mod from_photographs;
 mod gloss;

@@ -1,13 +1,8 @@
 //! Exposure of the frame over that of the plate.
 
-use super::codes::Codes;
 use crate::lights::Compared;
 use crate::median::median;
 use crate::picture::{Color, Level};
-
-/// Largest difference of an exposure from 1 that may be the error of its estimate. Of equal exposures .9967 to
-/// .9997 were estimated, and half a code of a mean grey is .9 %.
-const SAME_EXPOSURE: f32 = 0.01;
 
 /// Exposure of the frame over that of the plate, for each channel.
 pub(super) fn gains(level: &Level, compared: &[Compared]) -> Option<Color> {
@@ -24,13 +19,4 @@ pub(super) fn gain(level: &Level, compared: &[Compared], value: impl Fn(&Color) 
         gain.is_finite().then_some(gain)
     };
     median(compared.iter().filter_map(of), f32::total_cmp)
-}
-
-/// A level's plate at the frame's exposure; `None` without a plate. `of_exposure` is the level in which pixels were
-/// compared.
-pub(super) fn plate_codes(level: &Level, of_exposure: &Level, compared: &[Compared]) -> Option<Codes> {
-    let gains = gains(of_exposure, compared).unwrap_or([1.0; 3]);
-    let are_same = gains.iter().all(|gain| (gain - 1.0).abs() <= SAME_EXPOSURE);
-    let gains = if are_same { [1.0; 3] } else { gains };
-    Some(Codes::exposed(level.plate.as_ref()?, gains))
 }

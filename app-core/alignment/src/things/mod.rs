@@ -64,7 +64,7 @@ pub(crate) use plate_mended::{is_of_wrong_plate, with_mended_plate};
 
 use codes::Codes;
 use expected_light::ExpectedLight;
-use exposure::{gain, gains, plate_codes};
+use exposure::{gain, gains};
 use found::Found;
 use grown::Grown;
 use memory::Place;
@@ -348,7 +348,7 @@ impl Sight<'_> {
     /// The level without the shadow that the plate alone may show; `None` without a plate.
     fn restored<'b>(&self, (level, frame): (&'b Level, &Codes), toy: &Toy) -> Option<Restored<'b>> {
         let compared = self.compared(level)?;
-        let plate = plate_codes(level, level, &compared.pixels)?;
+        let plate = Codes::of(level.plate.as_ref()?);
         let Some(light) = Brightness::of_plate(&compared.pixels, (frame, &plate), &toy.coverage) else {
             return Some(Restored {
                 level: Cow::Borrowed(level),
@@ -360,7 +360,7 @@ impl Sight<'_> {
         let level = light.restored(level);
         let compared = self.compared(&level).unwrap_or(compared);
         Some(Restored {
-            plate: plate_codes(&level, &level, &compared.pixels)?,
+            plate: Codes::of(level.plate.as_ref()?),
             compared,
             level: Cow::Owned(level),
             in_plate: Some(light),
@@ -426,8 +426,10 @@ impl Sight<'_> {
         let size_px = largest.frame.size_px;
         let per_px = self.per_px(level);
         let toy = Toy::of(self, largest);
-        let plate = plate_codes(largest, level, found.compared);
-        let codes = plate.map(|plate| [Codes::of(&largest.frame), plate]);
+        let codes = largest
+            .plate
+            .as_ref()
+            .map(|plate| [Codes::of(&largest.frame), Codes::of(plate)]);
         let is_own = |at: IVec2, frame: &Codes| {
             let color = frame.get(at);
             color.is_some_and(|color| found.is_own_color_in_frame(color))
