@@ -19,7 +19,6 @@ use super::{lights, pose};
 use crate::no_light::NoLight;
 use crate::probe::TrackedLight;
 use app_scene::frame::FrameInput;
-use app_scene::geometry::nearest_receivers::nearest_to_toy;
 use app_scene::scene::{Light, LightUncertainty, PoseUncertainty, Scene, check};
 use app_scene::toy::ToyError;
 use unlit::UnlitToy;
@@ -38,7 +37,7 @@ const ROUNDING: f64 = 1e-6;
 pub(super) struct Photograph {
     pyramid: Arc<Pyramid>,
     receivers: Vec<SeenReceiver>,
-    /// The place of each in the scene's list, and those of all others.
+    /// The place of each in the scene's list.
     in_scene: Vec<usize>,
     camera_from_world: DMat4,
     /// What does not depend on lights, once lights were judged.
@@ -53,21 +52,31 @@ impl Photograph {
 
     /// Pixels that must not be read are unknown; those of people are among them.
     pub(super) fn without(scene: &Scene, input: &FrameInput, unread: Option<&Mask>) -> Self {
-        let camera_from_world = input.camera.world_from_camera.inverse();
-        let receivers = SeenReceiver::near(scene, &input.world_from_object, &camera_from_world);
-        let plate = plate_for(&scene.plates, &receivers, &input.camera);
-        let frame = Picture::without(input.image.rgba(), unread);
-        let pyramid = Pyramid::new(frame, plate, input.camera.intrinsics);
-        Self::of(scene, input, Arc::new(pyramid))
+        Self::with(scene, input, |receivers| {
+            let plate = plate_for(&scene.plates, receivers, &input.camera);
+            let frame = Picture::without(input.image.rgba(), unread);
+            Arc::new(Pyramid::new(frame, plate, input.camera.intrinsics))
+        })
     }
 
     /// With pictures of the input's camera.
     pub(super) fn of(scene: &Scene, input: &FrameInput, pyramid: Arc<Pyramid>) -> Self {
+        Self::with(scene, input, |_| pyramid)
+    }
+
+    /// With the pictures that show some receivers.
+    fn with(
+        scene: &Scene,
+        input: &FrameInput,
+        pyramid: impl FnOnce(&[SeenReceiver]) -> Arc<Pyramid>,
+    ) -> Self {
         let camera_from_world = input.camera.world_from_camera.inverse();
+        let (receivers, in_scene) =
+            SeenReceiver::near_in_scene(scene, &input.world_from_object, &camera_from_world);
         Self {
-            pyramid,
-            receivers: SeenReceiver::near(scene, &input.world_from_object, &camera_from_world),
-            in_scene: nearest_to_toy(scene, &input.world_from_object),
+            pyramid: pyramid(&receivers),
+            receivers,
+            in_scene,
             camera_from_world,
             unlit: OnceLock::new(),
         }
@@ -75,9 +84,11 @@ impl Photograph {
 
     /// With the receivers around a toy in another place, the nearest first.
     pub(super) fn around_toy(self, scene: &Scene, world_from_object: &DMat4) -> Self {
+        let (receivers, in_scene) =
+            SeenReceiver::near_in_scene(scene, world_from_object, &self.camera_from_world);
         Self {
-            receivers: SeenReceiver::near(scene, world_from_object, &self.camera_from_world),
-            in_scene: nearest_to_toy(scene, world_from_object),
+            receivers,
+            in_scene,
             unlit: OnceLock::new(),
             ..self
         }
@@ -87,10 +98,7 @@ impl Photograph {
     pub(super) fn with_plate_spread(self, deviation_px: f64) -> Self {
         let is_soft = deviation_px > 0.0;
         let softened = is_soft.then(|| self.pyramid.with_plate_spread(deviation_px));
-        match softened.flatten() {
-            Some(pyramid) => self.with_pictures(pyramid),
-            None => self,
-        }
+        self.or_with_pictures(softened.flatten())
     }
 
     pub(super) fn pyramid(&self) -> &Arc<Pyramid> {

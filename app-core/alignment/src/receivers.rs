@@ -21,10 +21,19 @@ pub(super) struct SeenReceiver {
 impl SeenReceiver {
     /// The receivers nearest to the toy, up to the number on which shadows are retargeted.
     pub(super) fn near(scene: &Scene, world_from_object: &DMat4, camera_from_world: &DMat4) -> Vec<Self> {
+        Self::near_in_scene(scene, world_from_object, camera_from_world).0
+    }
+
+    /// The same with the place of each in the scene's list.
+    pub(super) fn near_in_scene(
+        scene: &Scene,
+        world_from_object: &DMat4,
+        camera_from_world: &DMat4,
+    ) -> (Vec<Self>, Vec<usize>) {
         let nearest = nearest_to_toy(scene, world_from_object);
         let seen = nearest.into_iter().take(MAX_RECEIVERS);
-        seen.map(|index| Self::new(&scene.receivers[index], camera_from_world))
-            .collect()
+        seen.map(|index| (Self::new(&scene.receivers[index], camera_from_world), index))
+            .unzip()
     }
 
     /// One of them.

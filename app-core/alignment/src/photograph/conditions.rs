@@ -37,10 +37,7 @@ impl Photograph {
         let in_level = spread.times(self.pyramid.picture_px().powi(-2));
         let is_soft = spread != Spread::NONE;
         let softened = is_soft.then(|| self.pyramid.with_softened_plate(in_level));
-        match softened.flatten() {
-            Some(pyramid) => self.with_pictures(pyramid),
-            None => self,
-        }
+        self.or_with_pictures(softened.flatten())
     }
 
     /// With unknown pixels at things and at wrong parts of the plate.
@@ -52,8 +49,16 @@ impl Photograph {
         self.with_pictures(self.pyramid.clear_of(marks))
     }
 
+    /// With other pictures, if there are any.
+    pub(super) fn or_with_pictures(self, pyramid: Option<Pyramid>) -> Self {
+        match pyramid {
+            Some(pyramid) => self.with_pictures(pyramid),
+            None => self,
+        }
+    }
+
     /// The same place and camera with other pictures.
-    pub(super) fn with_pictures(&self, pyramid: Pyramid) -> Self {
+    fn with_pictures(&self, pyramid: Pyramid) -> Self {
         Self {
             pyramid: Arc::new(pyramid),
             receivers: self.receivers.clone(),

@@ -1,8 +1,10 @@
 //! Exposure of the frame over that of the plate.
 
+use glam::IVec2;
+
 use crate::lights::Compared;
 use crate::median::median;
-use crate::picture::{Color, Level};
+use crate::picture::{Color, Level, Picture};
 
 /// Exposure of the frame over that of the plate, for each channel.
 pub(super) fn gains(level: &Level, compared: &[Compared]) -> Option<Color> {
@@ -19,4 +21,18 @@ pub(super) fn gain(level: &Level, compared: &[Compared], value: impl Fn(&Color) 
         gain.is_finite().then_some(gain)
     };
     median(compared.iter().filter_map(of), f32::total_cmp)
+}
+
+/// For each channel, by the median of some pixels of two pictures that were not compared: most of them
+/// are in no shadow. `None` if none of them is bright in both.
+pub(super) fn gains_at(at: impl Iterator<Item = IVec2>, [frame, plate]: [&Picture; 2]) -> Option<Color> {
+    let ratio = |at: IVec2| {
+        let [frame, plate] = [frame.get(at)?, plate.get(at)?];
+        let ratio = [0, 1, 2].map(|channel| frame[channel] / plate[channel]);
+        let is_known = ratio.iter().all(|ratio| ratio.is_finite() && *ratio > 0.0);
+        is_known.then_some(ratio)
+    };
+    let ratios: Vec<Color> = at.filter_map(ratio).collect();
+    let of = |channel: usize| median(ratios.iter().map(|ratio| ratio[channel]), f32::total_cmp);
+    Some([of(0)?, of(1)?, of(2)?])
 }

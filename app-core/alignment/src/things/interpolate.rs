@@ -6,7 +6,7 @@
 
 use glam::IVec2;
 
-use super::groups::{STEPS, place_of};
+use super::groups::STEPS;
 use crate::picture::{Color, Mask, UNKNOWN, index_in, places};
 
 /// Number of rounds in each picture, and their relaxation factor.
@@ -25,8 +25,8 @@ pub(super) fn interpolate(light: &mut [Color], (measured, size_px): (&[Color], I
         begin(light, (measured, size_px), of);
     }
     for _ in 0..N_ROUNDS {
-        for index in of.iter().filter_map(|at| index_in(size_px, *at)) {
-            relax(light, (measured, size_px), index);
+        for at in of {
+            relax(light, (measured, size_px), *at);
         }
     }
 }
@@ -34,20 +34,19 @@ pub(super) fn interpolate(light: &mut [Color], (measured, size_px): (&[Color], I
 /// Sets unknown pixels as in a picture of half the size, where cells without known pixels are unknown.
 fn begin(light: &mut [Color], (measured, size_px): (&[Color], IVec2), of: &[IVec2]) {
     let half_px = (size_px + 1) / 2;
-    let mut halved = halved(light, size_px);
-    let measured_there = self::halved(measured, size_px);
+    let [mut light_there, measured_there] = [&*light, measured].map(|colors| halved(colors, size_px));
     let mut unknown = Mask::new(half_px);
     of.iter()
         .map(|at| *at / 2)
-        .filter(|cell| index_in(half_px, *cell).is_some_and(|index| halved[index][0].is_nan()))
+        .filter(|cell| index_in(half_px, *cell).is_some_and(|index| light_there[index][0].is_nan()))
         .for_each(|cell| unknown.mark(cell));
     let unknown: Vec<IVec2> = places(half_px).filter(|cell| unknown.has(*cell)).collect();
-    interpolate(&mut halved, (&measured_there, half_px), &unknown);
+    interpolate(&mut light_there, (&measured_there, half_px), &unknown);
     for at in of {
         let [Some(index), Some(cell)] = [index_in(size_px, *at), index_in(half_px, *at / 2)] else {
             continue;
         };
-        light[index] = moved(halved[cell], [measured_there[cell], measured[index]]);
+        light[index] = moved(light_there[cell], [measured_there[cell], measured[index]]);
     }
 }
 
@@ -76,8 +75,10 @@ fn moved(color: Color, [from, to]: [Color; 2]) -> Color {
 }
 
 /// A round at a pixel. Source: Young 1954 (successive over-relaxation).
-fn relax(light: &mut [Color], (measured, size_px): (&[Color], IVec2), index: usize) {
-    let at = place_of(index, size_px);
+fn relax(light: &mut [Color], (measured, size_px): (&[Color], IVec2), at: IVec2) {
+    let Some(index) = index_in(size_px, at) else {
+        return;
+    };
     let (mut sum, mut n) = ([0.0; 3], 0.0);
     for other in STEPS.iter().filter_map(|step| index_in(size_px, at + *step)) {
         if !light[other][0].is_nan() {

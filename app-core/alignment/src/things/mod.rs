@@ -160,7 +160,7 @@ impl Sight<'_> {
             // Things are searched again with these among the receivers.
             let sighting = Sighting {
                 size_px: largest_px,
-                marks: vec![Mark::None; places(largest_px).count()],
+                marks: vec![Mark::None; (largest_px.x * largest_px.y) as usize],
                 raised: Vec::new(),
                 planes: found.planes,
             };

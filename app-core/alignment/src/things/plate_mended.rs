@@ -6,9 +6,9 @@
 
 use glam::IVec2;
 
+use super::exposure::gains_at;
 use super::interpolate::interpolate;
 use super::shade::logarithm;
-use crate::median::median;
 use crate::picture::{Color, Level, Mask, Picture, UNKNOWN, places};
 use crate::raster::Coverage;
 use app_scene::things::Mark;
@@ -31,7 +31,7 @@ pub(crate) fn with_mended_plate(level: &Level, coverage: &Coverage, marks: &[Mar
     }
     let is_of_toy = |at: IVec2| coverage.is_near(at, OF_TOY_PX);
     let seen = |at: &IVec2| !wrong.has(*at) && !is_of_toy(*at);
-    let gains = gains(places(size_px).filter(seen), [&level.frame, plate]).unwrap_or([1.0; 3]);
+    let gains = gains_at(places(size_px).filter(seen), [&level.frame, plate]).unwrap_or([1.0; 3]);
     let known = |at: IVec2| match wrong.has(at) {
         true if is_of_toy(at) => None,
         true => {
@@ -58,20 +58,6 @@ pub(crate) fn with_mended_plate(level: &Level, coverage: &Coverage, marks: &[Mar
         plate: Some(Picture::of(size_px, mended.collect())),
         ..level.clone()
     }
-}
-
-/// Exposure of the frame over that of the plate, for each channel, by the median of some pixels: most of
-/// them are in no shadow. `None` if none of them is bright in both.
-fn gains(at: impl Iterator<Item = IVec2>, [frame, plate]: [&Picture; 2]) -> Option<Color> {
-    let ratio = |at: IVec2| {
-        let [frame, plate] = [frame.get(at)?, plate.get(at)?];
-        let ratio = [0, 1, 2].map(|channel| frame[channel] / plate[channel]);
-        let is_known = ratio.iter().all(|ratio| ratio.is_finite() && *ratio > 0.0);
-        is_known.then_some(ratio)
-    };
-    let ratios: Vec<Color> = at.filter_map(ratio).collect();
-    let of = |channel: usize| median(ratios.iter().map(|ratio| ratio[channel]), f32::total_cmp);
-    Some([of(0)?, of(1)?, of(2)?])
 }
 
 /// Whether the plate does not show the place at a mark.

@@ -42,15 +42,13 @@ const MOST_IN_PLATE: f32 = 2.0;
 /// Least difference in codes between frame and plate in less light of such a group, and by how much its ratio in
 /// the frame is larger; and the same for a large group. Groups of more than 100 pixels in forty rooms: things in
 /// both pictures differ by .2 to 4.6 codes; hands by 10 to 41, one of them on wood of its colour by 10.7 with a
-/// ratio that is larger by 1.3. One in the shade of a llama differs by 4.0, as the new shadow of a moved lamp does.
+/// ratio that is larger by 1.3, and one in the shade of a llama, which is not recognised, by 4.0.
 const OF_FRAME: (f32, f32) = (0.5 * UNLIKE_CODES, 1.5);
 const OF_FRAME_LARGE: (f32, f32) = (0.5 * UNLIKE_CODES, 0.5);
 /// By how much the ratio in the plate of a large group in the plate alone is larger.
 const OF_PLATE_LARGE: f32 = 1.5;
 /// Median log likelihood ratio at which a group's colours in the plate are a thing's, with the
-/// minimum number of pixels; and the limit for large groups. A limit that falls evenly with the logarithm of that
-/// number finds a post before a striped toy (groups of 161, 99 and 70 pixels with 1.9 to 2.2), but takes the shadow of
-/// a lamp that was moved for a thing.
+/// minimum number of pixels; and the limit for large groups.
 const SIGNIFICANT: (f32, usize) = (3.0, 8);
 const SIGNIFICANT_LARGE: (f32, usize) = (1.0, 200);
 /// The minimum number of pixels of a group in the place's own colours: a white mug on pale stone has
