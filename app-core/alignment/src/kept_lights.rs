@@ -61,6 +61,8 @@ pub(super) struct KeptLights {
     latest: Option<Watched>,
     /// The view of a failed search.
     in_vain: Option<Watched>,
+    /// The same for a search in which nothing counts as a thing.
+    in_vain_beside_no_thing: Option<Watched>,
 }
 
 impl KeptLights {
@@ -84,6 +86,7 @@ impl KeptLights {
             explained: None,
             latest: None,
             in_vain: None,
+            in_vain_beside_no_thing: None,
         }
     }
 
@@ -276,9 +279,27 @@ impl KeptLights {
         }
     }
 
-    /// Records a view in which no better lights were found.
-    pub(super) fn searched_in_vain(&mut self, now: Watched) {
-        self.in_vain = Some(now);
+    /// With a view in which no better lights were found.
+    pub(super) fn searched_in_vain(self, now: Watched) -> Self {
+        Self {
+            in_vain: Some(now),
+            ..self
+        }
+    }
+
+    /// Whether a view in which nothing counts as a thing needs other lights than these estimated ones.
+    pub(super) fn are_doubtful(&self, now: Watched) -> bool {
+        let is_as_before = |then| is_as_well_explained(now, then);
+        let is_in_vain = |before| is_alike(before, now);
+        now.shadows >= LEAST_SHADOWS
+            && self.are_found()
+            && !self.explained.is_some_and(is_as_before)
+            && !self.in_vain_beside_no_thing.is_some_and(is_in_vain)
+    }
+
+    /// Records such a view in which no better lights were found.
+    pub(super) fn searched_beside_no_thing_in_vain(&mut self, now: Option<Watched>) {
+        self.in_vain_beside_no_thing = now;
     }
 
     /// The unexplained fraction of the latest view's shadows; `None` if it shows none, and without lights.
@@ -354,7 +375,7 @@ mod tests {
         assert!(!list.are_replaced_by(left(1.0)));
         assert!(list.are_replaced_by(left(0.05)));
         // The same view again is not searched again.
-        list.searched_in_vain(left(0.45));
+        let mut list = list.searched_in_vain(left(0.45));
         assert!(!list.watch(Some(left(0.45))));
     }
 

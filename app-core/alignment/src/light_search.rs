@@ -145,27 +145,49 @@ impl Aligner {
         let Some(now) = now.filter(|_| is_asked_for) else {
             return Ok(kept);
         };
+        let moved = self.moved_lights(&kept, seen)?;
+        Ok(moved.unwrap_or_else(|| kept.searched_in_vain(now)))
+    }
+
+    /// Lights in place of others that do not explain a view, beside plates in their light; `None` if none explain it as well
+    /// as those did theirs.
+    fn moved_lights(&mut self, kept: &KeptLights, seen: &Seen) -> Result<Option<KeptLights>, ToyError> {
         if kept.discovered.is_none() {
             // A moved lamp may be anywhere.
             let lights = (kept.in_use(), &LightUncertainty::default());
             let found = seen.photograph.lights(&self.scene, &seen.input, lights)?;
             let moved = KeptLights::listed(Arc::clone(&kept.given), found);
             if let Some(now) = self.watch(&moved, seen)?.filter(|now| kept.are_replaced_by(*now)) {
-                return Ok(moved.in_place_of(&kept, now));
+                return Ok(Some(moved.in_place_of(kept, now)));
             }
         }
-        if let Some((lights, scene)) = self.relight(&kept, seen)? {
+        Ok(self.relight(kept, seen)?.map(|(lights, scene)| {
             (self.scene, self.is_relit) = (scene, true);
-            return Ok(lights);
+            lights
+        }))
+    }
+
+    /// Lights in place of others that do not explain a view in which nothing counts as a thing; `None` if none do.
+    fn moved_beside_no_thing(
+        &mut self,
+        kept: &mut KeptLights,
+        seen: &Seen,
+    ) -> Result<Option<KeptLights>, ToyError> {
+        let now = self.watch(kept, seen)?;
+        let Some(now) = now.filter(|now| kept.are_doubtful(*now)) else {
+            return Ok(None);
+        };
+        let moved = self.moved_lights(kept, seen)?;
+        if moved.is_none() {
+            kept.searched_beside_no_thing_in_vain(Some(now));
         }
-        kept.searched_in_vain(now);
-        Ok(kept)
+        Ok(moved)
     }
 
     /// The lights in a view, and the other things in it, which must not count as shadows.
     pub(super) fn look_at_lights(
         &mut self,
-        kept: Option<KeptLights>,
+        mut kept: Option<KeptLights>,
         given: Arc<[Light]>,
         seen: &Seen,
     ) -> Result<KeptLights, ToyError> {
@@ -178,11 +200,17 @@ impl Aligner {
         // front of the toy.
         let are_trusted = !self.are_shadows_withheld && seen.view.is_trusted(MOST_OUTLINE_PX);
         let as_it_is = seen;
+        let before = Arc::clone(&self.scene);
         let is_searched = !self.are_shadows_withheld && self.reflection.search(&self.scene, seen, &known)?;
         let reflection = self.reflection.found;
         let freed = self.reflection.removed_from(&self.scene, seen)?;
         let seen = freed.as_ref().unwrap_or(seen);
-        let things = if !are_trusted {
+        // A lamp that was moved comes first: the place of its old shadow looks like a thing, and so does its new shadow.
+        let moved = match &mut kept {
+            Some(kept) if are_kept && are_trusted => self.moved_beside_no_thing(kept, seen)?,
+            _ => None,
+        };
+        let things = if !are_trusted || moved.is_some() {
             None
         } else {
             // A plane is not fitted under lights that may be degrees off.
@@ -194,10 +222,10 @@ impl Aligner {
         };
         let clear = things.as_ref().map(|things| seen.clear_of(things));
         let looked_at = clear.as_ref().unwrap_or(seen);
-        let before = Arc::clone(&self.scene);
-        let mut lights = match kept {
-            Some(kept) => self.watch_lights(kept, looked_at)?,
-            None => self.find_lights(Arc::clone(&given), looked_at)?,
+        let mut lights = match (moved, kept) {
+            (Some(moved), _) => moved,
+            (None, Some(kept)) => self.watch_lights(kept, looked_at)?,
+            (None, None) => self.find_lights(Arc::clone(&given), looked_at)?,
         };
         if is_searched && lights.in_use() != &*known {
             let seen = (&as_it_is.photograph, &as_it_is.input);
@@ -244,6 +272,17 @@ impl Aligner {
                 }
             }
         };
+        self.adopt(lights, things, (seen, are_kept, are_trusted))
+    }
+
+    /// Adopts the lights and things of a view; `are_kept` are lights of an earlier one, and a trusted view shows the toy in
+    /// its place.
+    fn adopt(
+        &mut self,
+        mut lights: KeptLights,
+        things: Option<Things>,
+        (seen, are_kept, are_trusted): (&Seen, bool, bool),
+    ) -> Result<KeptLights, ToyError> {
         // Without lights no highlight constrains it: a later view may.
         if are_trusted && self.gloss.is_none() && !lights.in_use().is_empty() {
             let toy = &seen.input.world_from_object;
@@ -253,6 +292,10 @@ impl Aligner {
         lights.is_beside_thing = lights.is_list_that_leaves_too_much()
             && self.explain_own_shadows(&lights, (seen, things.as_ref()))?;
         lights.are_settled = are_kept || are_trusted;
+        if !are_kept && things.is_some() {
+            // Things leave as much unexplained in the next view: no search for others is due.
+            lights.searched_beside_no_thing_in_vain(self.watch(&lights, seen)?);
+        }
         things::adopt(&mut self.things, things);
         Ok(lights)
     }

@@ -5,6 +5,7 @@
 mod alignment;
 mod bundled;
 mod discovery;
+mod exposed_things;
 mod focal_length;
 mod from_photographs;
 mod gloss;
@@ -26,6 +27,7 @@ mod reflection;
 mod sides;
 mod softness;
 mod texture;
+mod thing_ends;
 mod thing_watcher;
 mod things;
 mod uncertainty;

@@ -15,14 +15,14 @@ use harness::bundled_session;
 use super::bundled::SESSION;
 
 /// A rectangle of the bundled picture: its first pixel, and the one after its last.
-type Rect = [UVec2; 2];
+pub(super) type Rect = [UVec2; 2];
 
 /// In the shadow, away from the toy.
 const IN_SHADOW: Rect = [UVec2::new(365, 220), UVec2::new(415, 262)];
 /// Over most of the shadow away from the toy.
 const ACROSS_SHADOW: Rect = [UVec2::new(340, 180), UVec2::new(440, 290)];
 /// Over the toy's forelegs, and to both sides of them.
-const OVER_LEGS: Rect = [UVec2::new(222, 222), UVec2::new(292, 254)];
+pub(super) const OVER_LEGS: Rect = [UVec2::new(222, 222), UVec2::new(292, 254)];
 /// The table left of the forelegs, away from the shadow.
 const BESIDE_LEGS: Rect = [UVec2::new(130, 230), UVec2::new(210, 300)];
 /// Over the forelegs, and over most of the shadow.
@@ -43,7 +43,7 @@ const LONG: Rect = [UVec2::new(240, 200), UVec2::new(276, 355)];
 /// A colour of a dozen codes beside the table's.
 const FACE: [u8; 3] = [150, 134, 122];
 const TEAL: [u8; 3] = [20, 120, 130];
-const SIDE: [u8; 3] = [190, 60, 120];
+pub(super) const SIDE: [u8; 3] = [190, 60, 120];
 /// In less light it is like the toy's hair.
 const SKIN: [u8; 3] = [140, 104, 72];
 
@@ -59,7 +59,7 @@ fn painted(image: &Image, rect: Rect) -> Image {
 }
 
 /// A rectangle in one colour, where a pixel of this index is painted.
-fn painted_where(
+pub(super) fn painted_where(
     image: &Image,
     (color, [first, end]): ([u8; 3], Rect),
     is_painted: impl Fn(usize) -> bool,
@@ -82,7 +82,7 @@ fn painted_where(
 }
 
 /// The session with a painted rectangle in the frame, in the plate, or in both.
-fn with_rectangle([in_frame, in_plate]: [bool; 2], rect: Rect) -> (Scene, FrameInput) {
+pub(super) fn with_rectangle([in_frame, in_plate]: [bool; 2], rect: Rect) -> (Scene, FrameInput) {
     let (scene, input) = &*SESSION;
     let (mut scene, mut input) = (Scene::clone(scene), FrameInput::clone(input));
     if in_frame {
@@ -97,9 +97,9 @@ fn with_rectangle([in_frame, in_plate]: [bool; 2], rect: Rect) -> (Scene, FrameI
 }
 
 /// Result for a painted rectangle.
-struct Found {
-    things: Option<Things>,
-    rect: Rect,
+pub(super) struct Found {
+    pub(super) things: Option<Things>,
+    pub(super) rect: Rect,
 }
 
 impl Found {
@@ -135,7 +135,7 @@ impl Found {
 
     /// Checks that a mark covers the rectangle, and little besides.
     #[track_caller]
-    fn assert_whole(&self, mark: Mark) {
+    pub(super) fn assert_whole(&self, mark: Mark) {
         let [of_it, beyond] = [self.part(mark), self.beyond(mark)];
         assert!(
             of_it > 0.9 && beyond < 0.2,
@@ -408,7 +408,7 @@ fn in_light(code: u8, light: f32) -> u8 {
 }
 
 /// A picture with another light in a rectangle.
-fn shaded(image: &Image, rect: Rect, light: f32) -> Image {
+pub(super) fn shaded(image: &Image, rect: Rect, light: f32) -> Image {
     let mut image = image.clone();
     for at in pixels_of(rect, image.width_px) {
         for code in &mut image.rgba8[4 * at..4 * at + 3] {

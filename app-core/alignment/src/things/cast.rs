@@ -37,6 +37,17 @@ const AGREES: f32 = 0.33;
 /// Minimum number of pixels that both have: that post has 401, and no capture 25 to 100.
 const LEAST_IN_SHADOW: usize = 50;
 
+/// Whether the plate shows the place's colours in a shadow's light around each pixel; `None` if the toy's shadow is
+/// too faint, or too small, to tell that light.
+pub(super) fn shade(seeds: &Seeds, (compared, plate): (&[Compared], &Codes)) -> Option<Vec<bool>> {
+    let left = darkest(compared)?;
+    let of_place = seeds.of(Seed::Receiver);
+    let place = || of_place.iter().map(|index| plate.pixels[*index]);
+    let colors = Colors::of(place().map(|color| shaded(color, &left)), place());
+    let likelier = mean(plate, &colors).into_iter();
+    Some(likelier.map(|likelier| likelier > SHADED).collect())
+}
+
 /// The shadows of things in a level's plate. `expected` are those of upright things, if they are needed.
 pub(super) fn shadows_of(
     things: &Grown,
@@ -44,13 +55,6 @@ pub(super) fn shadows_of(
     (compared, plate): (&[Compared], &Codes),
     expected: impl FnOnce() -> Vec<Mask>,
 ) -> Vec<Vec<usize>> {
-    let Some(left) = darkest(compared) else {
-        return Vec::new();
-    };
-    let of_place = seeds.of(Seed::Receiver);
-    let place = || of_place.iter().map(|index| plate.pixels[*index]);
-    let colors = Colors::of(place().map(|color| shaded(color, &left)), place());
-    let likelier = mean(plate, &colors);
     let mut is_toy_shadow = vec![false; plate.pixels.len()];
     for pixel in compared.iter().filter(|pixel| pixel.taken() > 0.5 * LEAST_TAKEN) {
         if let Some(index) = index_in(plate.size_px, pixel.at) {
@@ -81,7 +85,7 @@ pub(super) fn shadows_of(
             })
     };
     let mut found = groups(plate.size_px, |index| {
-        likelier[index] > SHADED && !is_toy_shadow[index]
+        seeds.is_shade[index] && !is_toy_shadow[index]
     });
     found.retain(is_shadow);
     found

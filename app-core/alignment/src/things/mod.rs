@@ -64,7 +64,7 @@ pub(crate) use plate_mended::{is_of_wrong_plate, with_mended_plate};
 
 use codes::Codes;
 use expected_light::ExpectedLight;
-use exposure::{gain, gains};
+use exposure::{gain, gains, plate_codes};
 use found::Found;
 use grown::Grown;
 use memory::Place;
@@ -231,8 +231,10 @@ impl Sight<'_> {
         } = restored;
         let level = &**level;
         let seeds_of = |colored| {
-            let hidden = toy.hidden(frame, plate);
-            Seeds::found(&compared.pixels, hidden, (frame, plate), colored)
+            let of_toy = (toy.hidden(frame, plate), |at| toy.is_free(at, frame, plate));
+            let seeds = Seeds::found(&compared.pixels, of_toy, (frame, plate), colored);
+            let is_shade = cast::shade(&seeds, (&compared.pixels, plate));
+            seeds.with_shade(is_shade)
         };
         let seeds = seeds_of(things);
         // The search in doubtful colours is for things without planes.
@@ -348,7 +350,7 @@ impl Sight<'_> {
     /// The level without the shadow that the plate alone may show; `None` without a plate.
     fn restored<'b>(&self, (level, frame): (&'b Level, &Codes), toy: &Toy) -> Option<Restored<'b>> {
         let compared = self.compared(level)?;
-        let plate = Codes::of(level.plate.as_ref()?);
+        let plate = plate_codes(level, level, &compared.pixels)?;
         let Some(light) = Brightness::of_plate(&compared.pixels, (frame, &plate), &toy.coverage) else {
             return Some(Restored {
                 level: Cow::Borrowed(level),
@@ -360,7 +362,7 @@ impl Sight<'_> {
         let level = light.restored(level);
         let compared = self.compared(&level).unwrap_or(compared);
         Some(Restored {
-            plate: Codes::of(level.plate.as_ref()?),
+            plate: plate_codes(&level, &level, &compared.pixels)?,
             compared,
             level: Cow::Owned(level),
             in_plate: Some(light),
@@ -426,10 +428,8 @@ impl Sight<'_> {
         let size_px = largest.frame.size_px;
         let per_px = self.per_px(level);
         let toy = Toy::of(self, largest);
-        let codes = largest
-            .plate
-            .as_ref()
-            .map(|plate| [Codes::of(&largest.frame), Codes::of(plate)]);
+        let plate = plate_codes(largest, level, found.compared);
+        let codes = plate.map(|plate| [Codes::of(&largest.frame), plate]);
         let is_own = |at: IVec2, frame: &Codes| {
             let color = frame.get(at);
             color.is_some_and(|color| found.is_own_color_in_frame(color))

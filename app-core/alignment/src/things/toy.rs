@@ -10,13 +10,15 @@ use super::known::Known;
 use super::seeds::{Seed, Seeds};
 use super::sight::Sight;
 use crate::measured_points::MeasuredPoints;
-use crate::picture::{Color, Level, index_in};
+use crate::picture::{Color, Level, index_in, square};
 use crate::raster::{Coverage, Rasterizer, project};
 use app_scene::things::Mark;
 
 /// Distance in pixels of a level from the toy's outline within which something before it is
 /// detected.
 const WITHIN_PX: i32 = 2;
+/// Distance in pixels of a level from a thing's rim within which pixels of the toy may mix both.
+const RIM_PX: i32 = 1;
 /// Least distance in pixels of a level between the toy and a depth sensor's points of other things.
 const BESIDE_PX: i32 = 4;
 /// Largest difference in codes at which frame and plate count as equal.
@@ -94,6 +96,18 @@ impl Toy {
     ) -> impl Iterator<Item = IVec2> + 'a {
         let covered = self.coverage.pixels().filter(|at| self.coverage.at(*at) >= 1.0);
         covered.filter(|at| self.is_hidden(*at, frame, plate))
+    }
+
+    /// Whether nothing at a pixel shows a thing: beside the toy, frame and plate are alike, as far as the toy's rim lets
+    /// them be; in its place, the frame shows the toy at the pixel and around it, so that no thing's rim is there.
+    pub(super) fn is_free(&self, at: IVec2, frame: &Codes, plate: &Codes) -> bool {
+        if self.coverage.at(at) >= 1.0 {
+            let is_toy = |at: IVec2| self.coverage.at(at) < 1.0 || self.is_as_expected(at, frame);
+            return square(at, RIM_PX).all(is_toy);
+        }
+        let colors = frame.get(at).zip(plate.get(at));
+        let is_alike = colors.is_some_and(|(frame, plate)| apart(frame, plate) < ALIKE_CODES);
+        is_alike || self.coverage.is_near(at, WITHIN_PX)
     }
 
     /// Whether a pixel of the toy has its expected colour.
