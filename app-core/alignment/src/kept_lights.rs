@@ -266,8 +266,7 @@ impl KeptLights {
             // An assumed light stays in a view that does not show the shadows.
             return now.is_none() && !self.is_assumed();
         };
-        let is_as_before = self.explained.is_some_and(|then| is_as_well_explained(now, then));
-        !is_as_before && !self.in_vain.is_some_and(|before| is_alike(before, now))
+        self.are_outdated(now, self.in_vain)
     }
 
     /// Whether lights that leave `now` unexplained replace these, which fail to explain a view: they must explain it as
@@ -289,12 +288,21 @@ impl KeptLights {
 
     /// Whether a view in which nothing counts as a thing needs other lights than these estimated ones.
     pub(super) fn are_doubtful(&self, now: Watched) -> bool {
-        let is_as_before = |then| is_as_well_explained(now, then);
-        let is_in_vain = |before| is_alike(before, now);
         now.shadows >= LEAST_SHADOWS
             && self.are_found()
-            && !self.explained.is_some_and(is_as_before)
-            && !self.in_vain_beside_no_thing.is_some_and(is_in_vain)
+            && self.are_outdated(now, self.in_vain_beside_no_thing)
+    }
+
+    /// Whether exactly such a view was searched without success.
+    pub(super) fn are_searched_beside_no_thing(&self, now: Watched) -> bool {
+        self.in_vain_beside_no_thing == Some(now)
+    }
+
+    /// Whether these leave more of a view unexplained than of the one in which they were found, and it is unlike that of
+    /// a failed search.
+    fn are_outdated(&self, now: Watched, in_vain: Option<Watched>) -> bool {
+        let is_as_before = self.explained.is_some_and(|then| is_as_well_explained(now, then));
+        !is_as_before && !in_vain.is_some_and(|before| is_alike(before, now))
     }
 
     /// Records such a view in which no better lights were found.

@@ -145,7 +145,12 @@ impl Aligner {
         let Some(now) = now.filter(|_| is_asked_for) else {
             return Ok(kept);
         };
-        let moved = self.moved_lights(&kept, seen)?;
+        // Without things it is the same view.
+        let moved = if kept.are_searched_beside_no_thing(now) {
+            None
+        } else {
+            self.moved_lights(&kept, seen)?
+        };
         Ok(moved.unwrap_or_else(|| kept.searched_in_vain(now)))
     }
 

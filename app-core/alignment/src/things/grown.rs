@@ -76,11 +76,10 @@ impl Place {
     /// The place of seeds of a kind; `None` if there are none.
     fn of(seeds: &Seeds, kind: Seed, plate: &Codes) -> Option<Self> {
         let colors = seeds.known_colors(kind);
-        let is_own = |color: &Color| colors.likelier(*color).is_some_and(|likelier| likelier > OWN);
         let from_receiver = || {
             let mut distances = distances(seeds, (plate, colors), (Seed::Receiver, OF_STEP));
             for ((distance, is_free), color) in distances.iter_mut().zip(&seeds.is_free).zip(&plate.pixels) {
-                if *is_free && !is_own(color) {
+                if *is_free && !is_own(colors, *color) {
                     *distance = distance.min(FARTHEST_FREE);
                 }
             }
@@ -218,7 +217,7 @@ impl Grown {
 
     /// Whether a colour in codes is a thing's own.
     pub(super) fn is_own_color(&self, color: Color) -> bool {
-        self.colors.likelier(color).is_some_and(|likelier| likelier > OWN)
+        is_own(&self.colors, color)
     }
 
     /// Whether a colour in codes is the place's.
@@ -295,6 +294,11 @@ fn without_holes(mut nearer: Vec<f32>, seeds: &Seeds) -> Vec<f32> {
         }
     }
     nearer
+}
+
+/// Whether a colour in codes is a thing's own.
+fn is_own(colors: &Colors, color: Color) -> bool {
+    colors.likelier(color).is_some_and(|likelier| likelier > OWN)
 }
 
 /// Whether a colour in codes is likelier the place's.

@@ -233,7 +233,8 @@ impl Sight<'_> {
         let seeds_of = |colored| {
             let of_toy = (toy.hidden(frame, plate), |at| toy.is_free(at, frame, plate));
             let seeds = Seeds::found(&compared.pixels, of_toy, (frame, plate), colored);
-            let is_shade = cast::shade(&seeds, (&compared.pixels, plate));
+            let shade = || cast::shade(&seeds, (&compared.pixels, plate));
+            let is_shade = seeds.show_things().then(shade).flatten();
             seeds.with_shade(is_shade)
         };
         let seeds = seeds_of(things);

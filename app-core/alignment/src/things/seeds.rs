@@ -156,6 +156,12 @@ impl Seeds {
         Self { is_shade, ..self }
     }
 
+    /// Whether any seed is of a thing, in whichever picture.
+    pub(super) fn show_things(&self) -> bool {
+        let is_of_thing = |seed: &Seed| !matches!(seed, Seed::None | Seed::Receiver);
+        self.seeds.iter().any(is_of_thing)
+    }
+
     pub(super) fn get(&self, at: IVec2) -> Seed {
         index_in(self.size_px, at).map_or(Seed::None, |index| self.seeds[index])
     }
