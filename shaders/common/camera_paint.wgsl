@@ -18,6 +18,10 @@ const MAX_TURN: f32 = 4.0;
 const OTHER_PAINT: f32 = 1.1;
 // Part of a pixel from which the toy's own colour is unmixed: below, noise would be amplified.
 const LEAST_PART: f32 = 0.35;
+// Error of the toy's part of a pixel over the relative one of its model's colour. Of 0, .2 and .67 the toy's
+// error is 2.92, 2.71 and 2.69 codes for a fox in a motion by 5 px, 4.64, 4.19 and 4.11 for a husky on
+// checked cloth, 6.80, 6.94 and 7.03 for a heron on a pale table.
+const PART_ERROR: f32 = 0.2;
 // Smallest part of the paint in a pixel's light.
 const LEAST_PAINT: f32 = 0.1;
 // Distance in pixels within which the camera's brightness is compared with the model's; largest
@@ -64,12 +68,25 @@ fn own_color(texel: vec2i) -> vec3f {
   return max(seen - (1.0 - part) * fit.gain.rgb * mixed.rgb, vec3f(0.0)) / part;
 }
 
-// The colour of the paint at a texel of the physical box, with its visibility in alpha.
+// How far a pixel of the physical box tells the paint, beside the model; 1 inside the outline. Where a soft
+// picture mixes the receiver into it, an error of the toy's part is multiplied by the difference between
+// receiver and toy, and divided by that part.
+// Source: the mean of two measurements, each weighted by the inverse of its variance.
+fn told_of(texel: vec2i) -> f32 {
+  if !is_soft() { return 1.0; }
+  let mixed = textureLoad(rim, texel, 0);
+  if mixed.a == 0.0 || mixed.a == 1.0 { return 1.0; }
+  let expected = dot(textureLoad(appearance_base, texel, 0).rgb * seen_under(texel), LUMINANCE);
+  let error = PART_ERROR * (dot(mixed.rgb, LUMINANCE) - expected) / max(mixed.a, LEAST_PART);
+  return select(1.0, expected * expected / (expected * expected + error * error), error != 0.0);
+}
+
+// The colour of the paint at a texel of the physical box; alpha is how far that is known.
 fn paint_color(texel: vec2i) -> vec4f {
   let color = own_color(texel);
-  if !IS_GLOSSY { return vec4f(color, 1.0); }
+  if !IS_GLOSSY { return vec4f(color, told_of(texel)); }
   let there = textureLoad(reflected, texel, 0);
-  return vec4f(max(color - fit.gain.rgb * there.rgb, LEAST_PAINT * color), there.a);
+  return vec4f(max(color - fit.gain.rgb * there.rgb, LEAST_PAINT * color), there.a * told_of(texel));
 }
 
 // The same without other surfaces of the toy that a soft picture mixes into it.

@@ -37,3 +37,8 @@ fn darkened(own_color: vec3f, changed: vec3f, shadowed: vec3f) -> vec3f {
   let kept = max(changed, min(own_color, shadowed));
   return kept + smoothstep(DARK_ALL, DARK_NONE, left) * (changed - kept);
 }
+
+// The model; 1 if the plate is clipped and no real shadow shows its true brightness.
+fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
+  return select(model, mix(model, vec3f(1.0), clipped), plate > vec3f(BRIGHTEST_USABLE));
+}

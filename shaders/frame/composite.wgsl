@@ -85,11 +85,6 @@ fn own_share(evident: vec4f, has_moved: bool, deviation: f32) -> f32 {
   return 1.0 - smoothstep(BLED_NONE, BLED_ALL, deviation);
 }
 
-// The model; 1 if the plate is clipped and no real shadow shows its true brightness.
-fn shown_model(plate: vec3f, clipped: vec3f, model: vec3f) -> vec3f {
-  return select(model, mix(model, vec3f(1.0), clipped), plate > vec3f(BRIGHTEST_USABLE));
-}
-
 // Remainder of the light `open` under a styled shadow, if the true one leaves `left`. A weaker one
 // has a share of the loss; a stronger one is applied repeatedly, so that it keeps its hue.
 fn strengthened(open: vec3f, left: vec3f, strength: f32) -> vec3f {
@@ -121,7 +116,7 @@ fn receiver(
   let at = position.xy;
   let uv = at / globals.region_size_px;
   let v_before = soft_texel(physical_visibility, vec2i(texel));
-  let v_after = soft_texel(visibility, vec2i(texel));
+  let v_after = shown_visibility(vec2i(texel));
   let a_before = textureSampleLevel(physical_ambient, linear_sampler, uv, 0.0).r;
   let a_after = textureSampleLevel(ambient, linear_sampler, uv, 0.0).r;
   // If no light changes, the other changes are added to the frame: this handles most pixels.
@@ -212,7 +207,14 @@ fn over_receiver(texel: vec2i, place: vec2i, toy: vec4f, n_draws: u32) -> vec3f 
   let has_moved = evident.b == 0.0 && has_moved_beside(box_texel(place));
   let at = vec4f(vec2f(place) + 0.5, 0.0, 1.0);
   if all(place == texel) { find_beyond(texel, toy.a, evident, has_moved, n_draws); }
-  let below = receiver(at, frame_color, evident, has_moved, drawing.strength, &change);
+  var below = receiver(at, frame_color, evident, has_moved, drawing.strength, &change);
+  if is_beside {
+    // A camera pixel that stays changes by the means of its spread, as it was.
+    var not_of_stays = vec4f(0.0);
+    shows_beside = true;
+    below = receiver(at, frame_color, evident, has_moved, drawing.strength, &not_of_stays);
+    shows_beside = false;
+  }
   let laid = (1.0 - toy.a) * below + toy.rgb;
   // Most pixels show the receiver alone and need no test of the toy.
   if change.a == 0.0 { return grained_toy(laid, texel, toy.a); }

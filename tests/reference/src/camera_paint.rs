@@ -13,6 +13,8 @@ const MAX_TURN: f64 = 4.0;
 const OTHER_PAINT: f64 = 1.1;
 /// Least part of a pixel that is unmixed.
 const LEAST_PART: f64 = 0.35;
+/// Error of the toy's part of a pixel, relative to that of its model's colour.
+const PART_ERROR: f64 = 0.2;
 /// Least part of the paint in a pixel's light.
 const LEAST_PAINT: f64 = 0.1;
 /// Distance in pixels within which brightness is compared.
@@ -60,9 +62,32 @@ pub struct SeenToy {
 }
 
 impl SeenToy {
-    /// The paint's colour, and its visibility.
+    /// The model's colour in the light of the photograph, over the gain.
+    fn model(&self, solution: &Solution, texel: UVec2) -> DVec3 {
+        let base = self.base.at(texel);
+        let normal = DVec3::Y * (2.0 * base.w - 1.0);
+        base.truncate() * toy_radiance(solution, normal, self.received.at(texel))
+    }
+
+    /// Weight of a pixel's own colour beside the model's, by the variances of both.
+    fn told(&self, solution: &Solution, texel: UVec2) -> f64 {
+        let Some(mixed) = self.mixed.as_ref().map(|mixed| mixed.at(texel)) else {
+            return 1.0;
+        };
+        if mixed.w == 0.0 || mixed.w == 1.0 {
+            return 1.0;
+        }
+        let model = self.model(solution, texel).dot(LUMINANCE);
+        let apart = mixed.truncate().dot(LUMINANCE) - model;
+        let of_pixel = (PART_ERROR * apart / mixed.w.max(LEAST_PART)).powi(2);
+        model.powi(2) / (model.powi(2) + of_pixel)
+    }
+
+    /// The paint's colour, and how far it is known.
     #[must_use]
-    pub fn paint(&self, gain: DVec3, texel: UVec2) -> DVec4 {
+    pub fn paint(&self, solution: &Solution, texel: UVec2) -> DVec4 {
+        let gain = solution.gain;
+        let told = self.told(solution, texel);
         let mut color = self.frame.at(texel);
         if let Some(mixed) = &self.mixed {
             let mixed = mixed.at(texel);
@@ -73,9 +98,9 @@ impl SeenToy {
             Some(reflected) => {
                 let there = reflected.at(texel);
                 let paint = (color - gain * there.truncate()).max(LEAST_PAINT * color);
-                paint.extend(there.w)
+                paint.extend(told * there.w)
             }
-            None => color.extend(1.0),
+            None => color.extend(told),
         }
     }
 
@@ -96,11 +121,9 @@ impl SeenToy {
             if !self.is_one.at(at) || (base.w - up).abs() > SAME_UP {
                 continue;
             }
-            let normal = DVec3::Y * (2.0 * base.w - 1.0);
-            let light = toy_radiance(solution, normal, self.received.at(at));
-            let paint = self.paint(solution.gain, at);
+            let paint = self.paint(solution, at);
             shown += paint.w * paint.truncate().dot(LUMINANCE);
-            expected += paint.w * (solution.gain * tint * base.truncate() * light).dot(LUMINANCE);
+            expected += paint.w * (solution.gain * tint * self.model(solution, at)).dot(LUMINANCE);
         }
         if shown == 0.0 || expected == 0.0 {
             return 1.0;

@@ -126,7 +126,7 @@ fn beside_errors(source: &str) -> Errors {
             let own = (toy.base.at(at).w, 4.0 * toy.received.at(at).truncate());
             let factor = toy.brightness_beside(&scene.solution, at, own);
             n_between += u32::from(factor > 0.55 && factor < 0.98);
-            let expected = toy.paint(scene.solution.gain, at).truncate();
+            let expected = toy.paint(&scene.solution, at).truncate();
             let [found, paint @ ..] = actual.at(at).to_array();
             pairs.push((found, factor));
             pairs.extend(channels(DVec3::from(paint), expected));
@@ -172,6 +172,11 @@ fn a_fault_in_the_brightness_beside_is_found() {
         ("OTHER_BRIGHTNESS: f32 = 1.6", "OTHER_BRIGHTNESS: f32 = 1.8"),
         ("MOST_BRIGHTNESS: f32 = 2.0", "MOST_BRIGHTNESS: f32 = 3.0"),
         ("LEAST_PART: f32 = 0.35", "LEAST_PART: f32 = 0.3"),
+        ("PART_ERROR: f32 = 0.2", "PART_ERROR: f32 = 0.25"),
+        (
+            "dot(mixed.rgb, LUMINANCE) - expected",
+            "dot(mixed.rgb, LUMINANCE)",
+        ),
         ("LEAST_PAINT: f32 = 0.1", "LEAST_PAINT: f32 = 0.0"),
         ("vec3f(0.2126, 0.7152, 0.0722)", "vec3f(0.3333)"),
         (
