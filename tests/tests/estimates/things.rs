@@ -25,6 +25,8 @@ const ACROSS_SHADOW: Rect = [UVec2::new(340, 180), UVec2::new(440, 290)];
 pub(super) const OVER_LEGS: Rect = [UVec2::new(222, 222), UVec2::new(292, 254)];
 /// The table left of the forelegs, away from the shadow.
 const BESIDE_LEGS: Rect = [UVec2::new(130, 230), UVec2::new(210, 300)];
+/// A finger's width over the forelegs.
+const ACROSS_LEGS: Rect = [UVec2::new(150, 228), UVec2::new(300, 231)];
 /// Over the forelegs, and over most of the shadow.
 const ON_SHADOW: Rect = [UVec2::new(222, 222), UVec2::new(430, 270)];
 /// Beside the toy, over all of the shadow.
@@ -193,6 +195,14 @@ fn in_frame_alone((color, rect): ([u8; 3], Rect), is_painted: impl Fn(usize) -> 
 fn a_hand_before_a_toy_of_its_hue_is_whole() {
     let found = in_frame_alone((SKIN, OVER_LEGS), |_| true);
     found.assert_whole(Mark::BeforeToy);
+}
+
+/// In the level that is searched, nine pixels of the legs are covered.
+#[test]
+fn a_thin_finger_before_thin_legs_is_before_the_toy() {
+    let found = in_frame_alone((TEAL, ACROSS_LEGS), |_| true);
+    let of_it = found.part(Mark::BeforeToy);
+    assert!(of_it > 0.9, "{of_it:.2} of it");
 }
 
 #[test]

@@ -27,8 +27,10 @@ const ALIKE_CODES: f32 = 5.0;
 /// beside the toy.
 const LEAST_BEFORE: usize = 5;
 const LEAST_BESIDE: usize = 20;
-/// The same for a thing that the frame alone shows.
+/// The same for a thing that the frame alone shows. A pixel that is so many times as unlike the toy as another
+/// colour is counts twice: fingers before thin legs cover few of their pixels.
 const LEAST_IN_FRAME: usize = 12;
+const FAR_UNLIKE: f32 = 2.0;
 /// Minimum number of seeds of a thing in the frame alone that is not before the toy: shadows and
 /// highlights that the model does not have look like small things.
 const LEAST_IN_FRAME_ALONE: usize = 400;
@@ -112,8 +114,14 @@ impl Toy {
 
     /// Whether a pixel of the toy has its expected colour.
     pub(super) fn is_as_expected(&self, at: IVec2, frame: &Codes) -> bool {
-        let colors = frame.get(at).zip(self.expected(at));
-        colors.is_some_and(|(frame, expected)| from_shaded(frame, expected) < UNLIKE_CODES)
+        self.unlike(at, frame).is_some_and(|unlike| unlike < 1.0)
+    }
+
+    /// Distance of a pixel of the toy from its expected colour, relative to that of another colour; `None` if
+    /// one is unknown.
+    fn unlike(&self, at: IVec2, frame: &Codes) -> Option<f32> {
+        let (frame, expected) = frame.get(at).zip(self.expected(at))?;
+        Some(from_shaded(frame, expected) / UNLIKE_CODES)
     }
 
     /// Whether most pixels around one of the toy have their expected colours.
@@ -132,17 +140,18 @@ impl Toy {
         needed: impl Fn(&Grown) -> Vec<f32>,
     ) -> Option<InFrame> {
         let within: Vec<IVec2> = self.coverage.pixels().filter(|at| self.is_within(*at)).collect();
-        let as_expected = within
-            .iter()
-            .copied()
-            .filter(|at| self.is_as_expected(*at, frame));
+        let as_expected = self
+            .coverage
+            .pixels()
+            .filter(|at| self.coverage.at(*at) >= 1.0 && self.is_shown(*at, frame));
         let of_toy: Vec<usize> = as_expected.filter_map(|at| index_in(seeds.size_px, at)).collect();
         let seeds = seeds.in_frame(frame, &of_toy);
         let grown = Grown::from(&seeds, Seed::InFrame, frame)?;
         let mut hidden = vec![0; grown.n_things()];
         for at in within.into_iter().filter(|at| !self.is_as_expected(*at, frame)) {
             if let Some(thing) = grown.of_pixel(at) {
-                hidden[thing] += 1;
+                let unlike = self.unlike(at, frame).unwrap_or(1.0);
+                hidden[thing] += usize::from(unlike >= FAR_UNLIKE) + 1;
             }
         }
         let needed = needed(&grown);
