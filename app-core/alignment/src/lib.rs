@@ -298,12 +298,12 @@ impl Aligner {
     /// The view with the model adapted to the toy, in the first view that shows a difference. The pose stays.
     fn with_adapted_model(&mut self, mut seen: Seen) -> Result<Seen, ToyError> {
         let is_near = seen.view.is_trusted(MOST_ADAPTED_PX);
-        let picture_px = seen.view.picture_px;
+        let (picture_px, is_moving) = (seen.view.picture_px, seen.view.is_moving());
         let Some(pose) = &mut seen.view.report else {
             return Ok(seen);
         };
         let is_tried = self.model.is_some() || self.n_adaptations >= MOST_ADAPTATIONS;
-        if is_tried || !is_near || !pose::adapt::is_doubtful(pose, picture_px) {
+        if is_tried || is_moving || !is_near || !pose::adapt::is_doubtful(pose, picture_px) {
             return Ok(seen);
         }
         self.n_adaptations += 1;
@@ -367,6 +367,7 @@ impl Aligner {
         input_seen.world_from_object = found.world_from_object;
         let outline_px = found.report.map(|pose| pose.spread_px);
         let sharpness = photograph.sharpness(&self.scene, &found.world_from_object, outline_px)?;
+        let plate_spread = found.plate_spread(&sharpness);
         Ok(Seen {
             view: AlignedView {
                 image: input.image.clone(),
@@ -377,7 +378,7 @@ impl Aligner {
                 camera_report,
                 world_from_object: found.world_from_object,
                 picture_px: found.picture_px,
-                plate_spread_px: found.plate_spread_px,
+                plate_spread,
                 covariance: found.covariance,
                 report: found.report,
                 grain: photograph.grain(sharpness.plate_spread),
@@ -385,7 +386,7 @@ impl Aligner {
             },
             photograph: photograph
                 .around_toy(&self.scene, &found.world_from_object)
-                .with_plate_spread(found.plate_spread_px),
+                .with_plate_as_soft(plate_spread),
             input: input_seen,
         })
     }
@@ -443,7 +444,8 @@ impl Aligner {
         let off_receiver = report.pose.and_then(|pose| pose.off_receiver());
         let off_receiver = off_receiver
             .map(|Stand { height_m, lean_rad }| AlignmentWarning::OffReceiver { height_m, lean_rad });
-        let is_other = |pose: &PoseAlignment| !pose.is_of_model || self.model.is_some();
+        let is_moving = view.is_some_and(AlignedView::is_moving);
+        let is_other = |pose: &PoseAlignment| !pose.is_of_model && !is_moving || self.model.is_some();
         let differs = report.pose.filter(|pose| off.is_none() && is_other(pose));
         let differs = differs.map(|pose| AlignmentWarning::ModelDiffers {
             model_px: pose.model_px,

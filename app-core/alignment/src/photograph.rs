@@ -14,12 +14,14 @@ use super::receivers::{SeenReceiver, plate_for};
 use super::report::{AssumedLight, EstimatedLight, LightAlignment, PoseAlignment, PoseDeviation};
 use super::rigid_motion::Matrix6;
 use super::shape::Shape;
+use super::softness::is_motion;
 use super::without_people::people;
 use super::{lights, pose};
 use crate::no_light::NoLight;
 use crate::probe::TrackedLight;
 use app_scene::frame::FrameInput;
 use app_scene::scene::{Light, LightUncertainty, PoseUncertainty, Scene, check};
+use app_scene::sharpness::{Sharpness, Spread};
 use app_scene::toy::ToyError;
 use unlit::UnlitToy;
 
@@ -92,13 +94,6 @@ impl Photograph {
             unlit: OnceLock::new(),
             ..self
         }
-    }
-
-    /// With the plate blurred as the pose estimate found the photograph; 0 for no blur.
-    pub(super) fn with_plate_spread(self, deviation_px: f64) -> Self {
-        let is_soft = deviation_px > 0.0;
-        let softened = is_soft.then(|| self.pyramid.with_plate_spread(deviation_px));
-        self.or_with_pictures(softened.flatten())
     }
 
     pub(super) fn pyramid(&self) -> &Arc<Pyramid> {
@@ -428,7 +423,7 @@ pub(super) struct FoundPose {
     pub(super) picture_px: f64,
     /// The blur that makes the plate as soft as the photograph, in pixels of the largest level; 0
     /// if they are equally soft.
-    pub(super) plate_spread_px: f64,
+    plate_spread_px: f64,
     /// Covariance of a step of it in camera space; `None` if it was not estimated.
     pub(super) covariance: Option<Matrix6>,
     /// `None` if too little of the outline is visible.
@@ -436,6 +431,17 @@ pub(super) struct FoundPose {
 }
 
 impl FoundPose {
+    /// The blur of the plate in a photograph of this sharpness, in pixels of the picture: that of a motion, or
+    /// the round one beside which the pose was found.
+    pub(super) fn plate_spread(&self, sharpness: &Sharpness) -> Spread {
+        let measured = sharpness.plate_spread;
+        if is_motion(&measured) {
+            measured
+        } else {
+            Spread::round(self.picture_px * self.plate_spread_px)
+        }
+    }
+
     /// Whether the outline fits the picture's.
     pub(super) fn is_seen(&self) -> bool {
         let most_px = MOST_OUTLINE_PX * self.picture_px;

@@ -288,12 +288,6 @@ impl Pyramid {
         }
     }
 
-    /// With the plate blurred by a Gaussian, with its standard deviation in pixels of the largest
-    /// level; `None` without a plate.
-    pub(super) fn with_plate_spread(&self, deviation_px: f64) -> Option<Self> {
-        Some(self.with_largest(self.levels[0].with_plate_spread(deviation_px)?))
-    }
-
     /// With the plate blurred by a spread in pixels of the largest level; `None` without a plate.
     pub(super) fn with_softened_plate(&self, spread: Spread) -> Option<Self> {
         let largest = &self.levels[0];

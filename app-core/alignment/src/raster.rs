@@ -63,6 +63,17 @@ impl Coverage {
         index_in(self.size_px, at - self.origin_px)
     }
 
+    /// Times a value at each pixel, without depths.
+    pub(super) fn times(&self, of: impl Fn(IVec2) -> f32) -> Self {
+        let values = self.pixels().zip(&self.values);
+        let values = values.map(|(at, covered)| if *covered > 0.0 { covered * of(at) } else { 0.0 });
+        Self {
+            values: values.collect(),
+            depths_m: Vec::new(),
+            ..*self
+        }
+    }
+
     /// Pixels of the rectangle, row by row.
     pub(super) fn pixels(&self) -> impl Iterator<Item = IVec2> + use<> {
         let origin = self.origin_px;

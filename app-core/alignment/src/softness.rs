@@ -101,9 +101,8 @@ pub(super) fn sharpness<'a>(
             outline_spread: motion.and(Spread::round(of_plate.unwrap_or(0.0))),
         };
     }
-    let plate_spread = plate_spread.unwrap_or(Spread::NONE);
-    let over_plate_px2 = 0.5 * (plate_spread.xx_px2 + plate_spread.yy_px2);
-    // A photograph's own blur is at least its blur relative to the plate.
+    let plate_spread = within(plate_spread.unwrap_or(Spread::NONE), of_outline);
+    let over_plate_px2 = plate_spread.mean_px().powi(2);
     let of_plate_px2 = if is_visible(&of_outline) {
         of_outline * of_outline - over_plate_px2
     } else {
@@ -122,8 +121,18 @@ pub(super) fn sharpness<'a>(
     }
 }
 
+/// A blur relative to the plate, within the photograph's own at the outline; 0 if none was measured. On an even
+/// table a few edges of a thing in changed light look like another blur.
+fn within(over_plate: Spread, outline_px: f64) -> Spread {
+    let mean_px = over_plate.mean_px();
+    if outline_px == 0.0 || outline_px >= mean_px {
+        return over_plate;
+    }
+    over_plate.times((outline_px / mean_px).powi(2))
+}
+
 /// Whether a blur is a motion's.
-fn is_motion(spread: &Spread) -> bool {
+pub(super) fn is_motion(spread: &Spread) -> bool {
     let [wide, narrow] = spread.variances_px2().map(|variance| variance.max(0.0).sqrt());
     wide - narrow >= MOTION_PX
 }
@@ -330,4 +339,25 @@ fn window(coverage: &Coverage, picture_px: IVec2) -> Option<(IVec2, IVec2)> {
     let low = (middle - half).max(IVec2::ZERO);
     let size_px = (middle + half).min(picture_px) - low;
     (size_px.min_element() > 0).then_some((low, size_px))
+}
+
+#[cfg(test)]
+mod tests {
+    use app_scene::sharpness::Spread;
+
+    use super::within;
+
+    #[test]
+    fn no_blur_beside_the_toy_is_larger_than_that_of_its_outline() {
+        // What edges of a thing on an even table looked like, in a sharp picture.
+        let over_plate = Spread {
+            xx_px2: 0.43,
+            ..Spread::NONE
+        };
+        assert!(within(over_plate, 0.35).mean_px() < 0.3501);
+        assert!(within(over_plate, 0.35).yy_px2 == 0.0);
+        for unlimited_px in [0.0, 0.5, 2.0] {
+            assert_eq!(within(over_plate, unlimited_px), over_plate);
+        }
+    }
 }

@@ -9,11 +9,12 @@ use super::photograph::Photograph;
 use super::picture::Mask;
 use super::report::{CameraAlignment, PoseAlignment};
 use super::rigid_motion::Matrix6;
+use super::softness::is_motion;
 use app_scene::camera_frame::CameraImage;
 use app_scene::frame::FrameInput;
 use app_scene::grain::Grain;
 use app_scene::scene::{Camera, Scene};
-use app_scene::sharpness::Sharpness;
+use app_scene::sharpness::{Sharpness, Spread};
 use app_scene::things::Things;
 use app_scene::toy::ToyError;
 
@@ -38,7 +39,8 @@ pub(super) struct AlignedView {
     pub(super) world_from_object: DMat4,
     /// Pixels of the picture per pixel of the level in which the pose was found.
     pub(super) picture_px: f64,
-    pub(super) plate_spread_px: f64,
+    /// The blur of the plate beside which lights and things are estimated.
+    pub(super) plate_spread: Spread,
     /// Covariance of the pose by its outline; `None` if it is not an estimate.
     pub(super) covariance: Option<Matrix6>,
     pub(super) report: Option<PoseAlignment>,
@@ -55,7 +57,7 @@ impl Seen {
             .with_world_from_object(view.world_from_object);
         Self {
             photograph: Photograph::without(scene, &input, view.people.as_deref())
-                .with_plate_spread(view.plate_spread_px),
+                .with_plate_as_soft(view.plate_spread),
             view,
             input,
         }
@@ -90,6 +92,12 @@ impl AlignedView {
         self.image.is(&input.image)
             && self.given_camera == input.camera
             && self.given == input.world_from_object
+    }
+
+    /// Whether a motion blurs the picture, so that a round blur displaces pieces of the outline. The texture beside
+    /// the toy tells: a displaced outline looks as if it moved, too.
+    pub(super) fn is_moving(&self) -> bool {
+        is_motion(&self.sharpness.plate_spread)
     }
 
     /// Whether the outline fits the picture's, within some pixels of the largest level.

@@ -8,6 +8,7 @@ use app_core::toy::{Pose, PosedMesh, Toy};
 use glam::{DMat4, DVec3};
 
 use crate::bundled::SESSION;
+use crate::softness::{UPRIGHT_PX, moved};
 
 /// Amplitude and length of the waves on the model, in metres.
 const WAVE_M: f64 = 6e-4;
@@ -122,4 +123,16 @@ fn a_toy_is_found_with_a_poor_model() {
         .length();
     assert!(found.report.pose.unwrap().is_applied, "{:?}", found.report.pose);
     assert!(off_m < 0.5 * OFF_M, "{off_m}");
+}
+
+/// An outline that a motion blurs is compared with one of a round blur, which tells nothing of the model.
+#[test]
+fn a_motion_tells_of_no_other_model() {
+    let input = &SESSION.1;
+    let input = input.clone().with_image(moved(input.image.rgba(), UPRIGHT_PX));
+    let found = Aligner::new(wavy(2.0)).align(&input).unwrap();
+    assert!(!found.report.pose.unwrap().is_of_model, "no difference is seen");
+    assert_eq!(found.report.model, None);
+    let blames = |warning: &AlignmentWarning| matches!(warning, AlignmentWarning::ModelDiffers { .. });
+    assert!(!found.warnings.iter().any(blames), "{:?}", found.warnings);
 }

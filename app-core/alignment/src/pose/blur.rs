@@ -115,7 +115,7 @@ impl<'a> Pieces<'a> {
         if spread_px < SOFT_PX {
             return true;
         }
-        let [soft, sharp] = [spread_px, 0.0].map(|px| self.edges.pieces(Optics::blurred(px)));
+        let [soft, sharp] = [spread_px, 0.0].map(|px| self.edges.pieces_of(Spread::round(px)));
         let both = self.used(&soft).zip(self.used(&sharp));
         let left = both.filter_map(|(soft, sharp)| soft.left().zip(sharp.left()));
         let are_better: Vec<bool> = left.map(|(soft, sharp)| soft < sharp).collect();

@@ -30,7 +30,7 @@ pub(crate) enum Directed {
 /// The lens's blur along the normals of the outline, as a covariance; `None` if too few directions
 /// tell. An edge shows no blur along itself, so that pieces of four directions are taken apart.
 pub(super) fn directed(beside: &Beside<'_>, elements: &[Element]) -> Option<Directed> {
-    let edges = Edges::new(beside, elements, COMPARED_PX);
+    let edges = Edges::new(beside, elements, COMPARED_PX).mixing(beside);
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
     let mut n_told = 0;
     for class in 0..N_CLASSES {
@@ -114,6 +114,6 @@ fn class_of(normal: DVec2) -> usize {
 /// Standard deviation of a round blur of the outline beside this one, in pixels; 0 if it explains no
 /// more.
 pub(super) fn beyond(beside: &Beside<'_>, elements: &[Element], spread: Spread) -> f64 {
-    let edges = Edges::new(beside, elements, COMPARED_PX);
+    let edges = Edges::new(beside, elements, COMPARED_PX).mixing(beside);
     Pieces::all(&edges).blur_beside(spread).0
 }

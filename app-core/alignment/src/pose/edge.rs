@@ -10,7 +10,8 @@ use glam::{DVec2, IVec2};
 use super::contour::Element;
 use super::motion::Measured;
 use super::owners::Owners;
-use super::sides::{Beside, Sides};
+use super::paint::Shaded;
+use super::sides::{Beside, Sides, carried};
 use crate::picture::{Color, NOISE_CODES, index_in, places, taps_of};
 use crate::raster::Coverage;
 use crate::robust;
@@ -101,9 +102,17 @@ fn measured_by(
 /// The pixels beside an outline, each with its colours of toy and background alone.
 pub(super) struct Edges<'a> {
     coverage: &'a Coverage,
+    /// The toy's model, if a lens mixes its colours as well.
+    model: Option<Model>,
     pixels: Vec<EdgePixel>,
     /// For each piece, whether all of its pixels and both its sides are known.
     pub(super) are_known: Vec<bool>,
+}
+
+/// The toy's model times its coverage, by channels, and the coverage that it colours.
+struct Model {
+    channels: [Coverage; 3],
+    colored: Coverage,
 }
 
 struct EdgePixel {
@@ -113,6 +122,8 @@ struct EdgePixel {
     from_px: f64,
     normal: DVec2,
     toy: Color,
+    /// The toy over its model.
+    toy_over_model: Color,
     background: Color,
     /// The toy's codes minus the background's.
     contrast_codes: [f64; 3],
@@ -144,6 +155,7 @@ impl<'a> Edges<'a> {
                     from_px: (at.as_dvec2() + DVec2::splat(0.5) - element.at_px).dot(element.normal),
                     normal: element.normal,
                     toy,
+                    toy_over_model: sides.toy,
                     background,
                     contrast_codes: [0, 1, 2].map(|channel| toy_codes[channel] - background_codes[channel]),
                     seen_codes: codes(seen),
@@ -152,28 +164,56 @@ impl<'a> Edges<'a> {
         }
         Self {
             coverage: beside.coverage,
+            model: None,
             pixels,
             are_known,
         }
+    }
+
+    /// With a lens that mixes the colours of the toy's model, too. In a wrong place these are other colours, so
+    /// that a pose is searched without it.
+    pub(super) fn mixing(self, beside: &Beside<'_>) -> Self {
+        let model = beside.shaded.map(|shaded| Model::new(shaded, beside.coverage));
+        Self { model, ..self }
     }
 
     /// The statistics of each piece under these optics.
     pub(super) fn pieces(&self, optics: Optics) -> Vec<Piece> {
         let of = |spread_px| self.spread(Covariance::round(spread_px));
         let wider = (optics.overshoot > 0.0).then(|| of(optics.spread_px.hypot(SHARPENED_PX)));
-        self.pieces_by(&of(optics.spread_px), wider.as_ref(), optics.overshoot)
+        let beyond = wider.as_ref().map(|wider| (wider, optics.overshoot));
+        self.pieces_by(&of(optics.spread_px), beyond, |pixel| pixel.toy)
     }
 
     /// The same for a lens with this blur.
     pub(super) fn pieces_of(&self, lens: Covariance) -> Vec<Piece> {
-        self.pieces_by(&self.spread(lens), None, 0.0)
+        let spread = self.spread(lens);
+        let Some(model) = &self.model else {
+            return self.pieces_by(&spread, None, |pixel| pixel.toy);
+        };
+        let of = |coverage| Spread::new(coverage, lens, self.pixels.iter().map(|pixel| pixel.at));
+        let (channels, colored) = (model.channels.each_ref().map(of), of(&model.colored));
+        self.pieces_by(&spread, None, |pixel| {
+            let weight = colored.place(pixel.at - colored.origin_px);
+            if weight == 0.0 {
+                return pixel.toy;
+            }
+            let mean = |channel: &Spread| channel.place(pixel.at - channel.origin_px) / weight;
+            carried(pixel.toy_over_model, channels.each_ref().map(mean))
+        })
     }
 
     fn spread(&self, lens: Covariance) -> Spread {
         Spread::new(self.coverage, lens, self.pixels.iter().map(|pixel| pixel.at))
     }
 
-    fn pieces_by(&self, spread: &Spread, wider: Option<&Spread>, overshoot: f64) -> Vec<Piece> {
+    /// With the colour of the toy at each pixel; beside a wider spread and the overshoot over it.
+    fn pieces_by(
+        &self,
+        spread: &Spread,
+        beyond: Option<(&Spread, f64)>,
+        toy: impl Fn(&EdgePixel) -> Color,
+    ) -> Vec<Piece> {
         let mut pieces: Vec<Piece> = self
             .are_known
             .iter()
@@ -188,16 +228,26 @@ impl<'a> Edges<'a> {
                 density: density(pixel.from_px, pixel.normal, spread.along_px(pixel.normal)),
             };
             let lens = of(spread);
-            let beyond = wider.map_or(Mixed::default(), |wider| {
+            let beyond = beyond.map_or(Mixed::default(), |(wider, overshoot)| {
                 let wider = of(wider);
                 Mixed {
                     covered: overshoot * (lens.covered - wider.covered),
                     density: overshoot * (lens.density - wider.density),
                 }
             });
-            pieces[pixel.owner].add(pixel, lens, beyond);
+            pieces[pixel.owner].add((pixel, toy(pixel)), lens, beyond);
         }
         pieces
+    }
+}
+
+impl Model {
+    fn new(shaded: &Shaded<'_>, coverage: &Coverage) -> Self {
+        let channel = |channel: usize| move |at| shaded.at(at).map_or(0.0, |color| color[channel]);
+        Self {
+            channels: [0, 1, 2].map(|index| coverage.times(channel(index))),
+            colored: coverage.times(|at| if shaded.at(at).is_some() { 1.0 } else { 0.0 }),
+        }
     }
 }
 
@@ -241,9 +291,9 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    fn add(&mut self, pixel: &EdgePixel, lens: Mixed, beyond: Mixed) {
-        for channel in 0..3 {
-            let apart = f64::from(pixel.toy[channel] - pixel.background[channel]);
+    fn add(&mut self, (pixel, toy): (&EdgePixel, Color), lens: Mixed, beyond: Mixed) {
+        for (channel, toy) in toy.into_iter().enumerate() {
+            let apart = f64::from(toy - pixel.background[channel]);
             let mixed = f64::from(pixel.background[channel]) + lens.covered * apart;
             let contrast = pixel.contrast_codes[channel];
             let unclipped = code(mixed) + beyond.covered * contrast;

@@ -35,7 +35,7 @@ pub(super) struct Beside<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Sides {
     /// The toy over the shaded model.
-    toy: Color,
+    pub(super) toy: Color,
     /// The shaded model at the rim.
     rim: Color,
     /// The background over the plate; without a plate the background itself.
@@ -81,7 +81,8 @@ impl Sides {
     }
 }
 
-fn carried(ratio: Color, on: Color) -> Color {
+/// The colour of one side with this ratio to what it is compared with.
+pub(super) fn carried(ratio: Color, on: Color) -> Color {
     [0, 1, 2].map(|channel| (ratio[channel] * (on[channel] + FLOOR) - FLOOR).max(0.0))
 }
 
