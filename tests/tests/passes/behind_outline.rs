@@ -278,8 +278,9 @@ fn a_shadow_that_the_toy_hides_does_not_show_at_its_outline() {
     core.frame(&input).unwrap();
     let own = core.read_map(Map::Visibility).unwrap().unwrap();
     // The means over the spread, of a light that nothing hides, or the toy's own place.
-    let texels = |light: &dyn Fn(UVec2) -> f32| {
-        let all = texels_of(plain.region.size_px).map(|texel| [light(texel); 4]);
+    let texels = |light: &dyn Fn(UVec2) -> f64| {
+        let all =
+            texels_of(plain.region.size_px).map(|texel| DVec4::splat(light(texel)).as_vec4().to_array());
         InjectedVisibility {
             physical: None,
             shown: Some(FloatMap {
@@ -289,7 +290,7 @@ fn a_shadow_that_the_toy_hides_does_not_show_at_its_outline() {
         }
     };
     let lit = texels(&|_| 1.0);
-    let dark = texels(&|texel| 1.0 - plain.coverage.at(texel) as f32);
+    let dark = texels(&|texel| 1.0 - plain.coverage.at(texel));
     let pictures = [lit, dark].map(|visibility| {
         core.inject_visibility(&visibility).unwrap();
         core.frame(&input).unwrap();
