@@ -196,25 +196,26 @@ fn blurred(image: &Arc<Image>) -> Arc<Image> {
 /// The picture of a soft frame, and the same with less green in the plate where the shown toy hides it, and in
 /// the frame where it shows that.
 fn runs([shown, physical]: &[Raster<bool>; 2]) -> [Run; 2] {
-    let sharpness = Sharpness {
-        plate_spread: Spread::NONE,
-        outline_spread: Spread::round(SOFT_PX),
-    };
     let [plate, frame] = photograph(&stand());
     let red = [
         with_less_green(&plate, |at| shown.at(at)),
         with_less_green(&frame, |at| shown.at(at) && !physical.at(at)),
     ];
+    [[plate, frame], red].map(run)
+}
+
+/// The picture of a frame that is blurred.
+fn run([plate, frame]: [Arc<Image>; 2]) -> Run {
+    let pictures = [plate, blurred(&frame)];
     let decoded = Device::shared().decoded();
-    [[plate, frame], red].map(|[plate, frame]| {
-        Run::of(
-            Preset::Balanced,
-            (stand(), sharpness),
-            [plate, blurred(&frame)],
-            &decoded,
-        )
-        .unwrap()
-    })
+    Run::of(Preset::Balanced, (stand(), soft()), pictures, &decoded).unwrap()
+}
+
+fn soft() -> Sharpness {
+    Sharpness {
+        plate_spread: Spread::NONE,
+        outline_spread: Spread::round(SOFT_PX),
+    }
 }
 
 fn stand() -> Stand {
@@ -267,13 +268,9 @@ fn what_the_toy_hides_does_not_show_at_its_outline() {
 #[test]
 fn a_shadow_that_the_toy_hides_does_not_show_at_its_outline() {
     let hidden = hidden();
-    let [plain, _] = runs(&hidden);
     let [plate, frame] = photograph(&stand());
-    let sharpness = Sharpness {
-        plate_spread: Spread::NONE,
-        outline_spread: Spread::round(SOFT_PX),
-    };
-    let input = input(&stand(), &blurred(&frame)).with_sharpness(sharpness);
+    let plain = run([Arc::clone(&plate), Arc::clone(&frame)]);
+    let input = input(&stand(), &blurred(&frame)).with_sharpness(soft());
     let mut core = core_on(scene(&stand(), &plate), Preset::Balanced).unwrap();
     core.frame(&input).unwrap();
     let own = core.read_map(Map::Visibility).unwrap().unwrap();

@@ -139,7 +139,6 @@ impl Toy {
         frame: &Codes,
         needed: impl Fn(&Grown) -> Vec<f32>,
     ) -> Option<InFrame> {
-        let within: Vec<IVec2> = self.coverage.pixels().filter(|at| self.is_within(*at)).collect();
         let as_expected = self
             .coverage
             .pixels()
@@ -148,9 +147,9 @@ impl Toy {
         let seeds = seeds.in_frame(frame, &of_toy);
         let grown = Grown::from(&seeds, Seed::InFrame, frame)?;
         let mut hidden = vec![0; grown.n_things()];
-        for at in within.into_iter().filter(|at| !self.is_as_expected(*at, frame)) {
-            if let Some(thing) = grown.of_pixel(at) {
-                let unlike = self.unlike(at, frame).unwrap_or(1.0);
+        for at in self.coverage.pixels().filter(|at| self.is_within(*at)) {
+            let unlike = self.unlike(at, frame).unwrap_or(1.0);
+            if let Some(thing) = grown.of_pixel(at).filter(|_| unlike >= 1.0) {
                 hidden[thing] += usize::from(unlike >= FAR_UNLIKE) + 1;
             }
         }
