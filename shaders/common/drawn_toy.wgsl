@@ -3,6 +3,7 @@
 // The importing shader declares `toy_0` to `toy_3` and `covered`.
 
 //#import common/covered
+//#import common/over_things
 //#import common/soft_toy
 
 fn drawn_toy(texel: vec2i, n_draws: u32) -> vec4f {
@@ -41,4 +42,10 @@ fn toy_layer(texel: vec2i, n_draws: u32) -> vec4f {
   let part = coverage(texel);
   if part == 0.0 { return vec4f(0.0); }
   return part * toy_color(texel, n_draws);
+}
+
+// The same over a thing that is before the toy.
+fn over_thing(region_texel: vec2i, n_draws: u32) -> vec4f {
+  if globals.things_top_m == 0.0 || !is_all_before_toy(region_texel) { return vec4f(0.0); }
+  return toy_layer(box_texel(region_texel), n_draws);
 }

@@ -1,7 +1,7 @@
 // The picture in layers: clean plate, shadow ratio, toy and masks.
 //
-// The importing shader declares `receiver`, `composed`, `drawing`, `visibility`,
-// `ambient` and `linear_sampler`.
+// The importing shader declares `receiver`, `composed`, `drawing`, `visibility`, `ambient` and
+// `linear_sampler`, and imports `thing_rim`.
 
 //#import common/behind_outline
 //#import common/drawn_toy
@@ -43,6 +43,10 @@ fn layered(position: vec4f, n_draws: u32) -> mat4x4f {
   let is_receiver = is_hit(receiver_point(position.xy));
   let masks = vec4f(0.0, 0.0, select(0.0, 1.0, is_receiver), 1.0);
   let in_box = box_texel(texel);
+  let higher = over_thing(texel, n_draws);
+  if higher.a > 0.0 {
+    return mat4x4f(vec4f(before_toy(texel, f), 1.0), vec4f(1.0), higher, vec4f(higher.a, masks.yzw));
+  }
   // A thing before the toy is a part of the clean plate, and so is the rim of a thing beside it.
   let part = toy_layer(in_box, n_draws).a;
   let is_rim = any(rim_steps_at(texel) != vec4i(0)) && part == 0.0;

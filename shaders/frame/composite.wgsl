@@ -2,7 +2,7 @@
 //   out = gain plate (M' + r)         in general, r the pooled residual, fading with large changes
 //   out = frame + gain plate (M' - M) if the receiver is visible and M' is near M: r is the pixel's
 //                                     own, so the frame passes; also for unexplained things
-//   the mixture of `thing_rim`        at the rim of a thing
+//   the mixture of `thing_rim`        at the rim of a thing; the toy over one before it that is lower
 //   out = frame + B (M' - M)          clear of toys and shadows, B = frame / (M + r), not a plate
 // A glossy receiver's reflection is removed from the frame first, and the shown toy's is added last.
 // Reads: all state of the receiver, visibility and ambient of the animated pose, the drawn toy.
@@ -23,6 +23,7 @@
 //#import common/marks
 //#import common/reflection
 //#import common/relit
+//#import common/shadow_strength
 //#import common/stillness
 //#import common/thing_rim
 //#import common/two_receivers
@@ -83,15 +84,6 @@ fn own_share(evident: vec4f, has_moved: bool, deviation: f32) -> f32 {
   if evident.r == 0.0 { return 0.0; }
   if !has_moved { return 1.0; }
   return 1.0 - smoothstep(BLED_NONE, BLED_ALL, deviation);
-}
-
-// Remainder of the light `open` under a styled shadow, if the true one leaves `left`. A weaker one
-// has a share of the loss; a stronger one is applied repeatedly, so that it keeps its hue.
-fn strengthened(open: vec3f, left: vec3f, strength: f32) -> vec3f {
-  if strength <= 1.0 { return mix(open, left, strength); }
-  let part = select(vec3f(1.0), left / open, open > vec3f(0.0));
-  // Light that the toy reflects onto the table is not a shadow.
-  return open * pow(clamp(part, vec3f(0.0), vec3f(1.0)), vec3f(strength)) * max(part, vec3f(1.0));
 }
 
 // What is shown of a thing in the toy's shadow: a mixture of the frame `f` and the photographed plate.
@@ -230,9 +222,14 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let steps = rim_steps_at(texel);
   let is_rim = any(steps != vec4i(0));
   let is_before = is_before_toy(marks_at(texel));
-  if is_before && !is_rim { return vec4f(grained_toy(before_toy(texel, frame_at(texel)), texel, 0.0), 1.0); }
+  let over = over_thing(texel + steps.xy, n_draws);
+  if is_before && !is_rim {
+    let laid = (1.0 - over.a) * before_toy(texel, frame_at(texel)) + over.rgb;
+    return vec4f(grained_toy(laid, texel, over.a), 1.0);
+  }
   let toy = toy_layer(box_texel(texel), n_draws);
-  let is_over = is_rim && !is_before; // The toy is over the rim of a thing that is not before it.
+  // The toy is over the rim of a thing that is not before it, or not as high.
+  let is_over = is_rim && (!is_before || over.a > 0.5);
   let shown = over_receiver(texel, texel + steps.zw, select(toy, vec4f(0.0), is_over), n_draws);
   if !is_rim { return vec4f(shown, 1.0); }
   let mixed = rim_mixed(texel, steps, shown);

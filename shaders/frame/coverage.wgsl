@@ -4,18 +4,19 @@
 // them up. As in `occlusion` each position has a constant depth, above those before it, so that
 // overlapping triangles do not count twice; rounding of z / w is far below a step of 16 bits, in
 // which depths are 1986 steps apart. A position counts if any triangle covers it: of the scene's
-// depths only those of the receivers are tested.
+// depths only those of the receivers are tested, and the heights of things before the toy.
 // All positions are equal away from the toy's silhouettes: there it is drawn only once, while tiles
 // near a silhouette are closed (`geometry/silhouette.rs`).
 // The positions are a lattice over the pixel, so that an edge of any direction meets them one after
 // the other.
 //
-// Reads: posed positions in anchor space. Writes: COVERED_POSITION for each position of the lattice
+// Reads: posed positions in anchor space, validity. Writes: COVERED_POSITION for each position of the lattice
 // that the toy covers.
 // Source: Fiume, Fournier and Rudolph 1983 (coverage masks); the lattice is that of Korobov 1959.
 
 //#import common/behind
 //#import common/covered
+//#import common/over_things
 //#import common/spread
 //#import common/tiles
 
@@ -27,10 +28,12 @@ struct Positions {
 }
 
 @group(1) @binding(0) var<uniform> positions: Positions;
+@group(1) @binding(1) var validity: texture_2d<f32>;
 
 struct Moved {
   @builtin(position) clip: vec4f,
   @location(0) @interpolate(flat, either) index: u32,
+  @location(1) height_m: f32,
 }
 
 // Offset from the pixel's centre, which in a soft picture may be outside the pixel.
@@ -49,7 +52,7 @@ fn moved_clip(clip: vec4f, index: u32) -> vec4f {
 @vertex
 fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> Moved {
   let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
-  return Moved(moved_clip(clip, index), index);
+  return Moved(moved_clip(clip, index), index, in_anchor.y);
 }
 
 struct Plain {
@@ -90,8 +93,14 @@ fn fs_cover_all() -> @location(0) vec4f {
 }
 
 @fragment
-fn fs_cover(@builtin(position) at: vec4f, @location(0) @interpolate(flat, either) index: u32) -> @location(0) vec4f {
+fn fs_cover(
+  @builtin(position) at: vec4f,
+  @location(0) @interpolate(flat, either) index: u32,
+  @location(1) height_m: f32,
+) -> @location(0) vec4f {
+  let in_region = at.xy + globals.toy_box_origin_px;
   // w is the inverse depth at the position.
-  if is_behind_receiver(at.xy + globals.toy_box_origin_px + position_px(index), at.w) { discard; }
+  if is_behind_receiver(in_region + position_px(index), at.w) { discard; }
+  if is_below_top(vec2i(in_region), height_m) { discard; }
   return covered();
 }

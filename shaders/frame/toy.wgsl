@@ -7,7 +7,7 @@
 // offsets make a denser pattern.
 //
 // Reads: both poses, materials, frame, the source pixels of the toy's colours and the light on
-// them, gbuffer, fit, depth maps from the lights, tints. Writes: linear radiance, premultiplied,
+// them, gbuffer, validity, fit, depth maps from the lights, tints. Writes: linear radiance, premultiplied,
 // with the fraction of hit samples in alpha; difference from the camera's pixel.
 
 //#import common/fit
@@ -25,6 +25,7 @@
 //#import common/camera_paint
 //#import common/source
 //#import common/spread
+//#import common/over_things
 //#import common/still_toy
 //#import common/gloss
 
@@ -43,6 +44,7 @@
 @group(1) @binding(9) var<uniform> specular: Specular;
 // Factor from a soft picture's mixture of the toy's surfaces to the one at the pixel's centre.
 @group(1) @binding(10) var unmixed: texture_2d<f32>;
+@group(1) @binding(11) var validity: texture_2d<f32>;
 
 // Whether the light of the camera's pixel replaces the point's own in the test for changes.
 override IS_COARSE: bool = false;
@@ -273,14 +275,14 @@ fn fs_toy(
     unseen *= brightness_beside(physical_texel(vec2i(physical_px)), hemispheres(physical_normal).x, tint);
   }
   let seen = pixel.a * smoothstep(STRETCH_NONE, STRETCH_ALL, stretch);
-  // Nothing is discarded, so that depth is tested first: surfaces behind this one are behind the
-  // receiver, too.
-  if is_behind_receiver(at.xy + globals.toy_box_origin_px - offset_px, at.w) { return Drawn(vec4f(0.0), vec4f(0.0)); }
+  // Nothing is discarded, so that depth is tested first: surfaces behind this one are hidden, too.
+  let is_behind = is_behind_receiver(at.xy + globals.toy_box_origin_px - offset_px, at.w);
+  let in_region = vec2i(at.xy + globals.toy_box_origin_px);
+  if is_behind || is_below_top(in_region, in_anchor.y) { return Drawn(vec4f(0.0), vec4f(0.0)); }
   let is_moved = moved(region_px(globals.clip_from_anchor * vec4f(in_anchor, 1.0)), physical_px);
   var paint = mix(unseen, pixel.rgb, seen);
   var relit_part = 0.0;
   if is_moved < 1.0 {
-    let in_region = vec2i(at.xy + globals.toy_box_origin_px);
     var after = lit;
     let was_received = received_before(physical_in_anchor, physical_normal);
     let reflects_before = reflected_before(in_region, material, physical_in_anchor, physical_normal, was_received);

@@ -172,6 +172,9 @@ pub struct Things {
     camera: Camera,
     /// The point of a thing at each pixel; empty if none is known.
     raised: Arc<Vec<RaisedPoint>>,
+    /// Height in metres above the first receiver below which all things before the toy are; `None` if
+    /// it is unknown.
+    top_m: Option<f32>,
 }
 
 impl Things {
@@ -187,7 +190,23 @@ impl Things {
             counts,
             camera,
             raised: Arc::default(),
+            top_m: None,
         })
+    }
+
+    /// With the height in metres above the first receiver below which all things before the toy are, such
+    /// as a hand on the table: parts of the toy above it are drawn over them.
+    #[must_use]
+    pub fn with_top(self, top_m: Option<f32>) -> Self {
+        let top_m = top_m.filter(|top_m| *top_m > 0.0);
+        Self { top_m, ..self }
+    }
+
+    /// The height in metres above the first receiver below which all things before the toy are; `None` if
+    /// it is unknown: then the toy is drawn behind them.
+    #[must_use]
+    pub fn top_m(&self) -> Option<f32> {
+        self.top_m
     }
 
     /// With the points of things at the picture's pixels, rows from the top: new shadows fall on
@@ -244,13 +263,15 @@ impl Things {
     /// Whether both share their memory, and so mark the same picture.
     #[must_use]
     pub fn is(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.marks, &other.marks) && Arc::ptr_eq(&self.raised, &other.raised)
+        let are_shared = Arc::ptr_eq(&self.marks, &other.marks) && Arc::ptr_eq(&self.raised, &other.raised);
+        are_shared && self.top_m == other.top_m
     }
 
     /// Whether both have equal contents.
     #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
-        self.camera == other.camera && self.marks == other.marks && self.raised == other.raised
+        let are_equal = self.marks == other.marks && self.raised == other.raised;
+        are_equal && self.camera == other.camera && self.top_m == other.top_m
     }
 
     /// Whether there is any mark.

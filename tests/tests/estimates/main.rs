@@ -10,6 +10,7 @@ mod focal_length;
 mod from_photographs;
 mod gloss;
 mod grain;
+mod hands;
 mod later_views;
 mod lens_found;
 mod lists;

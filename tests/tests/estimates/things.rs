@@ -47,7 +47,7 @@ const FACE: [u8; 3] = [150, 134, 122];
 const TEAL: [u8; 3] = [20, 120, 130];
 pub(super) const SIDE: [u8; 3] = [190, 60, 120];
 /// In less light it is like the toy's hair.
-const SKIN: [u8; 3] = [140, 104, 72];
+pub(super) const SKIN: [u8; 3] = [140, 104, 72];
 
 /// The same without the lamp's light, nearly as the table in the toy's shadow.
 const SKIN_IN_SHADOW: [u8; 3] = [110, 88, 74];
@@ -122,7 +122,7 @@ impl Found {
     }
 
     /// The share of the rectangle with a mark.
-    fn part(&self, mark: Mark) -> f64 {
+    pub(super) fn part(&self, mark: Mark) -> f64 {
         let Some(things) = &self.things else { return 0.0 };
         let width_px = things.size_px().x;
         let pixels = pixels_of(self.rect, width_px);
@@ -406,7 +406,7 @@ fn a_side_as_dark_as_its_surroundings_is_part_of_its_thing() {
 }
 
 /// Indices of a rectangle's pixels.
-fn pixels_of([first, end]: Rect, width_px: u32) -> impl Iterator<Item = usize> {
+pub(super) fn pixels_of([first, end]: Rect, width_px: u32) -> impl Iterator<Item = usize> {
     (first.y..end.y).flat_map(move |y| (first.x..end.x).map(move |x| (y * width_px + x) as usize))
 }
 

@@ -219,7 +219,8 @@ impl Photograph {
             memory,
             things: Things::new(found.size_px.as_uvec2(), found.marks, camera).map(|things| {
                 // The marks are known without points, too.
-                things.clone().with_raised(found.raised).unwrap_or(things)
+                let raised = things.clone().with_raised(found.raised);
+                raised.unwrap_or(things).with_top(found.top_m)
             }),
         })
     }

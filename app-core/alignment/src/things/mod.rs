@@ -26,9 +26,11 @@ mod inner;
 mod interpolate;
 mod known;
 mod listed;
+mod low;
 mod measured;
 mod memory;
 mod outline;
+mod own_shadow;
 mod painted;
 mod pattern;
 pub(crate) mod planes;
@@ -96,6 +98,8 @@ pub(crate) struct Sighting {
     pub(crate) raised: Vec<RaisedPoint>,
     /// Planes of things, if they are wanted.
     pub(crate) planes: Vec<FoundPlane>,
+    /// Height in metres above the first receiver below which all things before the toy are; `None` if it is unknown.
+    pub(crate) top_m: Option<f32>,
 }
 
 /// Finds the things: `None` if there are none beside the toy, or none can be detected; and the
@@ -163,6 +167,7 @@ impl Sight<'_> {
                 marks: vec![Mark::None; (largest_px.x * largest_px.y) as usize],
                 raised: Vec::new(),
                 planes: found.planes,
+                top_m: None,
             };
             return (Some(sighting), memory);
         }
@@ -183,6 +188,7 @@ impl Sight<'_> {
         let (marks, memory) = self.with_pattern(marks, memory);
         let sighting = Sighting {
             size_px,
+            top_m: self.top_of_low(level, &found, (size_px, &marks)),
             marks,
             raised,
             planes: found.planes,
@@ -467,6 +473,7 @@ impl Sight<'_> {
         if let Some([frame, plate]) = &codes {
             marks = outline::sharpened((found, &toy), [frame, plate], per_px, &marks);
         }
+        self.keep_own_shadow(level, found, &mut marks);
         self.paint_behind_toy(level, found, &toy, &mut marks);
         (size_px, marks)
     }

@@ -120,6 +120,8 @@ pub struct Plan {
     pub has_things: bool,
     /// Whether shadows fall on these.
     pub has_raised_things: bool,
+    /// Height above which the toy is drawn over things before it; `None` if it is drawn behind them.
+    pub things_top_m: Option<f32>,
     /// The toy's shadow on itself.
     pub self_shadow: ShadowAtlas,
     /// Meshes that cast shadows.
@@ -173,6 +175,7 @@ impl Plan {
             is_shadow_withheld: settings.is_shadow_withheld,
             has_things: facts.has_things,
             has_raised_things: facts.has_raised_things,
+            things_top_m: facts.things_top_m,
             self_shadow: self_shadow(n_lights, settings),
             casters: Casters::new(facts, settings),
             sharpness: facts.sharpness,

@@ -18,7 +18,7 @@ pub(crate) struct Region {
 
 impl Region {
     pub(crate) fn new(gpu: &Gpu, plan: Plan, globals: &Globals) -> Self {
-        let uniform = globals.with_spread(plan.sharpness.outline_spread);
+        let uniform = planned(globals, &plan);
         Self {
             globals: gpu.uniform("globals", &uniform),
             specular: gpu.uniform("specular", &plan.specular),
@@ -29,7 +29,7 @@ impl Region {
 
     /// Switches to another view.
     pub(crate) fn follow(&mut self, gpu: &Gpu, plan: Plan, globals: &Globals) {
-        self.uniform = globals.with_spread(plan.sharpness.outline_spread);
+        self.uniform = planned(globals, &plan);
         self.plan = plan;
         gpu.write(&self.globals, &[self.uniform]);
         gpu.write(&self.specular, &[self.plan.specular]);
@@ -53,5 +53,13 @@ impl Region {
     /// The rectangle of the camera image.
     pub(crate) fn rect(&self) -> PixelRect {
         self.plan.region
+    }
+}
+
+/// A region's globals with those that its plan determines.
+fn planned(globals: &Globals, plan: &Plan) -> Globals {
+    Globals {
+        things_top_m: plan.things_top_m.unwrap_or(0.0),
+        ..globals.with_spread(plan.sharpness.outline_spread)
     }
 }

@@ -33,6 +33,15 @@ impl Stage {
         })
     }
 
+    /// Height above which the toy is drawn over the things before it: nothing tells how high people are,
+    /// and only from above is the higher of two points of a ray nearer.
+    pub(super) fn things_top_m(&self, footprint: &Footprint) -> Option<f32> {
+        let things = self.things.as_ref().filter(|_| self.people.marks().is_none());
+        let top_m = things.and_then(|things| things.given().top_m())?;
+        let camera = footprint.view.camera_in(&self.layout().world_from_anchor());
+        (camera.y > f64::from(top_m)).then_some(top_m)
+    }
+
     /// Warnings about things beside the toy in the pictures.
     pub(super) fn thing_warnings(&self) -> impl Iterator<Item = Warning> {
         let things = self.things.as_ref();

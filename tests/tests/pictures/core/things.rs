@@ -22,6 +22,8 @@ const IN_SHADOW: Rect = [UVec2::new(95, 50), UVec2::new(123, 76)];
 /// In the area that the toy covers in either pose, and parts of it.
 const OVER_TOY: Rect = [UVec2::new(56, 40), UVec2::new(72, 56)];
 const PAINTED: Rect = [UVec2::new(64, 40), UVec2::new(72, 56)];
+/// Where the toy moves its head.
+const AT_HEAD: Rect = [UVec2::new(44, 14), UVec2::new(64, 38)];
 
 fn with(input: &FrameInput, marked: &[(Mark, Rect)]) -> FrameInput {
     let image = input.image.rgba();
@@ -79,6 +81,33 @@ fn things_stay_as_the_camera_saw_them() {
     // The toy is drawn over an object that is not in front of it.
     let behind = picture_of(&mut core, &with(&input, &[(Mark::Thing, OVER_TOY)]));
     assert!(apart(&behind, &input, OVER_TOY) > 10);
+}
+
+#[test]
+fn the_toy_is_drawn_over_a_lower_thing_before_it() {
+    let (scene, input) = staged();
+    let mut core = core();
+    core.set_scene(scene, Preset::Balanced).unwrap();
+    let free = picture_of(&mut core, &input);
+    let marked = with(&input, &[(Mark::BeforeToy, AT_HEAD)]);
+    let things = marked.things.clone().unwrap();
+    let camera = &input.image.rgba();
+    let apart = |[a, b]: [&[u8]; 2], at: usize| (at..at + 3).map(|at| a[at].abs_diff(b[at])).max().unwrap();
+    let inner = pixels(within(within(AT_HEAD))).map(|at| 4 * (at.y * camera.width_px + at.x) as usize);
+    let changed: Vec<usize> = inner
+        .filter(|at| apart([&free, &camera.rgba8], *at) > 10)
+        .collect();
+    let part_shown = |picture: &[u8]| {
+        let shown = changed.iter().filter(|at| apart([picture, &free], **at) < 3);
+        shown.count() as f32 / changed.len() as f32
+    };
+    // All of the toy is above a tenth of a millimetre, some above 9 cm, nothing above 60.
+    for (top_m, shown) in [(1e-4, 0.95..1.01), (0.09, 0.2..0.9), (0.6, 0.0..0.01)] {
+        let low = things.clone().with_top(Some(top_m));
+        let picture = picture_of(&mut core, &marked.clone().with_things(Some(low)));
+        let part = part_shown(&picture);
+        assert!(shown.contains(&part), "{part} of it is shown above {top_m} m");
+    }
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::gpu::pipeline::{DrawSpec, Stream};
 use crate::gpu::recorder::{Recorder, cleared};
 use crate::gpu::shader::{Mirrors, Shader, mirrors, shader};
 use crate::gpu::shared::shared_struct;
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::plan::Plan;
 use crate::model::region::Region;
 use crate::passes::counting::{CountingDraws, InstanceOrder, counting, ordered};
@@ -21,7 +21,7 @@ pub(crate) const COVERED: Mirrors = mirrors!("common/covered", constants: [N_POS
 /// The lattice of these positions, for the background of an outline.
 pub(crate) const BEHIND_OUTLINE: Mirrors = mirrors!("common/behind_outline", constants: [OUTLINE_ROW_STEP]);
 pub(crate) const SHADER: Shader = shader!("frame/coverage", structs: [Positions]);
-const SLOTS: &[Slot] = &[Slot::per_use::<Positions>()];
+const SLOTS: &[Slot] = &[Slot::per_use::<Positions>(), Slot::Texture];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Number of lattice positions within a pixel at which the toy's coverage is sampled.
 pub(crate) const N_POSITIONS: u32 = 32;
@@ -60,6 +60,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) region: &'a Region,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) camera_in_anchor: glam::Vec3,
+    pub(crate) validity: &'a TextureView,
 }
 
 /// Targets of the toy box's size.
@@ -107,26 +108,31 @@ impl Pass {
             part: inputs.region.plan.toy_box,
             savings: Savings::Pixels,
         };
-        let corners = toy.corners(recorder.gpu, &seen, Some(target));
+        let plan = &inputs.region.plan;
+        // Only where each position is drawn are the heights of things tested.
+        let may_be_over_things = plan.things_top_m.is_some();
+        let corners = toy.corners(recorder.gpu, &seen, (!may_be_over_things).then_some(target));
         let globals = [(&inputs.region.globals).into()];
-        let is_half = inputs.region.plan.n_coverage_positions < N_POSITIONS;
+        let is_half = plan.n_coverage_positions < N_POSITIONS;
         let positions = if is_half { HALF } else { ALL };
         let n_positions = positions.n;
         let any = self.draws.any();
         let groups = [
             recorder.bind(any, GROUP_SCENE, &globals),
-            recorder.bind_with(any, GROUP_PASS, &positions, &[Resource::PerUse]),
+            recorder.bind_with(
+                any,
+                GROUP_PASS,
+                &positions,
+                &[Resource::PerUse, inputs.validity.into()],
+            ),
         ];
         let count = cleared(&targets.covered.view);
         let mut render = targets.order.render(recorder, SHADER.name, count);
-        render.part_of(inputs.region.plan.part_drawn(&inputs.region.plan.toy_box));
+        render.part_of(plan.part_drawn(&plan.toy_box));
         let drawn = (&corners, pose);
         // In front of a single receiver, the vertices alone decide what is behind it.
-        let n_plain = if inputs.region.plan.n_receivers == 1 {
-            n_positions
-        } else {
-            0
-        };
+        let is_plain = plan.n_receivers == 1 && !may_be_over_things;
+        let n_plain = if is_plain { n_positions } else { 0 };
         self.draws
             .count(&mut render, &groups, drawn, 0..n_positions, n_plain);
     }

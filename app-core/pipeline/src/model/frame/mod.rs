@@ -135,6 +135,7 @@ impl FramePath<'_> {
             unmixed: self.captured.by_pass.unmix.factor.as_ref(),
             reflected: self.captured.by_pass.gloss.view(),
             specular: &self.region.specular,
+            validity: &self.captured.by_pass.validity.marks.view,
         }
     }
 
@@ -143,6 +144,7 @@ impl FramePath<'_> {
             region: self.region,
             toy: self.toy,
             camera_in_anchor: self.region.uniform.camera_in_anchor.into(),
+            validity: &self.captured.by_pass.validity.marks.view,
         }
     }
 

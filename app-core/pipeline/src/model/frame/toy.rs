@@ -40,6 +40,7 @@ const SLOTS: &[Slot] = &[
     Slot::Texture,
     Slot::uniform::<Specular>(),
     Slot::Texture,
+    Slot::Texture,
 ];
 /// Streams of a draw with materials, followed by the physical pose.
 const STREAMS: &[Stream] = &[
@@ -121,6 +122,7 @@ pub(crate) struct Inputs<'a> {
     /// Radiance that a glossy toy reflected.
     pub(crate) reflected: Option<&'a TextureView>,
     pub(crate) specular: &'a Buffer,
+    pub(crate) validity: &'a TextureView,
 }
 
 /// Targets of the toy box's size: one for each draw, and those that stay in tile memory.
@@ -260,7 +262,7 @@ fn sides(gpu: &Gpu, (format, n_samples): (TextureFormat, u32), is_glossy: bool) 
 }
 
 impl<'a> Inputs<'a> {
-    fn resources(&self) -> [Resource<'a>; 11] {
+    fn resources(&self) -> [Resource<'a>; 12] {
         // A sharp picture binds a placeholder that is not read.
         let of_soft = |drawn: Option<&'a Texture>| &drawn.unwrap_or(&self.appearance.base).view;
         [
@@ -275,6 +277,7 @@ impl<'a> Inputs<'a> {
             self.reflected.unwrap_or(&self.appearance.base.view).into(),
             self.specular.into(),
             of_soft(self.unmixed).into(),
+            self.validity.into(),
         ]
     }
 }

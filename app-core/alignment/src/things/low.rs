@@ -1,0 +1,54 @@
+//! The height below which all things before the toy are, such as a hand that lies on the table.
+//!
+//! Nothing tells the shape of what no plate shows. But what hides the toy's feet alone mostly lies on the
+//! table, and a head that the toy lowers there is in front of it.
+
+use glam::IVec2;
+
+use super::found::Found;
+use super::groups::cross;
+use super::sight::Sight;
+use crate::picture::{Level, index_in, places};
+use crate::raster::{Rasterizer, project};
+use app_scene::things::Mark;
+
+/// Distance in pixels from the rims of thing and toy beyond which a pixel shows a thing before the toy.
+const WITHIN_PX: i32 = 2;
+/// Part of the toy's height below which a thing hides it, if the thing is a low one.
+const LOW: f64 = 0.35;
+
+impl Sight<'_> {
+    /// The height in metres above the first receiver of the highest point of the toy that things hide, if
+    /// they hide its lower part alone, and no plate shows them. `marks` are those of the largest level.
+    #[allow(clippy::cast_possible_truncation, reason = "metres")]
+    pub(super) fn top_of_low(
+        &self,
+        level: &Level,
+        found: &Found<'_>,
+        (size_px, marks): (IVec2, &[Mark]),
+    ) -> Option<f32> {
+        let plane_from_camera = &self.receivers.first()?.plane_from_camera;
+        let is_before =
+            |at: IVec2| index_in(size_px, at).and_then(|index| marks.get(index)) == Some(&Mark::BeforeToy);
+        let per_px = self.per_px(level);
+        let is_in_plate = |at: IVec2| found.at((at.as_dvec2() + 0.5) * per_px) == Mark::BeforeToy;
+        if found.in_frame.is_none() || places(size_px).any(|at| is_before(at) && is_in_plate(at)) {
+            return None;
+        }
+        let intrinsics = &self.pyramid.level(0).intrinsics;
+        let corners = project(self.shape.points.iter().copied(), intrinsics);
+        let toy = Rasterizer::default().with_depth(&corners, &self.shape.faces, size_px);
+        let is_hidden = |at: &IVec2| cross(*at, WITHIN_PX).all(|at| is_before(at) && toy.at(at) >= 1.0);
+        let height_m = |at: IVec2| {
+            let point = f64::from(toy.depth_m(at)) * intrinsics.ray(at.as_dvec2() + 0.5);
+            plane_from_camera.transform_point3(point).y
+        };
+        let top_m = toy.pixels().filter(is_hidden).map(height_m).reduce(f64::max)?;
+        let of_toy = self
+            .shape
+            .points
+            .iter()
+            .map(|point| plane_from_camera.transform_point3(*point).y);
+        (top_m < LOW * of_toy.reduce(f64::max)?).then_some(top_m as f32)
+    }
+}
