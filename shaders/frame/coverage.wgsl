@@ -10,8 +10,8 @@
 // The positions are a lattice over the pixel, so that an edge of any direction meets them one after
 // the other.
 //
-// Reads: posed positions in anchor space, validity. Writes: COVERED_POSITION for each position of the lattice
-// that the toy covers.
+// Reads: posed positions in anchor space, validity beside low things. Writes: COVERED_POSITION for
+// each position of the lattice that the toy covers.
 // Source: Fiume, Fournier and Rudolph 1983 (coverage masks); the lattice is that of Korobov 1959.
 
 //#import common/behind
@@ -93,13 +93,20 @@ fn fs_cover_all() -> @location(0) vec4f {
 }
 
 @fragment
-fn fs_cover(
+fn fs_cover(@builtin(position) at: vec4f, @location(0) @interpolate(flat, either) index: u32) -> @location(0) vec4f {
+  // w is the inverse depth at the position.
+  if is_behind_receiver(at.xy + globals.toy_box_origin_px + position_px(index), at.w) { discard; }
+  return covered();
+}
+
+// The same beside low things before the toy.
+@fragment
+fn fs_cover_over_things(
   @builtin(position) at: vec4f,
   @location(0) @interpolate(flat, either) index: u32,
   @location(1) height_m: f32,
 ) -> @location(0) vec4f {
   let in_region = at.xy + globals.toy_box_origin_px;
-  // w is the inverse depth at the position.
   if is_behind_receiver(in_region + position_px(index), at.w) { discard; }
   if is_below_top(vec2i(in_region), height_m) { discard; }
   return covered();

@@ -13,8 +13,8 @@ use super::things::{Found, OVER_LEGS, Rect, SKIN, painted_where, pixels_of, shad
 /// From above the toy's head down to its feet.
 const OVER_ALL: Rect = [UVec2::new(222, 60), UVec2::new(292, 254)];
 /// An arm across the toy's shadow, and its own shadow right of it, away from the light.
-const ACROSS_SHADOW: Rect = [UVec2::new(340, 210), UVec2::new(380, 340)];
-const OWN_SHADOW: Rect = [UVec2::new(380, 210), UVec2::new(400, 340)];
+const ACROSS_SHADOW: Rect = [UVec2::new(340, 210), UVec2::new(380, 360)];
+const OWN_SHADOW: Rect = [UVec2::new(380, 210), UVec2::new(400, 360)];
 /// Parts of the toy's shadow: in that of the arm, and beyond it.
 const IN_BOTH: Rect = [UVec2::new(382, 235), UVec2::new(398, 265)];
 const BEYOND: Rect = [UVec2::new(408, 235), UVec2::new(424, 265)];

@@ -7,6 +7,7 @@ use glam::IVec2;
 
 use super::found::Found;
 use super::groups::cross;
+use super::memory::Memory;
 use super::sight::Sight;
 use crate::picture::{Level, index_in, places};
 use crate::raster::{Rasterizer, project};
@@ -19,14 +20,19 @@ const LOW: f64 = 0.35;
 
 impl Sight<'_> {
     /// The height in metres above the first receiver of the highest point of the toy that things hide, if
-    /// they hide its lower part alone, and no plate shows them. `marks` are those of the largest level.
+    /// they hide its lower part alone, and no plate shows them. `marks` are those of the largest level, and
+    /// `now` is the memory of this picture.
     #[allow(clippy::cast_possible_truncation, reason = "metres")]
     pub(super) fn top_of_low(
         &self,
         level: &Level,
         found: &Found<'_>,
-        (size_px, marks): (IVec2, &[Mark]),
+        (now, size_px, marks): (&Memory, IVec2, &[Mark]),
     ) -> Option<f32> {
+        let known = self.memory.and_then(|memory| memory.top_m(now, size_px, marks));
+        if let Some(known) = known {
+            return known;
+        }
         let plane_from_camera = &self.receivers.first()?.plane_from_camera;
         let is_before =
             |at: IVec2| index_in(size_px, at).and_then(|index| marks.get(index)) == Some(&Mark::BeforeToy);

@@ -47,6 +47,8 @@ pub(crate) struct Memory {
     marks: (IVec2, Vec<Mark>),
     /// The points of things at these pixels; empty if there are none.
     raised: Vec<RaisedPoint>,
+    /// The height below which things before the toy are.
+    top_m: Option<f32>,
     /// Marks without and with the place's pattern; `None` if the plate is not wrong.
     pattern: Option<[Vec<Mark>; 2]>,
 }
@@ -60,6 +62,7 @@ impl Memory {
             known,
             marks: (IVec2::ZERO, Vec::new()),
             raised: Vec::new(),
+            top_m: None,
             pattern: None,
         }
     }
@@ -143,9 +146,17 @@ impl Memory {
 
     /// The points of things, if neither the marks nor light, toy and camera have changed.
     pub(super) fn raised(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> Option<&[RaisedPoint]> {
+        self.is_same(now, size_px, marks).then_some(&self.raised)
+    }
+
+    /// The same for the height below which things before the toy are.
+    pub(super) fn top_m(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> Option<Option<f32>> {
+        self.is_same(now, size_px, marks).then_some(self.top_m)
+    }
+
+    fn is_same(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> bool {
         let (known_px, known) = &self.marks;
-        let is_same = *known_px == size_px && known == marks && self.is_of_same_view(now);
-        is_same.then_some(&self.raised)
+        *known_px == size_px && known == marks && self.is_of_same_view(now)
     }
 
     /// Marks with the place's pattern, if neither those without it nor light, toy and camera have changed.
@@ -165,6 +176,11 @@ impl Memory {
     /// Whether neither light, toy nor camera have changed.
     fn is_of_same_view(&self, now: &Self) -> bool {
         self.frame.size_px == now.frame.size_px && self.place.is_like(&now.place, self.frame.size_px)
+    }
+
+    /// With the height below which things before the toy are.
+    pub(super) fn with_top(self, top_m: Option<f32>) -> Self {
+        Self { top_m, ..self }
     }
 
     /// With the marks of its picture's largest level, and the points of things.

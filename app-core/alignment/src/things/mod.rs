@@ -70,7 +70,6 @@ use exposure::{gain, gains, plate_codes};
 use found::Found;
 use grown::Grown;
 use memory::Place;
-use pattern::Hidden;
 use planes::{FoundPlane, is_clearer};
 pub(crate) use seeds::Colored;
 use seeds::{Seed, Seeds};
@@ -180,7 +179,8 @@ impl Sight<'_> {
             None => marks,
         };
         let raised = self.raised(level, &found, (&memory, size_px, &marks));
-        let memory = memory.with_marks(size_px, &marks, &raised);
+        let top_m = self.top_of_low(level, &found, (&memory, size_px, &marks));
+        let memory = memory.with_marks(size_px, &marks, &raised).with_top(top_m);
         let marks = match found.colored {
             Colored::Otherwise => marks,
             Colored::Alike => self.marks_of_standing(level, &found, (size_px, marks), &raised),
@@ -188,38 +188,12 @@ impl Sight<'_> {
         let (marks, memory) = self.with_pattern(marks, memory);
         let sighting = Sighting {
             size_px,
-            top_m: self.top_of_low(level, &found, (size_px, &marks)),
+            top_m,
             marks,
             raised,
             planes: found.planes,
         };
         (Some(sighting), memory)
-    }
-
-    /// Marks of the largest level, with the place's pattern behind the toy, and the memory of this picture
-    /// with both. The pattern depends on the marks and the plate alone: it is searched anew only if the
-    /// marks or the view have changed.
-    fn with_pattern(&self, marks: Vec<Mark>, now: Memory) -> (Vec<Mark>, Memory) {
-        if !marks.contains(&Mark::WrongPlate) {
-            return (marks, now);
-        }
-        let known = self.memory.and_then(|before| before.completed(&now, &marks));
-        let completed = known.map(<[Mark]>::to_vec);
-        let completed = completed.or_else(|| self.completed(&marks));
-        let completed = completed.unwrap_or_else(|| marks.clone());
-        let memory = now.with_pattern(marks, completed.clone());
-        (completed, memory)
-    }
-
-    fn completed(&self, marks: &[Mark]) -> Option<Vec<Mark>> {
-        let level = self.pyramid.level(0);
-        let hidden = Hidden {
-            level,
-            receivers: self.receivers,
-            coverage: &toy::covered(self, level),
-            marks,
-        };
-        hidden.completed()
     }
 
     /// The things of a level, in these colours.

@@ -9,7 +9,10 @@
 use glam::{DMat3, DVec2, DVec3, IVec2};
 
 use super::feet::pixel_of;
+use super::memory::Memory;
 use super::shade::logarithm;
+use super::sight::Sight;
+use super::toy::covered;
 use crate::picture::{Color, Level, Mask, index_in, places, square};
 use crate::raster::Coverage;
 use crate::receivers::{SeenReceiver, receiver_at};
@@ -41,11 +44,11 @@ const REPEATS: f64 = 0.5;
 const N_TERMS: usize = 3;
 
 /// A place with a wrong plate.
-pub(super) struct Hidden<'a> {
-    pub(super) level: &'a Level,
-    pub(super) receivers: &'a [SeenReceiver],
-    pub(super) coverage: &'a Coverage,
-    pub(super) marks: &'a [Mark],
+struct Hidden<'a> {
+    level: &'a Level,
+    receivers: &'a [SeenReceiver],
+    coverage: &'a Coverage,
+    marks: &'a [Mark],
 }
 
 /// A surrounding pixel: its place in the plane, and the logarithm of its colour.
@@ -62,10 +65,38 @@ struct Offset {
     differs: f64,
 }
 
+impl Sight<'_> {
+    /// Marks of the largest level, with the place's pattern behind the toy, and the memory of this picture
+    /// with both. The pattern depends on the marks and the plate alone: it is searched anew only if the
+    /// marks or the view have changed.
+    pub(super) fn with_pattern(&self, marks: Vec<Mark>, now: Memory) -> (Vec<Mark>, Memory) {
+        if !marks.contains(&Mark::WrongPlate) {
+            return (marks, now);
+        }
+        let known = self.memory.and_then(|before| before.completed(&now, &marks));
+        let completed = known.map(<[Mark]>::to_vec);
+        let completed = completed.or_else(|| self.completed(&marks));
+        let completed = completed.unwrap_or_else(|| marks.clone());
+        let memory = now.with_pattern(marks, completed.clone());
+        (completed, memory)
+    }
+
+    fn completed(&self, marks: &[Mark]) -> Option<Vec<Mark>> {
+        let level = self.pyramid.level(0);
+        let hidden = Hidden {
+            level,
+            receivers: self.receivers,
+            coverage: &covered(self, level),
+            marks,
+        };
+        hidden.completed()
+    }
+}
+
 impl Hidden<'_> {
     /// The marks with the pattern in place of a wrong plate behind the toy, or with an even colour if the place has none;
     /// `None` if nothing is hidden, or too little is seen around it.
-    pub(super) fn completed(&self) -> Option<Vec<Mark>> {
+    fn completed(&self) -> Option<Vec<Mark>> {
         let size_px = self.level.frame.size_px;
         let mut hidden = Mask::new(size_px);
         for at in places(size_px) {

@@ -88,26 +88,20 @@ fn the_toy_is_drawn_over_a_lower_thing_before_it() {
     let (scene, input) = staged();
     let mut core = core();
     core.set_scene(scene, Preset::Balanced).unwrap();
-    let free = picture_of(&mut core, &input);
     let marked = with(&input, &[(Mark::BeforeToy, AT_HEAD)]);
     let things = marked.things.clone().unwrap();
-    let camera = &input.image.rgba();
-    let apart = |[a, b]: [&[u8]; 2], at: usize| (at..at + 3).map(|at| a[at].abs_diff(b[at])).max().unwrap();
-    let inner = pixels(within(within(AT_HEAD))).map(|at| 4 * (at.y * camera.width_px + at.x) as usize);
-    let changed: Vec<usize> = inner
-        .filter(|at| apart([&free, &camera.rgba8], *at) > 10)
-        .collect();
-    let part_shown = |picture: &[u8]| {
-        let shown = changed.iter().filter(|at| apart([picture, &free], **at) < 3);
-        shown.count() as f32 / changed.len() as f32
-    };
-    // All of the toy is above a tenth of a millimetre, some above 9 cm, nothing above 60.
-    for (top_m, shown) in [(1e-4, 0.95..1.01), (0.09, 0.2..0.9), (0.6, 0.0..0.01)] {
+    let rect = within(within(AT_HEAD));
+    let parts = [1e-4, 0.105, 0.6].map(|top_m| {
         let low = things.clone().with_top(Some(top_m));
         let picture = picture_of(&mut core, &marked.clone().with_things(Some(low)));
-        let part = part_shown(&picture);
-        assert!(shown.contains(&part), "{part} of it is shown above {top_m} m");
-    }
+        let is_changed = |at: &UVec2| apart(&picture, &input, [*at, *at + 1]) > 10;
+        pixels(rect).filter(is_changed).count() as f32 / pixels(rect).count() as f32
+    });
+    // All of the toy is above a tenth of a millimetre, a part above 10.5 cm, nothing above 60.
+    assert!(
+        parts[0] > 0.3 && (0.1..0.8).contains(&(parts[1] / parts[0])) && parts[2] == 0.0,
+        "the toy is shown in {parts:.2?} of the thing's place"
+    );
 }
 
 #[test]

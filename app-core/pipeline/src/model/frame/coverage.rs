@@ -1,6 +1,8 @@
 //! `coverage`: fraction of each pixel that the posed toy covers, sampled at many positions in one
 //! pass.
 
+use std::sync::OnceLock;
+
 use wgpu::{BlendOperation, CompareFunction, TextureFormat, VertexFormat};
 
 use crate::gpu::bindings::{GROUP_PASS, GROUP_SCENE, Resource, Slot};
@@ -21,7 +23,8 @@ pub(crate) const COVERED: Mirrors = mirrors!("common/covered", constants: [N_POS
 /// The lattice of these positions, for the background of an outline.
 pub(crate) const BEHIND_OUTLINE: Mirrors = mirrors!("common/behind_outline", constants: [OUTLINE_ROW_STEP]);
 pub(crate) const SHADER: Shader = shader!("frame/coverage", structs: [Positions]);
-const SLOTS: &[Slot] = &[Slot::per_use::<Positions>(), Slot::Texture];
+const SLOTS: &[Slot] = &[Slot::per_use::<Positions>()];
+const OVER_THINGS_SLOTS: &[Slot] = &[SLOTS[0], Slot::Texture];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Number of lattice positions within a pixel at which the toy's coverage is sampled.
 pub(crate) const N_POSITIONS: u32 = 32;
@@ -54,13 +57,16 @@ const HALF: Positions = Positions {
 
 pub(crate) struct Pass {
     draws: CountingDraws,
+    /// Beside low things before the toy; made on first use.
+    over_things: OnceLock<CountingDraws>,
 }
 
 pub(crate) struct Inputs<'a> {
     pub(crate) region: &'a Region,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) camera_in_anchor: glam::Vec3,
-    pub(crate) validity: &'a TextureView,
+    /// Marks of low things before the toy, if there are any.
+    pub(crate) low_things: Option<&'a TextureView>,
 }
 
 /// Targets of the toy box's size.
@@ -80,16 +86,9 @@ impl Targets {
 
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let groups = [GLOBALS_GROUP, SLOTS, &[], &[]];
-        let each = DrawSpec {
-            vertex: "vs_move",
-            streams: STREAMS,
-            targets: vec![counting(COUNT_FORMAT, BlendOperation::Add)],
-            depth: Some(ordered(CompareFunction::Greater)),
-            ..DrawSpec::fullscreen(&SHADER, "fs_cover", groups, &[])
-        };
         Self {
-            draws: CountingDraws::new(gpu, &each),
+            draws: counting_draws(gpu, "fs_cover", SLOTS),
+            over_things: OnceLock::new(),
         }
     }
 
@@ -110,30 +109,46 @@ impl Pass {
         };
         let plan = &inputs.region.plan;
         // Only where each position is drawn are the heights of things tested.
-        let may_be_over_things = plan.things_top_m.is_some();
-        let corners = toy.corners(recorder.gpu, &seen, (!may_be_over_things).then_some(target));
+        let target = inputs.low_things.is_none().then_some(target);
+        let corners = toy.corners(recorder.gpu, &seen, target);
         let globals = [(&inputs.region.globals).into()];
         let is_half = plan.n_coverage_positions < N_POSITIONS;
         let positions = if is_half { HALF } else { ALL };
         let n_positions = positions.n;
-        let any = self.draws.any();
+        let draws = match inputs.low_things {
+            Some(_) => self
+                .over_things
+                .get_or_init(|| counting_draws(recorder.gpu, "fs_cover_over_things", OVER_THINGS_SLOTS)),
+            None => &self.draws,
+        };
+        let resources: Vec<Resource<'_>> = [Resource::PerUse]
+            .into_iter()
+            .chain(inputs.low_things.map(Into::into))
+            .collect();
         let groups = [
-            recorder.bind(any, GROUP_SCENE, &globals),
-            recorder.bind_with(
-                any,
-                GROUP_PASS,
-                &positions,
-                &[Resource::PerUse, inputs.validity.into()],
-            ),
+            recorder.bind(draws.any(), GROUP_SCENE, &globals),
+            recorder.bind_with(draws.any(), GROUP_PASS, &positions, &resources),
         ];
         let count = cleared(&targets.covered.view);
         let mut render = targets.order.render(recorder, SHADER.name, count);
         render.part_of(plan.part_drawn(&plan.toy_box));
         let drawn = (&corners, pose);
         // In front of a single receiver, the vertices alone decide what is behind it.
-        let is_plain = plan.n_receivers == 1 && !may_be_over_things;
+        let is_plain = plan.n_receivers == 1 && inputs.low_things.is_none();
         let n_plain = if is_plain { n_positions } else { 0 };
-        self.draws
-            .count(&mut render, &groups, drawn, 0..n_positions, n_plain);
+        draws.count(&mut render, &groups, drawn, 0..n_positions, n_plain);
     }
+}
+
+fn counting_draws(gpu: &Gpu, fragment: &'static str, slots: &'static [Slot]) -> CountingDraws {
+    CountingDraws::new(
+        gpu,
+        &DrawSpec {
+            vertex: "vs_move",
+            streams: STREAMS,
+            targets: vec![counting(COUNT_FORMAT, BlendOperation::Add)],
+            depth: Some(ordered(CompareFunction::Greater)),
+            ..DrawSpec::fullscreen(&SHADER, fragment, [GLOBALS_GROUP, slots, &[], &[]], &[])
+        },
+    )
 }

@@ -5,7 +5,7 @@ pub(crate) mod region_parts;
 use crate::geometry::rect::PixelRect;
 use crate::gpu::context::Gpu;
 use crate::gpu::recorder::Recorder;
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureView};
 use crate::model::capture::CaptureTargets;
 use crate::model::frame::region_parts::{Marks, RegionParts};
 use crate::model::lighting;
@@ -135,7 +135,7 @@ impl FramePath<'_> {
             unmixed: self.captured.by_pass.unmix.factor.as_ref(),
             reflected: self.captured.by_pass.gloss.view(),
             specular: &self.region.specular,
-            validity: &self.captured.by_pass.validity.marks.view,
+            low_things: self.low_things(),
         }
     }
 
@@ -144,8 +144,14 @@ impl FramePath<'_> {
             region: self.region,
             toy: self.toy,
             camera_in_anchor: self.region.uniform.camera_in_anchor.into(),
-            validity: &self.captured.by_pass.validity.marks.view,
+            low_things: self.low_things(),
         }
+    }
+
+    /// The validity mask, if it has low things before the toy.
+    fn low_things(&self) -> Option<&TextureView> {
+        let validity = &self.captured.by_pass.validity.marks.view;
+        self.region.plan.things_top_m.map(|_| validity)
     }
 
     fn on_things_inputs<'a>(&'a self, things: &'a Things) -> on_things::Inputs<'a> {
