@@ -1,10 +1,13 @@
 // The shown toy as drawn, once or four times: a pixel's colour and its coverage.
 //
-// The importing shader declares `toy_0` to `toy_3` and `covered`.
+// The importing shader declares `toy_0` to `toy_3`, `covered` and `validity`.
 
 //#import common/covered
 //#import common/over_things
 //#import common/soft_toy
+
+// The toy's part of a pixel within a thing from which on the toy is over the thing's rim.
+const OVER_RIM: f32 = 0.5;
 
 fn drawn_toy(texel: vec2i, n_draws: u32) -> vec4f {
   let first = textureLoad(toy_0, texel, 0);
@@ -44,8 +47,13 @@ fn toy_layer(texel: vec2i, n_draws: u32) -> vec4f {
   return part * toy_color(texel, n_draws);
 }
 
-// The same over a thing that is before the toy.
-fn over_thing(region_texel: vec2i, n_draws: u32) -> vec4f {
-  if globals.things_top_m == 0.0 || !is_all_before_toy(region_texel) { return vec4f(0.0); }
-  return toy_layer(box_texel(region_texel), n_draws);
+// The same over a thing that is before the toy. At the thing's rim it is that at a pixel within the thing, to
+// which `inward` leads.
+fn over_thing(region_texel: vec2i, inward: vec2i, n_draws: u32) -> vec4f {
+  if globals.things_top_m == 0.0 || !is_before_toy(marks_at(region_texel)) { return vec4f(0.0); }
+  let place = select(region_texel + inward, region_texel, is_top_alone(region_texel));
+  let in_box = box_texel(place);
+  // What is below the top is drawn at the rim beside it.
+  if !is_in_toy_box(in_box) || textureLoad(covered, in_box, 0).r == 0.0 { return vec4f(0.0); }
+  return toy_layer(in_box, n_draws);
 }

@@ -43,15 +43,23 @@ fn layered(position: vec4f, n_draws: u32) -> mat4x4f {
   let is_receiver = is_hit(receiver_point(position.xy));
   let masks = vec4f(0.0, 0.0, select(0.0, 1.0, is_receiver), 1.0);
   let in_box = box_texel(texel);
-  let higher = over_thing(texel, n_draws);
-  if higher.a > 0.0 {
+  let steps = rim_steps_at(texel);
+  let is_at_end = any(steps != vec4i(0));
+  let whole = composed(position, n_draws);
+  let higher = over_thing(texel, steps.xy, n_draws);
+  if is_at_end && higher.a > OVER_RIM {
+    let toy = toy_layer(in_box, n_draws);
+    let below = select(f, max((whole.rgb - toy.rgb) / (1.0 - toy.a), vec3f(0.0)), toy.a < 1.0);
+    return mat4x4f(vec4f(below, 1.0), vec4f(1.0), toy, vec4f(toy.a, masks.yzw));
+  }
+  if !is_at_end && higher.a > 0.0 {
     return mat4x4f(vec4f(before_toy(texel, f), 1.0), vec4f(1.0), higher, vec4f(higher.a, masks.yzw));
   }
   // A thing before the toy is a part of the clean plate, and so is the rim of a thing beside it.
   let part = toy_layer(in_box, n_draws).a;
-  let is_rim = any(rim_steps_at(texel) != vec4i(0)) && part == 0.0;
+  let is_rim = is_at_end && part == 0.0;
   if is_rim || is_before_toy(evident) {
-    return mat4x4f(composed(position, n_draws), vec4f(1.0), vec4f(0.0), masks);
+    return mat4x4f(whole, vec4f(1.0), vec4f(0.0), masks);
   }
   let has_moved = evident.b == 0.0 && has_moved_beside(in_box);
   find_beyond(texel, part, evident, has_moved, n_draws);
@@ -59,7 +67,7 @@ fn layered(position: vec4f, n_draws: u32) -> mat4x4f {
   let clean = receiver(position, f, evident, has_moved, 0.0, &change);
   let shaded = receiver(position, f, evident, has_moved, drawing.strength, &change);
   let ratio = select(vec3f(1.0), shaded / max(clean, vec3f(DARKEST_RATIO)), clean >= vec3f(DARKEST_RATIO));
-  let over = composed(position, n_draws).rgb - (1.0 - part) * clean * ratio;
+  let over = whole.rgb - (1.0 - part) * clean * ratio;
   let toy = select(vec4f(0.0), vec4f(max(over, vec3f(0.0)), part), part > 0.0);
   let shadow = select(0.0, most_hidden(position.xy), is_receiver);
   return mat4x4f(vec4f(clean, 1.0), vec4f(ratio, 1.0), toy, vec4f(part, shadow, masks.ba));

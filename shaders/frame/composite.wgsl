@@ -222,14 +222,14 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
   let steps = rim_steps_at(texel);
   let is_rim = any(steps != vec4i(0));
   let is_before = is_before_toy(marks_at(texel));
-  let over = over_thing(texel + steps.xy, n_draws);
+  let over = over_thing(texel, steps.xy, n_draws);
   if is_before && !is_rim {
     let laid = (1.0 - over.a) * before_toy(texel, frame_at(texel)) + over.rgb;
     return vec4f(grained_toy(laid, texel, over.a), 1.0);
   }
   let toy = toy_layer(box_texel(texel), n_draws);
   // The toy is over the rim of a thing that is not before it, or not as high.
-  let is_over = is_rim && (!is_before || over.a > 0.5);
+  let is_over = is_rim && (!is_before || over.a > OVER_RIM);
   let shown = over_receiver(texel, texel + steps.zw, select(toy, vec4f(0.0), is_over), n_draws);
   if !is_rim { return vec4f(shown, 1.0); }
   let mixed = rim_mixed(texel, steps, shown);

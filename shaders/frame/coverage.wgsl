@@ -6,7 +6,7 @@
 // which depths are 1986 steps apart. A position counts if any triangle covers it: of the scene's
 // depths only those of the receivers are tested, and the heights of things before the toy.
 // All positions are equal away from the toy's silhouettes: there it is drawn only once, while tiles
-// near a silhouette are closed (`geometry/silhouette.rs`).
+// near a silhouette are closed (`geometry/silhouette.rs`); beside low things all are drawn everywhere.
 // The positions are a lattice over the pixel, so that an edge of any direction meets them one after
 // the other.
 //
@@ -33,7 +33,6 @@ struct Positions {
 struct Moved {
   @builtin(position) clip: vec4f,
   @location(0) @interpolate(flat, either) index: u32,
-  @location(1) height_m: f32,
 }
 
 // Offset from the pixel's centre, which in a soft picture may be outside the pixel.
@@ -52,7 +51,20 @@ fn moved_clip(clip: vec4f, index: u32) -> vec4f {
 @vertex
 fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> Moved {
   let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
-  return Moved(moved_clip(clip, index), index, in_anchor.y);
+  return Moved(moved_clip(clip, index), index);
+}
+
+struct Raised {
+  @builtin(position) clip: vec4f,
+  @location(0) @interpolate(flat, either) index: u32,
+  @location(1) height_m: f32,
+}
+
+// Vertices with their heights above the first receiver.
+@vertex
+fn vs_raised(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> Raised {
+  let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
+  return Raised(moved_clip(clip, index), index, in_anchor.y);
 }
 
 struct Plain {

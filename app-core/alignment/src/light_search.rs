@@ -24,7 +24,7 @@ const DISCOVERY_OUTLINE_PX: f64 = 1.5;
 /// Result of the search for other things.
 pub(super) enum Looked {
     /// Things, if there are any.
-    Things(Box<Option<Things>>),
+    Things(Option<Box<Things>>),
     /// Planes of things: the view with these among the receivers.
     Planes(Box<Seen>),
 }
@@ -47,33 +47,6 @@ impl Aligner {
             Some(left) => self.search_beyond_list((lights, left), seen),
             None => Ok(lights.seen(watched)),
         }
-    }
-
-    /// Lights, or the list that they replace, if that explains its own shadows beside things: the shadow of a
-    /// hand had been taken for those of two more lamps.
-    fn or_list_beside_things(
-        &self,
-        lights: KeptLights,
-        looked_at: &Seen,
-        (seen, things): (&Seen, Option<&Things>),
-    ) -> Result<KeptLights, ToyError> {
-        let is_replaced = lights.discovered.is_some();
-        if !is_replaced || !self.explains_own_shadows(&lights.given, (seen, things))? {
-            return Ok(lights);
-        }
-        let list = KeptLights::listed(lights.given, None);
-        let watched = self.watch(&list, looked_at)?;
-        Ok(list.seen(watched))
-    }
-
-    /// Whether a list explains its own shadows beside things.
-    pub(super) fn explains_own_shadows(
-        &self,
-        list: &Arc<[Light]>,
-        beside: (&Seen, Option<&Things>),
-    ) -> Result<bool, ToyError> {
-        let lights = KeptLights::listed(Arc::clone(list), None);
-        Ok(!list.is_empty() && self.explain_own_shadows(&lights, beside)?)
     }
 
     /// Lights anywhere, or a long one, if those near a list do not explain a view; the list, if
@@ -248,7 +221,7 @@ impl Aligner {
             // A plane is not fitted under lights that may be degrees off.
             let planes_of = are_kept.then(|| self.planes.wanted(false)).flatten();
             match self.look_for_things(&known, seen, planes_of)? {
-                Looked::Things(things) => *things,
+                Looked::Things(things) => things.map(|things| *things),
                 Looked::Planes(again) => return self.look_at_lights(kept, given, &again),
             }
         };
@@ -257,10 +230,7 @@ impl Aligner {
         let mut lights = match (moved, kept) {
             (Some(moved), _) => moved,
             (None, Some(kept)) => self.watch_lights(kept, looked_at)?,
-            (None, None) => {
-                let lights = self.find_lights(Arc::clone(&given), looked_at)?;
-                self.or_list_beside_things(lights, looked_at, (seen, things.as_ref()))?
-            }
+            (None, None) => self.find_lights(Arc::clone(&given), looked_at)?,
         };
         if is_searched && lights.in_use() != &*known {
             let seen = (&as_it_is.photograph, &as_it_is.input);
@@ -301,7 +271,7 @@ impl Aligner {
                 self.look_for_explanations(&given, &mut lights, (freed, planes_of))?
             };
             match looked {
-                Looked::Things(things) => *things,
+                Looked::Things(things) => things.map(|things| *things),
                 Looked::Planes(again) => {
                     return self.look_at_lights(are_kept.then_some(lights), given, &again);
                 }
@@ -346,7 +316,7 @@ impl Aligner {
         let sighted = seen.photograph.things(&self.scene, &seen.input, lights, before)?;
         self.memories[1] = sighted.memory;
         if planes_of.is_none() || sighted.things.is_none() || !self.planes.take(sighted.planes, planes_of) {
-            return Ok(Looked::Things(Box::new(sighted.things)));
+            return Ok(Looked::Things(sighted.things.map(Box::new)));
         }
         self.planes.add_latest_to(&mut self.scene);
         Ok(Looked::Planes(Box::new(Seen::again(

@@ -53,7 +53,7 @@ impl Aligner {
         let first_things = match &first {
             Looked::Planes(again) if self.is_explained(given, lights, again)? => return Ok(first),
             Looked::Planes(_) => None,
-            Looked::Things(things) => Option::clone(things),
+            Looked::Things(things) => things.as_deref().cloned(),
         };
         let in_lights = self.replaced(before);
         match self.explained_by_things(given, (seen, first_things), planes_of)? {
@@ -109,13 +109,12 @@ impl Aligner {
         (seen, things): (&Seen, Option<Things>),
         planes_of: Option<Colored>,
     ) -> Result<Option<Explained>, ToyError> {
-        let is_list_right = self.explains_own_shadows(given, (seen, things.as_ref()))?;
         let mut all_things: Vec<Things> = things.into_iter().collect();
         let around_base = seen.photograph.around_base(&self.scene, &seen.input)?;
         if let Some(lights) = self.lights_of_part(given, seen, around_base)? {
             let before = self.searched();
             match self.look_for_things(lights.in_use(), seen, planes_of)? {
-                Looked::Things(things) => all_things.extend(*things),
+                Looked::Things(things) => all_things.extend(things.map(|things| *things)),
                 Looked::Planes(again) => {
                     if lights.explain_latest() || self.is_explained(given, &lights, &again)? {
                         return Ok(Some(Explained::Planes(again)));
@@ -141,8 +140,6 @@ impl Aligner {
                 beside = Some(lights);
             }
         }
-        // Beside a list that explains its own shadows they would explain the shadow of a thing.
-        let beside = beside.filter(|_| !is_list_right);
         Ok(beside.map(|lights| Explained::Lights(Box::new(lights))))
     }
 

@@ -172,8 +172,7 @@ pub struct Things {
     camera: Camera,
     /// The point of a thing at each pixel; empty if none is known.
     raised: Arc<Vec<RaisedPoint>>,
-    /// Height in metres above the first receiver below which all things before the toy are; `None` if
-    /// it is unknown.
+    /// Height of things before the toy.
     top_m: Option<f32>,
 }
 
@@ -194,7 +193,7 @@ impl Things {
         })
     }
 
-    /// With the height in metres above the first receiver below which all things before the toy are, such
+    /// With the height in metres above the first receiver that things before the toy are taken to have, such
     /// as a hand on the table: parts of the toy above it are drawn over them.
     #[must_use]
     pub fn with_top(self, top_m: Option<f32>) -> Self {

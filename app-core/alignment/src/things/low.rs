@@ -1,7 +1,9 @@
-//! The height below which all things before the toy are, such as a hand that lies on the table.
+//! The height that things before the toy are taken to have, such as a hand that lies on the table.
 //!
 //! Nothing tells the shape of what no plate shows. But what hides the toy's feet alone mostly lies on the
-//! table, and a head that the toy lowers there is in front of it.
+//! table, and a head that the toy lowers there is in front of it. It is taken to be as high as the highest
+//! part of the toy that it hides; in truth it is nearer to the camera, and so higher, by up to its distance
+//! from the toy.
 
 use glam::IVec2;
 
@@ -9,7 +11,7 @@ use super::found::Found;
 use super::groups::cross;
 use super::memory::Memory;
 use super::sight::Sight;
-use crate::picture::{Level, index_in, places};
+use crate::picture::{Level, index_in, places, square};
 use crate::raster::{Rasterizer, project};
 use app_scene::things::Mark;
 
@@ -20,7 +22,7 @@ const LOW: f64 = 0.35;
 
 impl Sight<'_> {
     /// The height in metres above the first receiver of the highest point of the toy that things hide, if
-    /// they hide its lower part alone, and no plate shows them. `marks` are those of the largest level, and
+    /// they hide only its lower part, and no plate shows them. `marks` are those of the largest level, and
     /// `now` is the memory of this picture.
     #[allow(clippy::cast_possible_truncation, reason = "metres")]
     pub(super) fn top_of_low(
@@ -49,7 +51,13 @@ impl Sight<'_> {
             let point = f64::from(toy.depth_m(at)) * intrinsics.ray(at.as_dvec2() + 0.5);
             plane_from_camera.transform_point3(point).y
         };
-        let top_m = toy.pixels().filter(is_hidden).map(height_m).reduce(f64::max)?;
+        // The next pixels may show the thing, too.
+        let around = toy
+            .pixels()
+            .filter(is_hidden)
+            .flat_map(|at| square(at, WITHIN_PX + 1));
+        let covered = around.filter(|at| toy.depth_m(*at).is_finite());
+        let top_m = covered.map(height_m).reduce(f64::max)?;
         let of_toy = self
             .shape
             .points

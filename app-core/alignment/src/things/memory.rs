@@ -47,7 +47,7 @@ pub(crate) struct Memory {
     marks: (IVec2, Vec<Mark>),
     /// The points of things at these pixels; empty if there are none.
     raised: Vec<RaisedPoint>,
-    /// The height below which things before the toy are.
+    /// As `Things::top_m`.
     top_m: Option<f32>,
     /// Marks without and with the place's pattern; `None` if the plate is not wrong.
     pattern: Option<[Vec<Mark>; 2]>,
@@ -149,7 +149,7 @@ impl Memory {
         self.is_same(now, size_px, marks).then_some(&self.raised)
     }
 
-    /// The same for the height below which things before the toy are.
+    /// The same for the height of things before the toy.
     pub(super) fn top_m(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> Option<Option<f32>> {
         self.is_same(now, size_px, marks).then_some(self.top_m)
     }
@@ -178,7 +178,7 @@ impl Memory {
         self.frame.size_px == now.frame.size_px && self.place.is_like(&now.place, self.frame.size_px)
     }
 
-    /// With the height below which things before the toy are.
+    /// With the height of things before the toy.
     pub(super) fn with_top(self, top_m: Option<f32>) -> Self {
         Self { top_m, ..self }
     }

@@ -97,7 +97,7 @@ pub(crate) struct Sighting {
     pub(crate) raised: Vec<RaisedPoint>,
     /// Planes of things, if they are wanted.
     pub(crate) planes: Vec<FoundPlane>,
-    /// Height in metres above the first receiver below which all things before the toy are; `None` if it is unknown.
+    /// As `Things::top_m`.
     pub(crate) top_m: Option<f32>,
 }
 

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DMat4, IVec2};
+use glam::{DMat4, DVec3, IVec2};
 
 use super::found::Found;
 use super::groups::in_level;
@@ -38,12 +38,15 @@ impl Sight<'_> {
         let ([light], Some(table)) = (self.lights, self.receivers.first()) else {
             return;
         };
+        if found.in_frame.is_none() {
+            return;
+        }
         let largest = self.pyramid.level(0);
         let (size_px, per_px) = (largest.frame.size_px, self.per_px(level));
         let in_level_px = |at: IVec2| (at.as_dvec2() + 0.5) * per_px;
         let mut bodies = [largest, level].map(|level| Mask::new(level.frame.size_px));
         for (at, mark) in places(size_px).zip(marks.iter()) {
-            // What is no thing before the toy in the marks of one is its shadow.
+            // Other marks of a thing before the toy are on its shadow.
             let there = in_level_px(at);
             if *mark != Mark::None && *mark == found.in_frame_at(there) {
                 bodies[0].mark(at);
@@ -106,15 +109,16 @@ impl Ways<'_> {
             return None;
         }
         let step = STEP_M / to_light.y * to_light;
-        // A thing behind a pixel is above it in the picture, but no way to the light leads there.
-        let [along, below] = [(step, self.body), (step.with_y(0.0), self.around)].map(|(step, body)| {
+        let first_over = |step: DVec3, body: &Mask| {
             let step = self.camera_from_plane.transform_vector3(step);
             (1..=N_STEPS).find(|n| {
                 let px = intrinsics.pixel_of(point + f64::from(*n) * step);
                 px.is_some_and(|px| body.has(px.floor().as_ivec2()))
             })
-        });
-        along.filter(|_| below.is_some())
+        };
+        let height = first_over(step, self.body)?;
+        // A thing behind a pixel is above it in the picture, but no way to the light leads there.
+        first_over(step.with_y(0.0), self.around).map(|_| height)
     }
 
     /// The height in steps up to which the thing blocks ways, by pixels outside the toy's shadow; `None` if

@@ -38,8 +38,8 @@ pub struct SceneFacts {
     pub has_things: bool,
     /// Whether shadows fall on these.
     pub has_raised_things: bool,
-    /// Height in metres above the first receiver below which things before the toy are; `None` if it is
-    /// unknown, or if the camera is not above it.
+    /// Height in metres above the first receiver of things before the toy, as `Things::top_m`; `None`, too,
+    /// if the camera is not above it.
     pub things_top_m: Option<f32>,
     /// Estimated sharpness of the picture.
     pub sharpness: Sharpness,

@@ -1,16 +1,21 @@
 //! Objects in the picture stay as the camera saw them, in front of the toy or behind it; a wrong
 //! plate is not used.
 
+use std::sync::Arc;
+
 use app_core::Core;
+use app_core::alignment::Observer;
 use app_core::frame::FrameInput;
 use app_core::preset::Preset;
-use app_core::scene::Scene;
+use app_core::scene::{Image, Scene};
+use app_core::session::Session;
 use app_core::sharpness::{Sharpness, Spread};
 use app_core::things::{MOST_PAINTED, Mark, RaisedPoint, Things};
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::frame::{Thing, Warning};
 use app_pipeline::readback::Map;
 use glam::UVec2;
+use harness::bundled_session;
 
 use super::bundled::{core, first_input, picture_of, scene};
 
@@ -102,6 +107,33 @@ fn the_toy_is_drawn_over_a_lower_thing_before_it() {
         parts[0] > 0.3 && (0.1..0.8).contains(&(parts[1] / parts[0])) && parts[2] == 0.0,
         "the toy is shown in {parts:.2?} of the thing's place"
     );
+}
+
+/// At rest, a toy that is drawn over a low hand is where that hides it.
+#[test]
+fn a_low_hand_hides_the_resting_toy() {
+    let session = bundled_session();
+    let input = FrameInput::from(&session.frame(session.n_frames() - 1).unwrap());
+    let mut image = Image::clone(input.image.rgba());
+    // Fingers over the forelegs.
+    for at in pixels([UVec2::new(222, 222), UVec2::new(292, 254)]) {
+        let index = 4 * (at.y * image.width_px + at.x) as usize;
+        image.rgba8[index..index + 3].copy_from_slice(&[190 + (at.x % 3) as u8, 120, 90]);
+    }
+    let input = input.with_image(Arc::new(image));
+    let mut core = core();
+    core.set_scene(session.scene().clone(), Preset::Balanced).unwrap();
+    let things = Observer::default()
+        .observed(session.scene(), &input)
+        .unwrap()
+        .things;
+    let low = things.filter(|things| things.top_m().is_some()).unwrap();
+    let pictures = [low.clone(), low.with_top(None)]
+        .map(|things| picture_of(&mut core, &input.clone().with_things(Some(things))));
+    let n_apart = (0..pictures[0].len())
+        .filter(|at| pictures[0][*at].abs_diff(pictures[1][*at]) > 2)
+        .count();
+    assert_eq!(n_apart, 0, "of {} codes", pictures[0].len());
 }
 
 #[test]

@@ -24,6 +24,8 @@ pub(crate) const COVERED: Mirrors = mirrors!("common/covered", constants: [N_POS
 pub(crate) const BEHIND_OUTLINE: Mirrors = mirrors!("common/behind_outline", constants: [OUTLINE_ROW_STEP]);
 pub(crate) const SHADER: Shader = shader!("frame/coverage", structs: [Positions]);
 const SLOTS: &[Slot] = &[Slot::per_use::<Positions>()];
+/// Entry points and slots beside low things.
+const OVER_THINGS: [&str; 2] = ["vs_raised", "fs_cover_over_things"];
 const OVER_THINGS_SLOTS: &[Slot] = &[SLOTS[0], Slot::Texture];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Number of lattice positions within a pixel at which the toy's coverage is sampled.
@@ -87,7 +89,7 @@ impl Targets {
 impl Pass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         Self {
-            draws: counting_draws(gpu, "fs_cover", SLOTS),
+            draws: counting_draws(gpu, ["vs_move", "fs_cover"], SLOTS),
             over_things: OnceLock::new(),
         }
     }
@@ -118,7 +120,7 @@ impl Pass {
         let draws = match inputs.low_things {
             Some(_) => self
                 .over_things
-                .get_or_init(|| counting_draws(recorder.gpu, "fs_cover_over_things", OVER_THINGS_SLOTS)),
+                .get_or_init(|| counting_draws(recorder.gpu, OVER_THINGS, OVER_THINGS_SLOTS)),
             None => &self.draws,
         };
         let resources: Vec<Resource<'_>> = [Resource::PerUse]
@@ -140,11 +142,11 @@ impl Pass {
     }
 }
 
-fn counting_draws(gpu: &Gpu, fragment: &'static str, slots: &'static [Slot]) -> CountingDraws {
+fn counting_draws(gpu: &Gpu, [vertex, fragment]: [&'static str; 2], slots: &'static [Slot]) -> CountingDraws {
     CountingDraws::new(
         gpu,
         &DrawSpec {
-            vertex: "vs_move",
+            vertex,
             streams: STREAMS,
             targets: vec![counting(COUNT_FORMAT, BlendOperation::Add)],
             depth: Some(ordered(CompareFunction::Greater)),
