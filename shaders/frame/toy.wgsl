@@ -7,8 +7,8 @@
 // offsets make a denser pattern.
 //
 // Reads: both poses, materials, frame, the source pixels of the toy's colours and the light on
-// them, gbuffer, validity, fit, depth maps from the lights, tints. Writes: linear radiance, premultiplied,
-// with the fraction of hit samples in alpha; difference from the camera's pixel.
+// them, gbuffer, fit, depth maps from the lights, tints; validity beside low things. Writes: linear
+// radiance, premultiplied, with the fraction of hit samples in alpha; difference from the camera's pixel.
 
 //#import common/fit
 //#import common/frame

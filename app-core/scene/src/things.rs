@@ -259,7 +259,7 @@ impl Things {
         &self.camera
     }
 
-    /// Whether both share their memory, and so mark the same picture.
+    /// Whether both share their memory, and so mark the same picture, and their things are as high.
     #[must_use]
     pub fn is(&self, other: &Self) -> bool {
         let are_shared = Arc::ptr_eq(&self.marks, &other.marks) && Arc::ptr_eq(&self.raised, &other.raised);

@@ -1,14 +1,13 @@
 //! Hands, which no plate shows: how high they reach, and the shadow that they cast themselves.
 
-use std::sync::Arc;
-
 use app_core::alignment::Observer;
-use app_core::scene::Image;
-use app_core::things::{Mark, Things};
+use app_core::things::Mark;
 use glam::UVec2;
 
 use super::bundled::SESSION;
-use super::things::{Found, OVER_LEGS, Rect, SKIN, painted_where, pixels_of, shaded, with_rectangle};
+use super::things::{
+    Found, OVER_LEGS, Rect, SKIN, in_frame_alone, painted_where, pixels_of, shaded, things_in, with_rectangle,
+};
 
 /// From above the toy's head down to its feet.
 const OVER_ALL: Rect = [UVec2::new(222, 60), UVec2::new(292, 254)];
@@ -19,20 +18,9 @@ const OWN_SHADOW: Rect = [UVec2::new(380, 210), UVec2::new(400, 360)];
 const IN_BOTH: Rect = [UVec2::new(382, 235), UVec2::new(398, 265)];
 const BEYOND: Rect = [UVec2::new(408, 235), UVec2::new(424, 265)];
 
-fn with_hand(image: &Image, rect: Rect) -> Image {
-    painted_where(image, (SKIN, rect), |_| true)
-}
-
-fn things_in(image: Image) -> Option<Things> {
-    let (scene, input) = &*SESSION;
-    let input = input.clone().with_image(Arc::new(image));
-    Observer::default().observed(scene, &input).unwrap().things
-}
-
 #[test]
 fn a_hand_before_the_feet_alone_is_a_low_one() {
-    let frame = SESSION.1.image.rgba();
-    let top_m = |rect| things_in(with_hand(frame, rect)).unwrap().top_m();
+    let top_m = |rect| in_frame_alone((SKIN, rect), |_| true).things.unwrap().top_m();
     // The toy is 12 cm high.
     let low_m = top_m(OVER_LEGS).unwrap();
     assert!((0.01..0.04).contains(&low_m), "{low_m} m");
@@ -52,7 +40,7 @@ fn the_toys_shadow_does_not_reach_the_table_in_that_of_a_hand() {
         casts.rgba8[4 * at..4 * at + 3].copy_from_slice(&dark.rgba8[4 * at..4 * at + 3]);
     }
     let kept = [&casts, frame].map(|image| {
-        let things = things_in(with_hand(image, ACROSS_SHADOW));
+        let things = things_in(painted_where(image, (SKIN, ACROSS_SHADOW), |_| true));
         [IN_BOTH, BEYOND].map(|rect| {
             let things = things.clone();
             Found { things, rect }.part(Mark::Thing)

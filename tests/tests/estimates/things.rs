@@ -182,12 +182,17 @@ fn a_long_face_is_part_of_the_thing_before_the_toy() {
     Found { things, rect: LONG }.assert_whole(Mark::BeforeToy);
 }
 
-/// What is found where the frame alone shows a rectangle.
-fn in_frame_alone((color, rect): ([u8; 3], Rect), is_painted: impl Fn(usize) -> bool) -> Found {
+/// What is found if the first frame is another picture.
+pub(super) fn things_in(image: Image) -> Option<Things> {
     let (scene, input) = &*SESSION;
-    let image = painted_where(input.image.rgba(), (color, rect), is_painted);
     let input = input.clone().with_image(Arc::new(image));
-    let things = Observer::default().observed(scene, &input).unwrap().things;
+    Observer::default().observed(scene, &input).unwrap().things
+}
+
+/// What is found where the frame alone shows a rectangle.
+pub(super) fn in_frame_alone(painted: ([u8; 3], Rect), is_painted: impl Fn(usize) -> bool) -> Found {
+    let things = things_in(painted_where(SESSION.1.image.rgba(), painted, is_painted));
+    let (_, rect) = painted;
     Found { things, rect }
 }
 
@@ -207,18 +212,17 @@ fn a_thin_finger_before_thin_legs_is_before_the_toy() {
 
 #[test]
 fn a_finger_in_the_shadow_that_is_as_bright_as_the_table_is_of_the_hand() {
-    let (scene, input) = &*SESSION;
     let parts = [
         (SKIN, PALM),
         (SKIN_IN_SHADOW, SHADED_ARM),
         (SKIN_IN_SHADOW, FINGER),
     ];
-    let image = Image::clone(input.image.rgba());
-    let image = parts
-        .into_iter()
-        .fold(image, |image, part| painted_where(&image, part, |_| true));
-    let input = input.clone().with_image(Arc::new(image));
-    let things = Observer::default().observed(scene, &input).unwrap().things;
+    let image = Image::clone(SESSION.1.image.rgba());
+    let things = things_in(
+        parts
+            .into_iter()
+            .fold(image, |image, part| painted_where(&image, part, |_| true)),
+    );
     let of_it = Found { things, rect: FINGER }.part(Mark::BeforeToy);
     assert!(of_it > 0.9, "{of_it:.2} of it");
 }
@@ -261,14 +265,11 @@ fn a_list_is_not_doubted_if_a_hand_hides_its_shadow() {
 
 #[test]
 fn the_table_beside_a_hand_is_its_shadow_only_where_it_is_dark() {
-    let (scene, input) = &*SESSION;
     let parts = [0.85, 0.5].map(|light| {
         let [_, end] = OVER_LEGS;
         let rect = [UVec2::new(OVER_LEGS[0].x, end.y), end + UVec2::new(0, 4)];
-        let image = shaded(input.image.rgba(), rect, light);
-        let image = painted_where(&image, (SKIN, OVER_LEGS), |_| true);
-        let input = input.clone().with_image(Arc::new(image));
-        let things = Observer::default().observed(scene, &input).unwrap().things;
+        let image = shaded(SESSION.1.image.rgba(), rect, light);
+        let things = things_in(painted_where(&image, (SKIN, OVER_LEGS), |_| true));
         Found { things, rect }.part(Mark::Thing)
     });
     assert!(parts[0] < 0.2 && parts[1] > 0.5, "{parts:.2?} of it");

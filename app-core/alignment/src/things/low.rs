@@ -7,16 +7,15 @@
 
 use glam::IVec2;
 
+use super::feet::WITHIN_PX;
 use super::found::Found;
 use super::groups::cross;
 use super::memory::Memory;
 use super::sight::Sight;
 use crate::picture::{Level, index_in, places, square};
-use crate::raster::{Rasterizer, project};
+use crate::pose::covered;
 use app_scene::things::Mark;
 
-/// Distance in pixels from the rims of thing and toy beyond which a pixel shows a thing before the toy.
-const WITHIN_PX: i32 = 2;
 /// Part of the toy's height below which a thing hides it, if the thing is a low one.
 const LOW: f64 = 0.35;
 
@@ -44,8 +43,7 @@ impl Sight<'_> {
             return None;
         }
         let intrinsics = &self.pyramid.level(0).intrinsics;
-        let corners = project(self.shape.points.iter().copied(), intrinsics);
-        let toy = Rasterizer::default().with_depth(&corners, &self.shape.faces, size_px);
+        let toy = covered(self.shape, self.pyramid.level(0));
         let is_hidden = |at: &IVec2| cross(*at, WITHIN_PX).all(|at| is_before(at) && toy.at(at) >= 1.0);
         let height_m = |at: IVec2| {
             let point = f64::from(toy.depth_m(at)) * intrinsics.ray(at.as_dvec2() + 0.5);

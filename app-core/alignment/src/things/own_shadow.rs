@@ -53,6 +53,9 @@ impl Sight<'_> {
                 bodies[1].mark(there.floor().as_ivec2());
             }
         }
+        if bodies[1].is_empty() {
+            return;
+        }
         #[allow(clippy::cast_possible_truncation, reason = "some pixels")]
         let around_px = [(f64::from(AROUND_PX) / per_px).round() as i32, AROUND_PX];
         let around = [0, 1].map(|index| bodies[index].grown(around_px[index]));
