@@ -20,7 +20,7 @@ use crate::picture::{Color, Mask, index_in, places};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 
 /// Share of the light that the darkest part of the toy's shadow loses at least, part of it that
-/// counts as that, and the number of such pixels.
+/// counts as that, and the number of such pixels. Fewer are darker still: below a shoe, no sky is seen.
 const LEAST_TAKEN: f32 = 0.3;
 const DARKEST: f32 = 0.93;
 const LEAST_PIXELS: usize = 30;
@@ -135,13 +135,15 @@ impl UprightShadows {
 
 /// The light that the darkest part of the toy's shadow has.
 fn darkest(compared: &[Compared]) -> Option<Color> {
-    let most = compared.iter().map(Compared::taken).fold(0.0, f32::max);
+    let mut taken: Vec<f32> = compared.iter().map(Compared::taken).collect();
+    taken.sort_unstable_by(|a, b| b.total_cmp(a));
+    let most = *taken.get(LEAST_PIXELS - 1)?;
     let darkest: Vec<Color> = compared
         .iter()
         .filter(|pixel| pixel.taken() > DARKEST * most)
         .map(|pixel| pixel.model)
         .collect();
-    if most < LEAST_TAKEN || darkest.len() < LEAST_PIXELS {
+    if most < LEAST_TAKEN {
         return None;
     }
     let of = |channel: usize| median(darkest.iter().map(|model| model[channel]), f32::total_cmp);

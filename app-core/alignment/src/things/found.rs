@@ -85,6 +85,15 @@ impl Found<'_> {
         }
     }
 
+    /// Whether a place in pixels of the level is in a thing before the toy, without its shadow.
+    pub(super) fn is_before_at(&self, place: DVec2) -> bool {
+        let is_before = |grown: &Grown| {
+            let thing = grown.at(place).filter(|_| !grown.is_shadow(place));
+            thing.is_some_and(|thing| self.is_before(thing))
+        };
+        self.grown.as_ref().is_some_and(is_before)
+    }
+
     /// The thing that plate and frame show at a place in pixels of the level, with its shadow.
     pub(super) fn thing_at(&self, place: DVec2) -> Option<usize> {
         self.grown.as_ref()?.at(place)

@@ -431,6 +431,12 @@ impl Sight<'_> {
             };
             match found.at(there) {
                 Mark::BeforeToy if toy.shows(at, frame, plate) => Mark::None,
+                // It would hide the toy; behind that, its extent is a guess.
+                Mark::BeforeToy | Mark::HiddenThing { .. }
+                    if found.is_before_at(there) && toy.is_bare(at, [frame, plate]) =>
+                {
+                    Mark::None
+                }
                 Mark::None => match found.in_frame_at(there) {
                     Mark::BeforeToy if toy.is_shown(at, frame) && !is_own(at, frame) => Mark::None,
                     Mark::BeforeToy if !is_shade(at, frame, plate) => Mark::BeforeToy,

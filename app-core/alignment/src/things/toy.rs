@@ -79,15 +79,17 @@ impl Toy {
         cross(at, WITHIN_PX).all(|at| self.coverage.at(at) >= 1.0)
     }
 
-    /// Whether a pixel in the toy's place shows the plate, although the toy should look different.
+    /// Whether a pixel in the toy's place shows the plate, although the toy should look different; the plate in
+    /// another light, as the toy changes it within a cup, if that is not the toy in any light.
     pub(super) fn is_hidden(&self, at: IVec2, frame: &Codes, plate: &Codes) -> bool {
-        let [Some(frame), Some(plate)] = [frame.get(at), plate.get(at)] else {
+        let [Some(color), Some(plate)] = [frame.get(at), plate.get(at)] else {
             return false;
         };
-        let is_unlike = self
-            .expected(at)
-            .is_none_or(|expected| apart(expected, plate) > UNLIKE_CODES);
-        apart(frame, plate) < ALIKE_CODES && is_unlike
+        if apart(color, plate) < ALIKE_CODES {
+            let expected = self.expected(at);
+            return expected.is_none_or(|expected| apart(expected, plate) > UNLIKE_CODES);
+        }
+        from_shaded(color, plate) < ALIKE_CODES && self.unlike(at, frame).is_some_and(|unlike| unlike > 1.0)
     }
 
     /// Pixels at which a level shows the plate in place of the toy.
@@ -184,7 +186,8 @@ impl Toy {
         for at in self.coverage.pixels().filter(|at| self.is_within(*at)) {
             if let Some(thing) = grown.of_pixel(at) {
                 n_within[thing] += 1;
-                hidden[thing] += usize::from(self.is_hidden(at, frame, plate));
+                let is_hidden = self.is_hidden(at, frame, plate) || self.is_surely_hidden(at, frame, plate);
+                hidden[thing] += usize::from(is_hidden);
             }
         }
         let known = |thing: usize| {
@@ -206,6 +209,11 @@ impl Toy {
             _ => false,
         };
         self.coverage.at(at) > 0.0 && most_around(at, is_toy)
+    }
+
+    /// Whether a pixel shows the toy and nothing before it.
+    pub(super) fn is_bare(&self, at: IVec2, [frame, plate]: [&Codes; 2]) -> bool {
+        self.is_seen(at, [frame, plate]) && self.is_shown(at, frame)
     }
 
     /// Whether a pixel in the toy's place is not the plate's in some light of which a shadow leaves
