@@ -50,10 +50,10 @@ fn toy_layer(texel: vec2i, n_draws: u32) -> vec4f {
 // The same over a thing that is before the toy. At the thing's rim it is that at a pixel within the thing, to
 // which `inward` leads.
 fn over_thing(region_texel: vec2i, inward: vec2i, n_draws: u32) -> vec4f {
-  if globals.things_top_m == 0.0 || !is_before_toy(marks_at(region_texel)) { return vec4f(0.0); }
-  let place = select(region_texel + inward, region_texel, is_top_alone(region_texel));
+  if !has_front() || !is_before_toy(marks_at(region_texel)) { return vec4f(0.0); }
+  let place = select(region_texel + inward, region_texel, is_front_alone(region_texel));
   let in_box = box_texel(place);
-  // What is below the top is drawn at the rim beside it.
+  // What is behind the fronts is drawn at the rim beside it.
   if !is_in_toy_box(in_box) || textureLoad(covered, in_box, 0).r == 0.0 { return vec4f(0.0); }
   return toy_layer(in_box, n_draws);
 }

@@ -6,6 +6,7 @@
 
 const MAX_LIGHTS: u32 = 4u;
 const MAX_RECEIVERS: u32 = 4u;
+const MAX_FRONTS: u32 = 2u;
 
 struct ReceiverPlane {
   plane_from_anchor: mat4x4f,
@@ -61,10 +62,10 @@ struct Globals {
   soft_reach_px: f32,
   // 1 if the spread is uniform along its wider axis, as by a motion, and not normal.
   is_line: u32,
-  // Height above the first receiver above which the toy is drawn over the things before it; 0 if it is
-  // drawn behind them.
-  things_top_m: f32,
-  _pad_0: f32,
+  _pad_0: vec2f,
+  // Normals and offsets in metres of the planes in anchor space before which the toy is drawn over the things before
+  // it; 0 in place of none.
+  things_fronts: array<vec4f, MAX_FRONTS>,
   // 1 in the channel of the visibilities with the unhidden part of the first receiver's reflection;
   // 0 if the receiver is matt.
   reflection_channel: vec4f,

@@ -6,11 +6,11 @@
 // which depths are 1986 steps apart. A position counts if any triangle covers it: of the scene's
 // depths only those of the receivers are tested, and the heights of things before the toy.
 // All positions are equal away from the toy's silhouettes: there it is drawn only once, while tiles
-// near a silhouette are closed (`geometry/silhouette.rs`); beside low things all are drawn everywhere.
+// near a silhouette are closed (`geometry/silhouette.rs`); beside things with fronts all are drawn everywhere.
 // The positions are a lattice over the pixel, so that an edge of any direction meets them one after
 // the other.
 //
-// Reads: posed positions in anchor space, validity beside low things. Writes: COVERED_POSITION for
+// Reads: posed positions in anchor space, validity beside things with fronts. Writes: COVERED_POSITION for
 // each position of the lattice that the toy covers.
 // Source: Fiume, Fournier and Rudolph 1983 (coverage masks); the lattice is that of Korobov 1959.
 
@@ -57,14 +57,14 @@ fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -
 struct Raised {
   @builtin(position) clip: vec4f,
   @location(0) @interpolate(flat, either) index: u32,
-  @location(1) height_m: f32,
+  @location(1) before_m: vec2f,
 }
 
-// Vertices with their heights above the first receiver.
+// Vertices with their distances from the fronts of things.
 @vertex
 fn vs_raised(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> Raised {
   let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
-  return Raised(moved_clip(clip, index), index, in_anchor.y);
+  return Raised(moved_clip(clip, index), index, before_fronts_m(in_anchor));
 }
 
 struct Plain {
@@ -111,15 +111,15 @@ fn fs_cover(@builtin(position) at: vec4f, @location(0) @interpolate(flat, either
   return covered();
 }
 
-// The same beside low things before the toy.
+// The same beside things before the toy with fronts.
 @fragment
 fn fs_cover_over_things(
   @builtin(position) at: vec4f,
   @location(0) @interpolate(flat, either) index: u32,
-  @location(1) height_m: f32,
+  @location(1) before_m: vec2f,
 ) -> @location(0) vec4f {
   let in_region = at.xy + globals.toy_box_origin_px;
   if is_behind_receiver(in_region + position_px(index), at.w) { discard; }
-  if is_below_top(vec2i(in_region), height_m) { discard; }
+  if is_behind_thing(vec2i(in_region), before_m) { discard; }
   return covered();
 }

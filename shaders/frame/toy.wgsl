@@ -7,7 +7,7 @@
 // offsets make a denser pattern.
 //
 // Reads: both poses, materials, frame, the source pixels of the toy's colours and the light on
-// them, gbuffer, fit, depth maps from the lights, tints; validity beside low things. Writes: linear
+// them, gbuffer, fit, depth maps from the lights, tints; validity beside things with fronts. Writes: linear
 // radiance, premultiplied, with the fraction of hit samples in alpha; difference from the camera's pixel.
 
 //#import common/fit
@@ -278,7 +278,7 @@ fn fs_toy(
   // Nothing is discarded, so that depth is tested first: surfaces behind this one are hidden, too.
   let is_behind = is_behind_receiver(at.xy + globals.toy_box_origin_px - offset_px, at.w);
   let in_region = vec2i(at.xy + globals.toy_box_origin_px);
-  if is_behind || is_below_top(in_region, in_anchor.y) { return Drawn(vec4f(0.0), vec4f(0.0)); }
+  if is_behind || is_behind_thing(in_region, before_fronts_m(in_anchor)) { return Drawn(vec4f(0.0), vec4f(0.0)); }
   let is_moved = moved(region_px(globals.clip_from_anchor * vec4f(in_anchor, 1.0)), physical_px);
   var paint = mix(unseen, pixel.rgb, seen);
   var relit_part = 0.0;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::UVec2;
+use glam::{DMat4, DVec3, DVec4, UVec2};
 
 use crate::scene::Camera;
 
@@ -161,6 +161,46 @@ fn code_of(share: f32) -> u8 {
     (255.0 * share).round().clamp(1.0, 255.0) as u8
 }
 
+/// Largest number of planes behind which things before the toy are.
+pub const MAX_FRONTS: usize = 2;
+
+/// A plane that parts a space in two, of which the side with positive distances is the near one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Front {
+    /// Unit normal and distance of the origin, in metres.
+    plane: DVec4,
+}
+
+impl Front {
+    /// The plane at a point, with a normal to the near side; `None` if that has no direction.
+    #[must_use]
+    pub fn at(point: DVec3, to_near_side: DVec3) -> Option<Self> {
+        let normal = to_near_side.try_normalize()?;
+        let plane = normal.extend(-normal.dot(point));
+        plane.is_finite().then_some(Self { plane })
+    }
+
+    /// The same plane in another space of the same scale.
+    #[must_use]
+    pub fn in_space(&self, here_from_there: &DMat4) -> Self {
+        Self {
+            plane: here_from_there.transpose() * self.plane,
+        }
+    }
+
+    /// Distance of a point in metres, negative on the far side.
+    #[must_use]
+    pub fn distance_m(&self, point: DVec3) -> f64 {
+        self.plane.dot(point.extend(1.0))
+    }
+
+    /// Normal and distance of the origin, in metres.
+    #[must_use]
+    pub fn plane(&self) -> DVec4 {
+        self.plane
+    }
+}
+
 /// Marks on the pixels of a picture.
 #[derive(Clone, Debug)]
 pub struct Things {
@@ -172,8 +212,8 @@ pub struct Things {
     camera: Camera,
     /// The point of a thing at each pixel; empty if none is known.
     raised: Arc<Vec<RaisedPoint>>,
-    /// Height of things before the toy.
-    top_m: Option<f32>,
+    /// Where things before the toy end.
+    fronts: Vec<Front>,
 }
 
 impl Things {
@@ -189,23 +229,22 @@ impl Things {
             counts,
             camera,
             raised: Arc::default(),
-            top_m: None,
+            fronts: Vec::new(),
         })
     }
 
-    /// With the height in metres above the first receiver that things before the toy are taken to have, such
-    /// as a hand on the table: parts of the toy above it are drawn over them.
+    /// With planes in the world behind which all things before the toy are, [`MAX_FRONTS`] at most, such as the height of a hand
+    /// on the table, or the side and the height of a post: parts of the toy on a near side are drawn over them.
     #[must_use]
-    pub fn with_top(self, top_m: Option<f32>) -> Self {
-        let top_m = top_m.filter(|top_m| *top_m > 0.0);
-        Self { top_m, ..self }
+    pub fn with_fronts(self, fronts: Vec<Front>) -> Self {
+        Self { fronts, ..self }
     }
 
-    /// The height in metres above the first receiver below which all things before the toy are; `None` if
-    /// it is unknown: then the toy is drawn behind them.
+    /// The planes in the world behind which all things before the toy are; empty if they are unknown: then the toy
+    /// is drawn behind them.
     #[must_use]
-    pub fn top_m(&self) -> Option<f32> {
-        self.top_m
+    pub fn fronts(&self) -> &[Front] {
+        &self.fronts
     }
 
     /// With the points of things at the picture's pixels, rows from the top: new shadows fall on
@@ -249,6 +288,7 @@ impl Things {
             counts: counts(&marks),
             marks: marks.into(),
             raised: Arc::default(),
+            fronts: self.fronts.clone(),
             ..*self
         }
     }
@@ -259,18 +299,18 @@ impl Things {
         &self.camera
     }
 
-    /// Whether both share their memory, and so mark the same picture, and their things are as high.
+    /// Whether both share their memory, and so mark the same picture, and their things are as near.
     #[must_use]
     pub fn is(&self, other: &Self) -> bool {
         let are_shared = Arc::ptr_eq(&self.marks, &other.marks) && Arc::ptr_eq(&self.raised, &other.raised);
-        are_shared && self.top_m == other.top_m
+        are_shared && self.fronts == other.fronts
     }
 
     /// Whether both have equal contents.
     #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
         let are_equal = self.marks == other.marks && self.raised == other.raised;
-        are_equal && self.camera == other.camera && self.top_m == other.top_m
+        are_equal && self.camera == other.camera && self.fronts == other.fronts
     }
 
     /// Whether there is any mark.

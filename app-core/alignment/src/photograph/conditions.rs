@@ -220,7 +220,7 @@ impl Photograph {
             things: Things::new(found.size_px.as_uvec2(), found.marks, camera).map(|things| {
                 // The marks are known without points, too.
                 let raised = things.clone().with_raised(found.raised);
-                raised.unwrap_or(things).with_top(found.top_m)
+                raised.unwrap_or(things).with_fronts(found.fronts)
             }),
         })
     }

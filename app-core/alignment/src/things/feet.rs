@@ -140,6 +140,22 @@ impl<'a> Feet<'a> {
         })
     }
 
+    /// The points along the upper outline of a thing in some of its columns, in the space of the receiver.
+    pub(super) fn tops(&self, thing: usize, is_used: impl Fn(i32) -> bool) -> Vec<DVec3> {
+        let is_top = |at: &IVec2| {
+            let is_used = || self.column(*at, thing).is_some_and(&is_used);
+            self.bodies.of(*at) == Some(thing) && self.is_top(*at) && is_used()
+        };
+        let tops = places(self.bodies.size_px).filter(is_top);
+        tops.filter_map(|at| self.point_above(at)).collect()
+    }
+
+    /// The column of a pixel across the upright direction at a thing; `None` if that is seen from right above.
+    pub(super) fn column(&self, at: IVec2, thing: usize) -> Option<i32> {
+        let line = self.lines.get(thing)?.as_ref()?;
+        Some(column_of(at.as_dvec2() + 0.5, line.down))
+    }
+
     /// Whether a pixel of a thing is the highest one above its foot.
     pub(super) fn is_top(&self, at: IVec2) -> bool {
         let from = at.as_dvec2() + 0.5;

@@ -5,35 +5,28 @@
 //! part of the toy that it hides; in truth it is nearer to the camera, and so higher, by up to its distance
 //! from the toy.
 
-use glam::IVec2;
+use glam::{DVec3, IVec2};
 
 use super::feet::WITHIN_PX;
 use super::found::Found;
 use super::groups::cross;
-use super::memory::Memory;
 use super::sight::Sight;
 use crate::picture::{Level, index_in, places, square};
 use crate::pose::covered;
-use app_scene::things::Mark;
+use app_scene::things::{Front, Mark};
 
 /// Part of the toy's height below which a thing hides it, if the thing is a low one.
 const LOW: f64 = 0.35;
 
 impl Sight<'_> {
-    /// The height in metres above the first receiver of the highest point of the toy that things hide, if
-    /// they hide only its lower part, and no plate shows them. `marks` are those of the largest level, and
-    /// `now` is the memory of this picture.
-    #[allow(clippy::cast_possible_truncation, reason = "metres")]
-    pub(super) fn top_of_low(
+    /// The plane in the receiver's space at the height above the first receiver of the highest point of the toy that things
+    /// hide, if they hide only its lower part, and no plate shows them. `marks` are those of the largest level.
+    pub(super) fn front_of_low(
         &self,
         level: &Level,
         found: &Found<'_>,
-        (now, size_px, marks): (&Memory, IVec2, &[Mark]),
-    ) -> Option<f32> {
-        let known = self.memory.and_then(|memory| memory.top_m(now, size_px, marks));
-        if let Some(known) = known {
-            return known;
-        }
+        (size_px, marks): (IVec2, &[Mark]),
+    ) -> Option<Front> {
         let plane_from_camera = &self.receivers.first()?.plane_from_camera;
         let is_before =
             |at: IVec2| index_in(size_px, at).and_then(|index| marks.get(index)) == Some(&Mark::BeforeToy);
@@ -61,6 +54,7 @@ impl Sight<'_> {
             .points
             .iter()
             .map(|point| plane_from_camera.transform_point3(*point).y);
-        (top_m < LOW * of_toy.reduce(f64::max)?).then_some(top_m as f32)
+        let front = Front::at(top_m * DVec3::Y, DVec3::Y)?;
+        (top_m > 0.0 && top_m < LOW * of_toy.reduce(f64::max)?).then_some(front)
     }
 }

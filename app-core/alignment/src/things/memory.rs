@@ -9,7 +9,7 @@ use super::known::{HELD, Known};
 use crate::picture::{Mask, index_in, places};
 use crate::receivers::{SeenReceiver, receiver_at};
 use app_scene::scene::{Intrinsics, Light};
-use app_scene::things::{Mark, RaisedPoint};
+use app_scene::things::{Front, Mark, RaisedPoint};
 
 /// Evidence that a thing needs, over that of a single picture: one that had half of that evidence in
 /// the previous picture, and one that no picture before showed. One that was marked there needs [`HELD`].
@@ -47,8 +47,8 @@ pub(crate) struct Memory {
     marks: (IVec2, Vec<Mark>),
     /// The points of things at these pixels; empty if there are none.
     raised: Vec<RaisedPoint>,
-    /// As `Things::top_m`.
-    top_m: Option<f32>,
+    /// As `Things::fronts`.
+    fronts: Vec<Front>,
     /// Marks without and with the place's pattern; `None` if the plate is not wrong.
     pattern: Option<[Vec<Mark>; 2]>,
 }
@@ -62,7 +62,7 @@ impl Memory {
             known,
             marks: (IVec2::ZERO, Vec::new()),
             raised: Vec::new(),
-            top_m: None,
+            fronts: Vec::new(),
             pattern: None,
         }
     }
@@ -149,9 +149,9 @@ impl Memory {
         self.is_same(now, size_px, marks).then_some(&self.raised)
     }
 
-    /// The same for the height of things before the toy.
-    pub(super) fn top_m(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> Option<Option<f32>> {
-        self.is_same(now, size_px, marks).then_some(self.top_m)
+    /// The same for the fronts of things before the toy.
+    pub(super) fn fronts(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> Option<&[Front]> {
+        self.is_same(now, size_px, marks).then_some(&self.fronts)
     }
 
     fn is_same(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> bool {
@@ -178,9 +178,9 @@ impl Memory {
         self.frame.size_px == now.frame.size_px && self.place.is_like(&now.place, self.frame.size_px)
     }
 
-    /// With the height of things before the toy.
-    pub(super) fn with_top(self, top_m: Option<f32>) -> Self {
-        Self { top_m, ..self }
+    /// With the fronts of things before the toy.
+    pub(super) fn with_fronts(self, fronts: Vec<Front>) -> Self {
+        Self { fronts, ..self }
     }
 
     /// With the marks of its picture's largest level, and the points of things.

@@ -20,6 +20,7 @@ mod extent;
 mod feet;
 mod foot_line;
 mod found;
+mod fronts;
 pub(crate) mod groups;
 mod grown;
 mod inner;
@@ -57,7 +58,7 @@ use crate::lights::Comparison;
 use crate::picture::{Level, Mask, brightness, places};
 use crate::receivers::receiver_at;
 use app_scene::scene::MAX_RECEIVERS;
-use app_scene::things::{Mark, RaisedPoint};
+use app_scene::things::{Front, Mark, RaisedPoint};
 pub(crate) use codes::least_change;
 pub(crate) use found::adopt;
 pub(crate) use listed::marks_of_listed;
@@ -97,8 +98,8 @@ pub(crate) struct Sighting {
     pub(crate) raised: Vec<RaisedPoint>,
     /// Planes of things, if they are wanted.
     pub(crate) planes: Vec<FoundPlane>,
-    /// As `Things::top_m`.
-    pub(crate) top_m: Option<f32>,
+    /// As `Things::fronts`.
+    pub(crate) fronts: Vec<Front>,
 }
 
 /// Finds the things: `None` if there are none beside the toy, or none can be detected; and the
@@ -166,12 +167,12 @@ impl Sight<'_> {
                 marks: vec![Mark::None; (largest_px.x * largest_px.y) as usize],
                 raised: Vec::new(),
                 planes: found.planes,
-                top_m: None,
+                fronts: Vec::new(),
             };
             return (Some(sighting), memory);
         }
         let (size_px, marks) = self.marks(level, &found);
-        let marks = match self.memory {
+        let mut marks = match self.memory {
             Some(before) => {
                 let per_px = self.per_px(level);
                 before.steadied(&memory, (size_px, per_px), marks)
@@ -179,8 +180,10 @@ impl Sight<'_> {
             None => marks,
         };
         let raised = self.raised(level, &found, (&memory, size_px, &marks));
-        let top_m = self.top_of_low(level, &found, (&memory, size_px, &marks));
-        let memory = memory.with_marks(size_px, &marks, &raised).with_top(top_m);
+        let fronts = self.fronts(level, &found, (&memory, size_px, &mut marks));
+        let memory = memory
+            .with_marks(size_px, &marks, &raised)
+            .with_fronts(fronts.clone());
         let marks = match found.colored {
             Colored::Otherwise => marks,
             Colored::Alike => self.marks_of_standing(level, &found, (size_px, marks), &raised),
@@ -188,7 +191,7 @@ impl Sight<'_> {
         let (marks, memory) = self.with_pattern(marks, memory);
         let sighting = Sighting {
             size_px,
-            top_m,
+            fronts,
             marks,
             raised,
             planes: found.planes,

@@ -186,8 +186,7 @@ impl Toy {
         for at in self.coverage.pixels().filter(|at| self.is_within(*at)) {
             if let Some(thing) = grown.of_pixel(at) {
                 n_within[thing] += 1;
-                let is_hidden = self.is_hidden(at, frame, plate) || self.is_surely_hidden(at, frame, plate);
-                hidden[thing] += usize::from(is_hidden);
+                hidden[thing] += usize::from(self.is_hidden(at, frame, plate));
             }
         }
         let known = |thing: usize| {

@@ -67,6 +67,30 @@ impl Sight<'_> {
         if let Some(known) = known {
             return known.to_vec();
         }
+        let bodies = self.bodies(level, found, (size_px, marks));
+        let table_from_world = table.plane_from_camera * self.world_from_camera.inverse();
+        let upright = Upright {
+            bodies: &bodies,
+            largest: self.pyramid.level(0),
+            level,
+            compared: found.compared,
+            table,
+            lights: self
+                .lights
+                .iter()
+                .map(|light| light.moved(&table_from_world))
+                .collect(),
+        };
+        upright.raised().unwrap_or_default()
+    }
+
+    /// The things of the plate at the pixels of the largest level, which have these marks.
+    pub(super) fn bodies(
+        &self,
+        level: &Level,
+        found: &Found<'_>,
+        (size_px, marks): (IVec2, &[Mark]),
+    ) -> Bodies {
         let largest = self.pyramid.level(0);
         let per_px = self.per_px(level);
         let body = |(at, mark): (IVec2, &Mark)| match mark {
@@ -80,24 +104,10 @@ impl Sight<'_> {
             thing: places(size_px).zip(marks).map(body).collect(),
             per_px,
         };
-        let bodies = bodies.without_rims(|at| {
+        bodies.without_rims(|at| {
             let color = largest.plate.as_ref().and_then(|plate| plate.get(at));
             color.is_some_and(|color| found.is_own_color(codes_of(color)))
-        });
-        let table_from_world = table.plane_from_camera * self.world_from_camera.inverse();
-        let upright = Upright {
-            bodies: &bodies,
-            largest,
-            level,
-            compared: found.compared,
-            table,
-            lights: self
-                .lights
-                .iter()
-                .map(|light| light.moved(&table_from_world))
-                .collect(),
-        };
-        upright.raised().unwrap_or_default()
+        })
     }
 }
 

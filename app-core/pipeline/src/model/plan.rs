@@ -14,6 +14,7 @@ use crate::preset::ModelSettings;
 use app_scene::reflection::Reflection;
 use app_scene::scene::MAX_LIGHTS;
 use app_scene::sharpness::Sharpness;
+use app_scene::things::Front;
 
 /// Steps of the reweighted least squares. Another step moved no direct fraction by 1e-3 in the
 /// sessions from which the number was chosen.
@@ -120,8 +121,9 @@ pub struct Plan {
     pub has_things: bool,
     /// Whether shadows fall on these.
     pub has_raised_things: bool,
-    /// Height above which the toy is drawn over things before it; `None` if it is drawn behind them.
-    pub things_top_m: Option<f32>,
+    /// The planes in anchor space before which the toy is drawn over things before it; empty if it is drawn behind
+    /// them.
+    pub things_fronts: Vec<Front>,
     /// The toy's shadow on itself.
     pub self_shadow: ShadowAtlas,
     /// Meshes that cast shadows.
@@ -175,7 +177,7 @@ impl Plan {
             is_shadow_withheld: settings.is_shadow_withheld,
             has_things: facts.has_things,
             has_raised_things: facts.has_raised_things,
-            things_top_m: facts.things_top_m,
+            things_fronts: facts.things_fronts.clone(),
             self_shadow: self_shadow(n_lights, settings),
             casters: Casters::new(facts, settings),
             sharpness: facts.sharpness,

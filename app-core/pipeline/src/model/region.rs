@@ -6,6 +6,7 @@ use crate::gpu::context::Gpu;
 use crate::model::plan::Plan;
 use crate::passes::globals::{Globals, GlobalsOnDevice};
 use app_scene::sharpness::Sharpness;
+use app_scene::things::MAX_FRONTS;
 
 pub(crate) struct Region {
     pub(crate) plan: Plan,
@@ -58,8 +59,12 @@ impl Region {
 
 /// A region's globals with those that its plan determines.
 fn planned(globals: &Globals, plan: &Plan) -> Globals {
+    let mut things_fronts = [[0.0; 4]; MAX_FRONTS];
+    for (out, front) in things_fronts.iter_mut().zip(&plan.things_fronts) {
+        *out = front.plane().as_vec4().to_array();
+    }
     Globals {
-        things_top_m: plan.things_top_m.unwrap_or(0.0),
+        things_fronts,
         ..globals.with_spread(plan.sharpness.outline_spread)
     }
 }

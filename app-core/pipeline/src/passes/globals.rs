@@ -14,6 +14,7 @@ use app_scene::geometry::opaque::STANDS;
 use app_scene::reflection::Reflection;
 use app_scene::scene::{Light, MAX_LIGHTS, MAX_RECEIVERS};
 use app_scene::sharpness::Spread;
+use app_scene::things::MAX_FRONTS;
 
 /// WGSL part of the globals.
 pub(crate) const GLOBALS: Mirrors = mirrors!(
@@ -63,8 +64,8 @@ shared_struct! {
         pub soft_side: f32,
         pub soft_reach_px: f32,
         pub is_line: u32,
-        pub things_top_m: f32,
-        pub _pad_0: f32,
+        pub _pad_0: [f32; 2],
+        pub things_fronts: [[f32; 4]; MAX_FRONTS],
         pub reflection_channel: [f32; 4],
         pub reflected_surroundings: [f32; 4],
         pub reflected_toy: [f32; 4],
@@ -189,8 +190,8 @@ pub fn globals(view: &View, rect: &PixelRect, layout: &SceneLayout<'_>) -> Globa
         soft_side: 0.0,
         soft_reach_px: 0.0,
         is_line: 0,
-        things_top_m: 0.0,
-        _pad_0: 0.0,
+        _pad_0: [0.0; 2],
+        things_fronts: [[0.0; 4]; MAX_FRONTS],
         reflection_channel: [0.0; 4],
         reflected_surroundings: [0.0; 4],
         reflected_toy: [0.0; 4],

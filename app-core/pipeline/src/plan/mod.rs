@@ -10,6 +10,7 @@ use crate::geometry::rect::PixelRect;
 use app_scene::gloss::Gloss;
 use app_scene::reflection::Reflection;
 use app_scene::sharpness::Sharpness;
+use app_scene::things::Front;
 
 /// Facts of a scene that determine its plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,9 +39,9 @@ pub struct SceneFacts {
     pub has_things: bool,
     /// Whether shadows fall on these.
     pub has_raised_things: bool,
-    /// Height in metres above the first receiver of things before the toy, as `Things::top_m`; `None`, too,
-    /// if the camera is not above it.
-    pub things_top_m: Option<f32>,
+    /// The fronts of things before the toy in anchor space, as `Things::fronts`, without those that camera and toy
+    /// are not both before.
+    pub things_fronts: Vec<Front>,
     /// Estimated sharpness of the picture.
     pub sharpness: Sharpness,
     /// Whether this picture or an earlier one is softer than the content that is drawn into it.

@@ -9,7 +9,7 @@ use crate::gpu::Gpu;
 use crate::passes::thing_marks::Things;
 use crate::preset::Settings;
 use app_scene::frame::FrameInput;
-use app_scene::things::{Mark, Things as GivenThings};
+use app_scene::things::{Front, MAX_FRONTS, Mark, Things as GivenThings};
 
 impl Stage {
     /// Sets the things of a picture, unless they are the same; the baseline ignores things.
@@ -33,13 +33,19 @@ impl Stage {
         })
     }
 
-    /// Height above which the toy is drawn over the things before it: nothing tells how high people are,
-    /// and only from above is the higher of two points of a ray nearer.
-    pub(super) fn things_top_m(&self, footprint: &Footprint) -> Option<f32> {
+    /// The planes in anchor space before which the toy is drawn over the things before it, if the toy reaches there:
+    /// nothing tells how near people are, and only from the near side is a point on that side nearer.
+    pub(super) fn things_fronts(&self, footprint: &Footprint) -> Vec<Front> {
         let things = self.things.as_ref().filter(|_| self.people.marks().is_none());
-        let top_m = things.and_then(|things| things.given().top_m())?;
-        let camera = footprint.view.camera_in(&self.layout().world_from_anchor());
-        (camera.y > f64::from(top_m)).then_some(top_m)
+        let fronts = things.map_or(&[][..], |things| things.given().fronts());
+        let world_from_anchor = self.layout().world_from_anchor();
+        let camera = footprint.view.camera_in(&world_from_anchor);
+        let is_near = |front: &Front| {
+            let mut toy = footprint.bounds.corners();
+            front.distance_m(camera) > 0.0 && toy.any(|corner| front.distance_m(corner) > 0.0)
+        };
+        let in_anchor = fronts.iter().map(|front| front.in_space(&world_from_anchor));
+        in_anchor.filter(is_near).take(MAX_FRONTS).collect()
     }
 
     /// Warnings about things beside the toy in the pictures.

@@ -305,7 +305,7 @@ impl Stage {
                 && !self.things.as_ref().is_some_and(Things::is_plate_wrong),
             has_things: self.things.is_some() || self.people.marks().is_some(),
             has_raised_things: self.has_raised_things(footprint),
-            things_top_m: self.things_top_m(footprint),
+            things_fronts: self.things_fronts(footprint),
             are_plates_scaled: footprint.plate_views.are_scaled(),
             sharpness: self.sharpness,
             is_softened: soft::is_soft(self.sharpness) || known.is_some_and(|plan| plan.is_softened),

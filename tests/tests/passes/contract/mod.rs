@@ -153,7 +153,7 @@ fn plan(width_px: u32, height_px: u32) -> Plan {
         &SceneFacts {
             has_things: false,
             has_raised_things: false,
-            things_top_m: None,
+            things_fronts: Vec::new(),
             sharpness: Sharpness::SHARP,
             is_softened: false,
             gloss: Gloss::NONE,

@@ -46,7 +46,7 @@ fn facts_with(size_px: [u32; 2], penumbrae_px: Vec<f64>) -> SceneFacts {
     SceneFacts {
         has_things: false,
         has_raised_things: false,
-        things_top_m: None,
+        things_fronts: Vec::new(),
         sharpness: Sharpness::SHARP,
         is_softened: false,
         gloss: Gloss::NONE,

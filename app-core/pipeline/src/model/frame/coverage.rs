@@ -24,7 +24,7 @@ pub(crate) const COVERED: Mirrors = mirrors!("common/covered", constants: [N_POS
 pub(crate) const BEHIND_OUTLINE: Mirrors = mirrors!("common/behind_outline", constants: [OUTLINE_ROW_STEP]);
 pub(crate) const SHADER: Shader = shader!("frame/coverage", structs: [Positions]);
 const SLOTS: &[Slot] = &[Slot::per_use::<Positions>()];
-/// Entry points and slots beside low things.
+/// Entry points and slots beside things with fronts.
 const OVER_THINGS: [&str; 2] = ["vs_raised", "fs_cover_over_things"];
 const OVER_THINGS_SLOTS: &[Slot] = &[SLOTS[0], Slot::Texture];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
@@ -59,7 +59,7 @@ const HALF: Positions = Positions {
 
 pub(crate) struct Pass {
     draws: CountingDraws,
-    /// Beside low things before the toy; made on first use.
+    /// Beside things before the toy with fronts; made on first use.
     over_things: OnceLock<CountingDraws>,
 }
 
@@ -67,8 +67,8 @@ pub(crate) struct Inputs<'a> {
     pub(crate) region: &'a Region,
     pub(crate) toy: &'a ToyMesh,
     pub(crate) camera_in_anchor: glam::Vec3,
-    /// Marks of low things before the toy, if there are any.
-    pub(crate) low_things: Option<&'a TextureView>,
+    /// Marks of things before the toy, if their fronts are known.
+    pub(crate) marks_before: Option<&'a TextureView>,
 }
 
 /// Targets of the toy box's size.
@@ -111,13 +111,13 @@ impl Pass {
         };
         let plan = &inputs.region.plan;
         // Only where each position is drawn are the heights of things tested.
-        let target = inputs.low_things.is_none().then_some(target);
+        let target = inputs.marks_before.is_none().then_some(target);
         let corners = toy.corners(recorder.gpu, &seen, target);
         let globals = [(&inputs.region.globals).into()];
         let is_half = plan.n_coverage_positions < N_POSITIONS;
         let positions = if is_half { HALF } else { ALL };
         let n_positions = positions.n;
-        let draws = match inputs.low_things {
+        let draws = match inputs.marks_before {
             Some(_) => self
                 .over_things
                 .get_or_init(|| counting_draws(recorder.gpu, OVER_THINGS, OVER_THINGS_SLOTS)),
@@ -125,7 +125,7 @@ impl Pass {
         };
         let resources: Vec<Resource<'_>> = [Resource::PerUse]
             .into_iter()
-            .chain(inputs.low_things.map(Into::into))
+            .chain(inputs.marks_before.map(Into::into))
             .collect();
         let groups = [
             recorder.bind(draws.any(), GROUP_SCENE, &globals),
@@ -136,7 +136,7 @@ impl Pass {
         render.part_of(plan.part_drawn(&plan.toy_box));
         let drawn = (&corners, pose);
         // In front of a single receiver, the vertices alone decide what is behind it.
-        let is_plain = plan.n_receivers == 1 && inputs.low_things.is_none();
+        let is_plain = plan.n_receivers == 1 && inputs.marks_before.is_none();
         let n_plain = if is_plain { n_positions } else { 0 };
         draws.count(&mut render, &groups, drawn, 0..n_positions, n_plain);
     }

@@ -135,7 +135,7 @@ impl FramePath<'_> {
             unmixed: self.captured.by_pass.unmix.factor.as_ref(),
             reflected: self.captured.by_pass.gloss.view(),
             specular: &self.region.specular,
-            low_things: self.low_things(),
+            marks_before: self.marks_before(),
         }
     }
 
@@ -144,14 +144,14 @@ impl FramePath<'_> {
             region: self.region,
             toy: self.toy,
             camera_in_anchor: self.region.uniform.camera_in_anchor.into(),
-            low_things: self.low_things(),
+            marks_before: self.marks_before(),
         }
     }
 
-    /// The validity mask, if it has low things before the toy.
-    fn low_things(&self) -> Option<&TextureView> {
+    /// The validity mask, if things before the toy have fronts.
+    fn marks_before(&self) -> Option<&TextureView> {
         let validity = &self.captured.by_pass.validity.marks.view;
-        self.region.plan.things_top_m.map(|_| validity)
+        (!self.region.plan.things_fronts.is_empty()).then_some(validity)
     }
 
     fn on_things_inputs<'a>(&'a self, things: &'a Things) -> on_things::Inputs<'a> {

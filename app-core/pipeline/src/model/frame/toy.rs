@@ -122,8 +122,8 @@ pub(crate) struct Inputs<'a> {
     /// Radiance that a glossy toy reflected.
     pub(crate) reflected: Option<&'a TextureView>,
     pub(crate) specular: &'a Buffer,
-    /// Marks of low things before the toy, if there are any.
-    pub(crate) low_things: Option<&'a TextureView>,
+    /// Marks of things before the toy, if their fronts are known.
+    pub(crate) marks_before: Option<&'a TextureView>,
 }
 
 /// Targets of the toy box's size: one for each draw, and those that stay in tile memory.
@@ -264,7 +264,7 @@ fn sides(gpu: &Gpu, (format, n_samples): (TextureFormat, u32), is_glossy: bool) 
 
 impl<'a> Inputs<'a> {
     fn resources(&self) -> [Resource<'a>; 12] {
-        // A sharp picture binds a placeholder that is not read, and so does one without low things.
+        // A sharp picture binds a placeholder that is not read, and so does one without such things.
         let of_soft = |drawn: Option<&'a Texture>| &drawn.unwrap_or(&self.appearance.base).view;
         [
             Resource::PerUse,
@@ -278,7 +278,7 @@ impl<'a> Inputs<'a> {
             self.reflected.unwrap_or(&self.appearance.base.view).into(),
             self.specular.into(),
             of_soft(self.unmixed).into(),
-            self.low_things.unwrap_or(&self.appearance.base.view).into(),
+            self.marks_before.unwrap_or(&self.appearance.base.view).into(),
         ]
     }
 }
