@@ -1,8 +1,8 @@
 //! Hands, which no plate shows: how high they reach, and the shadow that they cast themselves.
 
 use app_core::alignment::Observer;
-use app_core::things::Mark;
-use glam::UVec2;
+use app_core::things::{Mark, Things};
+use glam::{DVec3, UVec2};
 
 use super::bundled::SESSION;
 use super::things::{
@@ -20,15 +20,19 @@ const BEYOND: Rect = [UVec2::new(408, 235), UVec2::new(424, 265)];
 
 #[test]
 fn a_hand_before_the_feet_alone_is_a_low_one() {
-    let top_m = |rect| in_frame_alone((SKIN, rect), |_| true).things.unwrap().top_m();
+    let top_m = |things: Option<Things>| {
+        let fronts = things.unwrap().fronts().to_vec();
+        fronts.first().map(|front| -front.distance_m(DVec3::ZERO))
+    };
+    let of_hand = |rect| top_m(in_frame_alone((SKIN, rect), |_| true).things);
     // The toy is 12 cm high.
-    let low_m = top_m(OVER_LEGS).unwrap();
+    let low_m = of_hand(OVER_LEGS).unwrap();
     assert!((0.01..0.04).contains(&low_m), "{low_m} m");
-    assert_eq!(top_m(OVER_ALL), None);
+    assert_eq!(of_hand(OVER_ALL), None);
     // What the plate shows, too, is no hand.
     let (scene, input) = with_rectangle([true, true], OVER_LEGS);
     let things = Observer::default().observed(&scene, &input).unwrap().things;
-    assert_eq!(things.unwrap().top_m(), None);
+    assert_eq!(top_m(things), None);
 }
 
 #[test]

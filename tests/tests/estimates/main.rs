@@ -8,6 +8,7 @@ mod discovery;
 mod exposed_things;
 mod focal_length;
 mod from_photographs;
+mod fronts;
 mod gloss;
 mod grain;
 mod hands;

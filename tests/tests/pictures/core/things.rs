@@ -10,11 +10,11 @@ use app_core::preset::Preset;
 use app_core::scene::{Image, Scene};
 use app_core::session::Session;
 use app_core::sharpness::{Sharpness, Spread};
-use app_core::things::{MOST_PAINTED, Mark, RaisedPoint, Things};
+use app_core::things::{Front, MOST_PAINTED, Mark, RaisedPoint, Things};
 use app_pipeline::core::inspect::Inspect;
 use app_pipeline::frame::{Thing, Warning};
 use app_pipeline::readback::Map;
-use glam::UVec2;
+use glam::{DVec3, UVec2};
 use harness::bundled_session;
 
 use super::bundled::{core, first_input, picture_of, scene};
@@ -89,24 +89,36 @@ fn things_stay_as_the_camera_saw_them() {
 }
 
 #[test]
-fn the_toy_is_drawn_over_a_lower_thing_before_it() {
+fn the_toy_is_drawn_over_a_thing_that_is_lower_or_farther() {
     let (scene, input) = staged();
     let mut core = core();
     core.set_scene(scene, Preset::Balanced).unwrap();
     let marked = with(&input, &[(Mark::BeforeToy, AT_HEAD)]);
     let things = marked.things.clone().unwrap();
     let rect = within(within(AT_HEAD));
-    let parts = [1e-4, 0.105, 0.2].map(|top_m| {
-        let low = things.clone().with_top(Some(top_m));
-        let picture = picture_of(&mut core, &marked.clone().with_things(Some(low)));
+    let mut shown = |fronts: Vec<Front>| {
+        let known = things.clone().with_fronts(fronts);
+        let picture = picture_of(&mut core, &marked.clone().with_things(Some(known)));
         let is_changed = |at: &UVec2| apart(&picture, &input, [*at, *at + 1]) > 10;
         pixels(rect).filter(is_changed).count() as f32 / pixels(rect).count() as f32
-    });
+    };
+    let above = |top_m: f64| Front::at(top_m * DVec3::Y, DVec3::Y).unwrap();
+    let parts = [1e-4, 0.105, 0.2].map(|top_m| shown(vec![above(top_m)]));
     // All of the toy is above a tenth of a millimetre, a part above 10.5 cm, nothing above 20; the camera is above that.
     assert!(
         parts[0] > 0.3 && (0.1..0.8).contains(&(parts[1] / parts[0])) && parts[2] == 0.0,
         "the toy is shown in {parts:.2?} of the thing's place"
     );
+    // From a side, all of it is before what is 20 cm behind it, and nothing before what is 10 cm before it; what is
+    // not before that may be above it.
+    let toy = input.world_from_object.w_axis.truncate();
+    let towards = (input.camera.world_from_camera.w_axis.truncate() - toy)
+        .with_y(0.0)
+        .normalize();
+    let side = |before_m: f64| Front::at(toy + before_m * towards, towards).unwrap();
+    let sides = [-0.2, 0.1].map(|before_m| shown(vec![side(before_m), above(0.2)]));
+    assert_eq!(sides, [parts[0], 0.0]);
+    assert_eq!(shown(vec![side(0.1), above(0.105)]), parts[1]);
 }
 
 /// At rest, a toy that is drawn over a low hand is where that hides it.
@@ -127,8 +139,8 @@ fn a_low_hand_hides_the_resting_toy() {
         .observed(session.scene(), &input)
         .unwrap()
         .things;
-    let low = things.filter(|things| things.top_m().is_some()).unwrap();
-    let pictures = [low.clone(), low.with_top(None)]
+    let low = things.filter(|things| !things.fronts().is_empty()).unwrap();
+    let pictures = [low.clone(), low.with_fronts(Vec::new())]
         .map(|things| picture_of(&mut core, &input.clone().with_things(Some(things))));
     let n_apart = (0..pictures[0].len())
         .filter(|at| pictures[0][*at].abs_diff(pictures[1][*at]) > 2)
