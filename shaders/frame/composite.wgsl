@@ -228,7 +228,7 @@ fn composed(position: vec4f, n_draws: u32) -> vec4f {
     return vec4f(grained_toy(laid, texel, over.a), 1.0);
   }
   let toy = toy_layer(box_texel(texel), n_draws);
-  // The toy is over the rim of a thing that is not before it, or not as high.
+  // The toy is over the rim of a thing that is not before it, or before its fronts.
   let is_over = is_rim && (!is_before || over.a > OVER_RIM);
   let shown = over_receiver(texel, texel + steps.zw, select(toy, vec4f(0.0), is_over), n_draws);
   if !is_rim { return vec4f(shown, 1.0); }

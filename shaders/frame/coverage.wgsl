@@ -4,7 +4,7 @@
 // them up. As in `occlusion` each position has a constant depth, above those before it, so that
 // overlapping triangles do not count twice; rounding of z / w is far below a step of 16 bits, in
 // which depths are 1986 steps apart. A position counts if any triangle covers it: of the scene's
-// depths only those of the receivers are tested, and the heights of things before the toy.
+// depths only those of the receivers are tested, and the fronts of things before the toy.
 // All positions are equal away from the toy's silhouettes: there it is drawn only once, while tiles
 // near a silhouette are closed (`geometry/silhouette.rs`); beside things with fronts all are drawn everywhere.
 // The positions are a lattice over the pixel, so that an edge of any direction meets them one after
@@ -54,7 +54,7 @@ fn vs_move(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -
   return Moved(moved_clip(clip, index), index);
 }
 
-struct Raised {
+struct BeforeFronts {
   @builtin(position) clip: vec4f,
   @location(0) @interpolate(flat, either) index: u32,
   @location(1) before_m: vec2f,
@@ -62,9 +62,9 @@ struct Raised {
 
 // Vertices with their distances from the fronts of things.
 @vertex
-fn vs_raised(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> Raised {
+fn vs_before_fronts(@location(0) in_anchor: vec3f, @builtin(instance_index) index: u32) -> BeforeFronts {
   let clip = globals.clip_from_anchor * vec4f(in_anchor, 1.0);
-  return Raised(moved_clip(clip, index), index, before_fronts_m(in_anchor));
+  return BeforeFronts(moved_clip(clip, index), index, before_fronts_m(in_anchor));
 }
 
 struct Plain {

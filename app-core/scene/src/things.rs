@@ -14,8 +14,8 @@ pub enum Mark {
     None,
     /// A thing: the camera's pixel stays, and the toy is drawn over it.
     Thing,
-    /// A thing in front of the toy: the camera's pixel stays, the toy is drawn behind it, and no
-    /// colour of the toy is taken from it.
+    /// A thing in front of the toy: the camera's pixel stays, the toy is drawn behind it, but for what is before its
+    /// fronts, and no colour of the toy is taken from it.
     BeforeToy,
     /// A receiver whose plate shows something else; it is treated as not photographed there.
     WrongPlate,
@@ -233,10 +233,12 @@ impl Things {
         })
     }
 
-    /// With planes in the world behind which all things before the toy are, [`MAX_FRONTS`] at most, such as the height of a hand
-    /// on the table, or the side and the height of a post: parts of the toy on a near side are drawn over them.
+    /// With planes in the world behind which all things before the toy are, such as the height of a hand on the table,
+    /// or the side and the height of a post: parts of the toy on a near side are drawn over them. The first
+    /// [`MAX_FRONTS`] count.
     #[must_use]
-    pub fn with_fronts(self, fronts: Vec<Front>) -> Self {
+    pub fn with_fronts(self, mut fronts: Vec<Front>) -> Self {
+        fronts.truncate(MAX_FRONTS);
         Self { fronts, ..self }
     }
 

@@ -140,24 +140,16 @@ fn what_is_known_is_held() {
 
 #[test]
 fn a_toy_that_may_be_anywhere_on_its_table_is_looked_for_there() {
-    for (by_m, deg) in [
-        (DVec3::new(0.03, 0.0, -0.03), 150.0),
-        (DVec3::new(-0.05, 0.0, 0.01), -110.0),
-    ] {
-        let given = disturbed(by_m, DVec3::Y, deg);
-        let by_itself = align(Uncertainty::default(), &given);
-        let (off_m, _) = apart(&SESSION.1.world_from_object, &by_itself.world_from_object);
-        assert!(
-            off_m > 0.005,
-            "it is near enough to be found by itself: {off_m} m"
-        );
-        let found = align(of_toy(0.07, 180.0), &given);
-        let (off_m, off_deg) = apart(&SESSION.1.world_from_object, &found.world_from_object);
-        assert!(
-            off_m < 3e-4 && off_deg < 0.3,
-            "{deg} degrees: {off_m} m, {off_deg} degrees off"
-        );
-    }
+    let given = disturbed(DVec3::new(-0.05, 0.0, 0.01), DVec3::Y, -110.0);
+    let by_itself = align(Uncertainty::default(), &given);
+    let (off_m, _) = apart(&SESSION.1.world_from_object, &by_itself.world_from_object);
+    assert!(
+        off_m > 0.005,
+        "it is near enough to be found by itself: {off_m} m"
+    );
+    let found = align(of_toy(0.07, 180.0), &given);
+    let (off_m, off_deg) = apart(&SESSION.1.world_from_object, &found.world_from_object);
+    assert!(off_m < 3e-4 && off_deg < 0.3, "{off_m} m, {off_deg} degrees off");
 }
 
 #[test]

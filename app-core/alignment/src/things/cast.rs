@@ -20,7 +20,8 @@ use crate::picture::{Color, Mask, index_in, places};
 use app_scene::geometry::color::{linear_from_srgb, srgb_from_linear};
 
 /// Share of the light that the darkest part of the toy's shadow loses at least, part of it that
-/// counts as that, and the number of such pixels. Fewer are darker still: below a shoe, no sky is seen.
+/// counts as that, and the number of such pixels: the darkest of fewer, as below a shoe
+/// that hides the sky, too, are beyond it.
 const LEAST_TAKEN: f32 = 0.3;
 const DARKEST: f32 = 0.93;
 const LEAST_PIXELS: usize = 30;

@@ -14,6 +14,7 @@ use super::memory::Memory;
 use super::sight::Sight;
 use crate::median::{median, part_of};
 use crate::picture::{Level, places};
+use crate::receivers::SeenReceiver;
 use app_scene::things::{Front, Mark};
 
 /// Least height of a standing thing in the picture, over its width; the least part that it fills of the rectangle of
@@ -23,50 +24,71 @@ use app_scene::things::{Front, Mark};
 const TALL: f64 = 1.05;
 const FILLED: f64 = 0.85;
 const OF_TALLEST: f64 = 0.5;
-const MOST: f64 = 0.5;
-/// Most pixels of other things before the toy, over those of the standing one.
+const LEAST_WITHIN: f64 = 0.5;
+/// Most pixels of other things before the toy, over all of the standing one.
 const SPECKS: f64 = 0.01;
 /// Part of a thing's feet that are farther from the camera than its side: below others, its shadow may be taken for it.
 const BEHIND_SIDE: f64 = 0.25;
+/// Least height of a top, over that of its outline as if it were upright: a wide thing may be thin.
+const LEAST_OF_OUTLINE: f64 = 0.5;
+
+/// Where things before the toy end.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ends {
+    /// The fronts in the world of all things before the toy; empty if they are unknown.
+    pub(super) fronts: Vec<Front>,
+    /// Indices of pixels that are before the toy, though they hide nothing of the real one.
+    pub(super) before: Vec<usize>,
+}
+
+impl Ends {
+    /// Marks pixels of things as before the toy.
+    pub(super) fn mark(&self, marks: &mut [Mark]) {
+        for index in &self.before {
+            if marks[*index] == Mark::Thing {
+                marks[*index] = Mark::BeforeToy;
+            }
+        }
+    }
+}
 
 impl Sight<'_> {
-    /// The fronts in the world of all things before the toy; empty if they are unknown. A thing that stands before
-    /// the toy gets that mark. `marks` are those of the largest level, and `now` is the memory of this picture.
-    pub(super) fn fronts(
+    /// The ends of things before the toy. `marks` are those of the largest level, and `now` is the memory of this
+    /// picture.
+    pub(super) fn ends(
         &self,
         level: &Level,
         found: &Found<'_>,
-        (now, size_px, marks): (&Memory, IVec2, &mut [Mark]),
-    ) -> Vec<Front> {
-        let known = self.memory.and_then(|memory| memory.fronts(now, size_px, marks));
+        (now, size_px, marks): (&Memory, IVec2, &[Mark]),
+    ) -> Ends {
+        let known = self.memory.and_then(|memory| memory.ends(now, size_px, marks));
         if let Some(known) = known {
-            return known.to_vec();
+            return known.clone();
         }
         let Some(table) = self.receivers.first() else {
-            return Vec::new();
+            return Ends::default();
         };
-        let low = self.front_of_low(level, found, (size_px, marks));
-        let fronts = match low {
-            Some(low) => vec![low],
-            None => self
-                .fronts_of_standing(level, found, (size_px, marks))
-                .unwrap_or_default(),
-        };
+        let low = self.front_of_low(level, found, (size_px, marks)).map(|low| Ends {
+            fronts: vec![low],
+            before: Vec::new(),
+        });
+        let ends = low.or_else(|| self.ends_of_standing((level, table), found, (size_px, marks)));
+        let ends = ends.unwrap_or_default();
         let table_from_world = table.plane_from_camera * self.world_from_camera.inverse();
-        fronts
-            .iter()
-            .map(|front| front.in_space(&table_from_world))
-            .collect()
+        let in_world = ends.fronts.iter().map(|front| front.in_space(&table_from_world));
+        Ends {
+            fronts: in_world.collect(),
+            ..ends
+        }
     }
 
     /// Those of the only thing that is before the toy, if it stands on the receiver, in the receiver's space.
-    fn fronts_of_standing(
+    fn ends_of_standing(
         &self,
-        level: &Level,
+        (level, table): (&Level, &SeenReceiver),
         found: &Found<'_>,
-        (size_px, marks): (IVec2, &mut [Mark]),
-    ) -> Option<Vec<Front>> {
-        let table = self.receivers.first()?;
+        (size_px, marks): (IVec2, &[Mark]),
+    ) -> Option<Ends> {
         let bodies = self.bodies(level, found, (size_px, marks));
         let feet = Feet::of(&bodies, self.pyramid.level(0), table);
         let eye = table.plane_from_camera.w_axis.truncate();
@@ -84,19 +106,20 @@ impl Sight<'_> {
             return None;
         };
         let per_px = self.per_px(level);
-        let is_of_thing = |at: IVec2| found.thing_at((at.as_dvec2() + 0.5) * per_px) == Some(thing);
-        let before = places(size_px).zip(marks.iter());
-        let before = before.filter(|(_, mark)| **mark == Mark::BeforeToy);
-        let (of_thing, others): (Vec<_>, Vec<_>) = before.partition(|(at, _)| is_of_thing(*at));
-        if others.len() as f64 > SPECKS * of_thing.len() as f64 {
-            return None;
-        }
-        for (mark, of) in marks.iter_mut().zip(&bodies.thing) {
-            if *of == Some(thing) && *mark == Mark::Thing {
-                *mark = Mark::BeforeToy;
-            }
-        }
-        Some(fronts.to_vec())
+        let is_other = |(at, mark): (IVec2, &Mark)| {
+            *mark == Mark::BeforeToy && found.thing_at((at.as_dvec2() + 0.5) * per_px) != Some(thing)
+        };
+        let n_others = places(size_px)
+            .zip(marks)
+            .filter(|pixel| is_other(*pixel))
+            .count();
+        let of_thing = bodies.thing.iter().enumerate();
+        let of_thing = of_thing.filter_map(|(index, of)| (*of == Some(thing)).then_some(index));
+        let before: Vec<usize> = of_thing.collect();
+        (n_others as f64 <= SPECKS * before.len() as f64).then(|| Ends {
+            fronts: fronts.to_vec(),
+            before,
+        })
     }
 }
 
@@ -114,15 +137,15 @@ fn fronts_of(tops: &[DVec3], eye: DVec3) -> Option<[Front; 2]> {
     });
     let outline_m = median(tops.iter().map(|top| top.y), f64::total_cmp)?;
     let slope = (eye.y - outline_m) / (towards.dot(eye) - side_m);
-    let top_m = outline_m - slope * (most - least);
+    let top_m = (outline_m - slope * (most - least)).max(LEAST_OF_OUTLINE * outline_m);
     Some([
         Front::at(side_m * towards, towards)?,
         Front::at(top_m * DVec3::Y, DVec3::Y)?,
     ])
 }
 
-/// The columns across the upright direction in which a thing stands; `None` if it is not tall, or its sides are not
-/// upright. Others may show its shadow.
+/// The columns across the upright direction in which a thing stands; `None` if it is not tall, its sides are not
+/// upright, or the picture does not show all of it. Other columns may show its shadow.
 fn upright_columns(bodies: &Bodies, feet: &Feet<'_>, thing: usize) -> Option<BTreeSet<i32>> {
     let mut heights = BTreeMap::<i32, f64>::new();
     for at in places(bodies.size_px).filter(|at| bodies.of(*at) == Some(thing)) {
@@ -132,6 +155,16 @@ fn upright_columns(bodies: &Bodies, feet: &Feet<'_>, thing: usize) -> Option<BTr
     let tallest = heights.values().copied().fold(0.0, f64::max);
     heights.retain(|_, height| *height >= OF_TALLEST * tallest);
     let (width, shown) = (heights.len() as f64, heights.values().sum::<f64>());
-    let is_upright = tallest >= TALL * width && shown >= FILLED * width * tallest && shown >= MOST * all;
+    let last = bodies.size_px - 1;
+    let is_at_border = |at: IVec2| at.cmpeq(IVec2::ZERO).any() || at.cmpeq(last).any();
+    let is_cut = |at: IVec2| {
+        let column = feet.column(at, thing);
+        bodies.of(at) == Some(thing) && column.is_some_and(|column| heights.contains_key(&column))
+    };
+    if places(bodies.size_px).any(|at| is_at_border(at) && is_cut(at)) {
+        return None;
+    }
+    let is_upright =
+        tallest >= TALL * width && shown >= FILLED * width * tallest && shown >= LEAST_WITHIN * all;
     (is_upright && width > 0.0).then(|| heights.into_keys().collect())
 }

@@ -4,12 +4,13 @@
 use glam::{DMat4, DVec3, IVec2};
 
 use super::codes::{Codes, apart, least_change};
+use super::fronts::Ends;
 use super::grown::Grown;
 use super::known::{HELD, Known};
 use crate::picture::{Mask, index_in, places};
 use crate::receivers::{SeenReceiver, receiver_at};
 use app_scene::scene::{Intrinsics, Light};
-use app_scene::things::{Front, Mark, RaisedPoint};
+use app_scene::things::{Mark, RaisedPoint};
 
 /// Evidence that a thing needs, over that of a single picture: one that had half of that evidence in
 /// the previous picture, and one that no picture before showed. One that was marked there needs [`HELD`].
@@ -47,8 +48,8 @@ pub(crate) struct Memory {
     marks: (IVec2, Vec<Mark>),
     /// The points of things at these pixels; empty if there are none.
     raised: Vec<RaisedPoint>,
-    /// As `Things::fronts`.
-    fronts: Vec<Front>,
+    /// The ends of things before the toy.
+    ends: Ends,
     /// Marks without and with the place's pattern; `None` if the plate is not wrong.
     pattern: Option<[Vec<Mark>; 2]>,
 }
@@ -62,7 +63,7 @@ impl Memory {
             known,
             marks: (IVec2::ZERO, Vec::new()),
             raised: Vec::new(),
-            fronts: Vec::new(),
+            ends: Ends::default(),
             pattern: None,
         }
     }
@@ -149,9 +150,9 @@ impl Memory {
         self.is_same(now, size_px, marks).then_some(&self.raised)
     }
 
-    /// The same for the fronts of things before the toy.
-    pub(super) fn fronts(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> Option<&[Front]> {
-        self.is_same(now, size_px, marks).then_some(&self.fronts)
+    /// The same for the ends of things before the toy.
+    pub(super) fn ends(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> Option<&Ends> {
+        self.is_same(now, size_px, marks).then_some(&self.ends)
     }
 
     fn is_same(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> bool {
@@ -178,9 +179,9 @@ impl Memory {
         self.frame.size_px == now.frame.size_px && self.place.is_like(&now.place, self.frame.size_px)
     }
 
-    /// With the fronts of things before the toy.
-    pub(super) fn with_fronts(self, fronts: Vec<Front>) -> Self {
-        Self { fronts, ..self }
+    /// With the ends of things before the toy.
+    pub(super) fn with_ends(self, ends: Ends) -> Self {
+        Self { ends, ..self }
     }
 
     /// With the marks of its picture's largest level, and the points of things.

@@ -172,7 +172,7 @@ impl Sight<'_> {
             return (Some(sighting), memory);
         }
         let (size_px, marks) = self.marks(level, &found);
-        let mut marks = match self.memory {
+        let marks = match self.memory {
             Some(before) => {
                 let per_px = self.per_px(level);
                 before.steadied(&memory, (size_px, per_px), marks)
@@ -180,18 +180,19 @@ impl Sight<'_> {
             None => marks,
         };
         let raised = self.raised(level, &found, (&memory, size_px, &marks));
-        let fronts = self.fronts(level, &found, (&memory, size_px, &mut marks));
+        let ends = self.ends(level, &found, (&memory, size_px, &marks));
         let memory = memory
             .with_marks(size_px, &marks, &raised)
-            .with_fronts(fronts.clone());
+            .with_ends(ends.clone());
         let marks = match found.colored {
             Colored::Otherwise => marks,
             Colored::Alike => self.marks_of_standing(level, &found, (size_px, marks), &raised),
         };
-        let (marks, memory) = self.with_pattern(marks, memory);
+        let (mut marks, memory) = self.with_pattern(marks, memory);
+        ends.mark(&mut marks);
         let sighting = Sighting {
             size_px,
-            fronts,
+            fronts: ends.fronts,
             marks,
             raised,
             planes: found.planes,

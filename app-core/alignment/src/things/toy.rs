@@ -80,7 +80,7 @@ impl Toy {
     }
 
     /// Whether a pixel in the toy's place shows the plate, although the toy should look different; the plate in
-    /// another light, as the toy changes it within a cup, if that is not the toy in any light.
+    /// another light of which a shadow leaves enough, as the toy changes it within a cup, if that is not the toy in any.
     pub(super) fn is_hidden(&self, at: IVec2, frame: &Codes, plate: &Codes) -> bool {
         let [Some(color), Some(plate)] = [frame.get(at), plate.get(at)] else {
             return false;
@@ -89,7 +89,8 @@ impl Toy {
             let expected = self.expected(at);
             return expected.is_none_or(|expected| apart(expected, plate) > UNLIKE_CODES);
         }
-        from_shaded(color, plate) < ALIKE_CODES && self.unlike(at, frame).is_some_and(|unlike| unlike > 1.0)
+        let is_plate = from_shaded(color, plate) < ALIKE_CODES && is_lit(color, plate);
+        is_plate && self.unlike(at, frame).is_some_and(|unlike| unlike > 1.0)
     }
 
     /// Pixels at which a level shows the plate in place of the toy.
@@ -218,11 +219,17 @@ impl Toy {
     /// Whether a pixel in the toy's place is not the plate's in some light of which a shadow leaves
     /// enough.
     pub(super) fn is_seen(&self, at: IVec2, [frame, plate]: [&Codes; 2]) -> bool {
-        let is_plate = frame.get(at).zip(plate.get(at)).is_some_and(|(frame, plate)| {
-            from_shaded(frame, plate) < UNLIKE_CODES && brightest(frame) > LEAST_LIT * brightest(plate)
-        });
+        let is_plate = frame
+            .get(at)
+            .zip(plate.get(at))
+            .is_some_and(|(frame, plate)| from_shaded(frame, plate) < UNLIKE_CODES && is_lit(frame, plate));
         self.coverage.at(at) > 0.0 && !is_plate
     }
+}
+
+/// Whether a colour has enough of the plate's light for one in a shadow.
+fn is_lit(color: Color, plate: Color) -> bool {
+    brightest(color) > LEAST_LIT * brightest(plate)
 }
 
 fn brightest(color: Color) -> f32 {

@@ -358,7 +358,7 @@ impl fmt::Display for Outlier {
 pub enum Thing {
     /// It stands where the toy's shadow falls.
     OnReceiver,
-    /// It hides a part of the real toy.
+    /// It hides a part of the real toy, or would hide one that is moved there.
     BeforeToy,
     /// The plate shows it, but the picture does not.
     InPlateAlone,

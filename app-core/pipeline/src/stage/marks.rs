@@ -9,7 +9,7 @@ use crate::gpu::Gpu;
 use crate::passes::thing_marks::Things;
 use crate::preset::Settings;
 use app_scene::frame::FrameInput;
-use app_scene::things::{Front, MAX_FRONTS, Mark, Things as GivenThings};
+use app_scene::things::{Front, Mark, Things as GivenThings};
 
 impl Stage {
     /// Sets the things of a picture, unless they are the same; the baseline ignores things.
@@ -37,7 +37,10 @@ impl Stage {
     /// nothing tells how near people are, and only from the near side is a point on that side nearer.
     pub(super) fn things_fronts(&self, footprint: &Footprint) -> Vec<Front> {
         let things = self.things.as_ref().filter(|_| self.people.marks().is_none());
-        let fronts = things.map_or(&[][..], |things| things.given().fronts());
+        let things = things
+            .map(Things::given)
+            .filter(|things| things.count(Mark::BeforeToy) > 0);
+        let fronts = things.map_or(&[][..], GivenThings::fronts);
         let world_from_anchor = self.layout().world_from_anchor();
         let camera = footprint.view.camera_in(&world_from_anchor);
         let is_near = |front: &Front| {
@@ -45,7 +48,7 @@ impl Stage {
             front.distance_m(camera) > 0.0 && toy.any(|corner| front.distance_m(corner) > 0.0)
         };
         let in_anchor = fronts.iter().map(|front| front.in_space(&world_from_anchor));
-        in_anchor.filter(is_near).take(MAX_FRONTS).collect()
+        in_anchor.filter(is_near).collect()
     }
 
     /// Warnings about things beside the toy in the pictures.

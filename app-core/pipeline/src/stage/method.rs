@@ -16,6 +16,7 @@ use crate::preset::Settings;
 use crate::readback::inject::InjectedVisibility;
 use crate::readback::{FloatMap, Map};
 use app_scene::scene::Image;
+use app_scene::things::Front;
 
 /// The compilation steps for all passes of frames with these settings.
 pub(crate) fn warm_ups(settings: Settings) -> Vec<WarmUp> {
@@ -57,6 +58,12 @@ impl Method {
         };
         let needed = needed.and_then(|needed| needed.common(&region));
         needed.is_none_or(|needed| known.contains(&needed))
+    }
+
+    /// Whether things before the toy have these fronts.
+    pub(crate) fn has_fronts(&self, fronts: &[Front]) -> bool {
+        let Self::Model(model) = self else { return true };
+        model.region.plan.things_fronts == fronts
     }
 
     pub(crate) fn skipped(&self) -> &[SkippedWork] {

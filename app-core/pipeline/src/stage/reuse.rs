@@ -126,6 +126,7 @@ impl Stage {
     }
 
     fn reusable(&mut self, input: &FrameInput, footprint: &Footprint) -> Reuse {
+        let fronts = self.things_fronts(footprint);
         let Some(state) = &mut self.state else {
             return Reuse::Nothing;
         };
@@ -135,7 +136,8 @@ impl Stage {
         };
         let is_within = is_same_view([&state.view, &footprint.view], &footprint.corners_in_world)
             && state.method.region().contains(&footprint.least_region)
-            && state.method.holds_toy(footprint.least_toy_box);
+            && state.method.holds_toy(footprint.least_toy_box)
+            && state.method.has_fronts(&fronts);
         // Injected visibilities belong to one view.
         let is_visibility_outdated = mem::take(&mut state.is_visibility_outdated);
         let are_settings_outdated = mem::take(&mut state.are_settings_outdated);

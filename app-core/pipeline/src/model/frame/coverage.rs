@@ -25,7 +25,7 @@ pub(crate) const BEHIND_OUTLINE: Mirrors = mirrors!("common/behind_outline", con
 pub(crate) const SHADER: Shader = shader!("frame/coverage", structs: [Positions]);
 const SLOTS: &[Slot] = &[Slot::per_use::<Positions>()];
 /// Entry points and slots beside things with fronts.
-const OVER_THINGS: [&str; 2] = ["vs_raised", "fs_cover_over_things"];
+const OVER_THINGS: [&str; 2] = ["vs_before_fronts", "fs_cover_over_things"];
 const OVER_THINGS_SLOTS: &[Slot] = &[SLOTS[0], Slot::Texture];
 const STREAMS: &[Stream] = &[(0, VertexFormat::Float32x3)];
 /// Number of lattice positions within a pixel at which the toy's coverage is sampled.
@@ -110,7 +110,7 @@ impl Pass {
             savings: Savings::Pixels,
         };
         let plan = &inputs.region.plan;
-        // Only where each position is drawn are the heights of things tested.
+        // Only where each position is drawn are the fronts of things tested.
         let target = inputs.marks_before.is_none().then_some(target);
         let corners = toy.corners(recorder.gpu, &seen, target);
         let globals = [(&inputs.region.globals).into()];
