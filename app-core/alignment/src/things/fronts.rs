@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec3, IVec2, Vec3Swizzles};
 
+use super::ends::Ends;
 use super::feet::{Bodies, Feet};
 use super::found::Found;
 use super::memory::Memory;
@@ -31,26 +32,6 @@ const SPECKS: f64 = 0.01;
 const BEHIND_SIDE: f64 = 0.25;
 /// Least height of a top, over that of its outline as if it were upright: a wide thing may be thin.
 const LEAST_OF_OUTLINE: f64 = 0.5;
-
-/// Where things before the toy end.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Ends {
-    /// The fronts in the world of all things before the toy; empty if they are unknown.
-    pub(super) fronts: Vec<Front>,
-    /// Indices of pixels that are before the toy, though they hide nothing of the real one.
-    pub(super) before: Vec<usize>,
-}
-
-impl Ends {
-    /// Marks pixels of things as before the toy.
-    pub(super) fn mark(&self, marks: &mut [Mark]) {
-        for index in &self.before {
-            if marks[*index] == Mark::Thing {
-                marks[*index] = Mark::BeforeToy;
-            }
-        }
-    }
-}
 
 impl Sight<'_> {
     /// The ends of things before the toy. `marks` are those of the largest level, and `now` is the memory of this

@@ -4,7 +4,7 @@
 use glam::{DMat4, DVec3, IVec2};
 
 use super::codes::{Codes, apart, least_change};
-use super::fronts::Ends;
+use super::ends::Ends;
 use super::grown::Grown;
 use super::known::{HELD, Known};
 use crate::picture::{Mask, index_in, places};

@@ -14,6 +14,7 @@ mod codes;
 mod colored_extent;
 mod colors;
 mod edges;
+mod ends;
 mod expected_light;
 mod exposure;
 mod extent;

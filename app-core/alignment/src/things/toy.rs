@@ -79,18 +79,24 @@ impl Toy {
         cross(at, WITHIN_PX).all(|at| self.coverage.at(at) >= 1.0)
     }
 
-    /// Whether a pixel in the toy's place shows the plate, although the toy should look different; the plate in
-    /// another light of which a shadow leaves enough, as the toy changes it within a cup, if that is not the toy in any.
+    /// Whether a pixel in the toy's place shows the plate, although the toy should look different.
     pub(super) fn is_hidden(&self, at: IVec2, frame: &Codes, plate: &Codes) -> bool {
+        let [Some(frame), Some(plate)] = [frame.get(at), plate.get(at)] else {
+            return false;
+        };
+        let is_unlike = self
+            .expected(at)
+            .is_none_or(|expected| apart(expected, plate) > UNLIKE_CODES);
+        apart(frame, plate) < ALIKE_CODES && is_unlike
+    }
+
+    /// The same for the plate in another light of which a shadow leaves enough, as the toy changes it within a cup.
+    fn is_hidden_in_light(&self, at: IVec2, frame: &Codes, plate: &Codes) -> bool {
         let [Some(color), Some(plate)] = [frame.get(at), plate.get(at)] else {
             return false;
         };
-        if apart(color, plate) < ALIKE_CODES {
-            let expected = self.expected(at);
-            return expected.is_none_or(|expected| apart(expected, plate) > UNLIKE_CODES);
-        }
         let is_plate = from_shaded(color, plate) < ALIKE_CODES && is_lit(color, plate);
-        is_plate && self.unlike(at, frame).is_some_and(|unlike| unlike > 1.0)
+        is_plate && self.unlike(at, frame).is_some_and(|unlike| unlike >= FAR_UNLIKE)
     }
 
     /// Pixels at which a level shows the plate in place of the toy.
@@ -187,7 +193,8 @@ impl Toy {
         for at in self.coverage.pixels().filter(|at| self.is_within(*at)) {
             if let Some(thing) = grown.of_pixel(at) {
                 n_within[thing] += 1;
-                hidden[thing] += usize::from(self.is_hidden(at, frame, plate));
+                let is_hidden = self.is_hidden(at, frame, plate) || self.is_hidden_in_light(at, frame, plate);
+                hidden[thing] += usize::from(is_hidden);
             }
         }
         let known = |thing: usize| {
