@@ -18,12 +18,9 @@ const LYING: Rect = [UVec2::new(330, 240), UVec2::new(500, 350)];
 const BEHIND: Rect = [UVec2::new(375, 110), UVec2::new(405, 236)];
 
 fn seen(rect: Rect) -> (Found, Vec<Front>) {
-    let (scene, input) = with_rectangle([true, true], rect);
-    let things = Observer::default().observed(&scene, &input).unwrap().things;
-    let fronts = things
-        .as_ref()
-        .map_or(Vec::new(), |things| things.fronts().to_vec());
-    (Found { things, rect }, fronts)
+    let found = Found::of([true, true], rect);
+    let fronts = found.things.as_ref().map(|things| things.fronts().to_vec());
+    (found, fronts.unwrap_or_default())
 }
 
 /// The point on the table at a place in the picture.

@@ -106,7 +106,7 @@ pub(super) struct Found {
 
 impl Found {
     /// Result for a rectangle in the frame, in the plate, or in both.
-    fn of(is_in: [bool; 2], rect: Rect) -> Self {
+    pub(super) fn of(is_in: [bool; 2], rect: Rect) -> Self {
         let (scene, input) = with_rectangle(is_in, rect);
         let mut observer = Observer::default();
         let things = observer.observed(&scene, &input).unwrap().things;

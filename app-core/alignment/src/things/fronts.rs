@@ -11,7 +11,6 @@ use glam::{DVec3, IVec2, Vec3Swizzles};
 use super::ends::Ends;
 use super::feet::{Bodies, Feet};
 use super::found::Found;
-use super::memory::Memory;
 use super::sight::Sight;
 use crate::median::{median, part_of};
 use crate::picture::{Level, places};
@@ -34,28 +33,19 @@ const BEHIND_SIDE: f64 = 0.25;
 const LEAST_OF_OUTLINE: f64 = 0.5;
 
 impl Sight<'_> {
-    /// The ends of things before the toy. `marks` are those of the largest level, and `now` is the memory of this
-    /// picture.
-    pub(super) fn ends(
-        &self,
-        level: &Level,
-        found: &Found<'_>,
-        (now, size_px, marks): (&Memory, IVec2, &[Mark]),
-    ) -> Ends {
-        let known = self.memory.and_then(|memory| memory.ends(now, size_px, marks));
-        if let Some(known) = known {
-            return known.clone();
-        }
+    /// The ends of things before the toy, of which these are the bodies and the marks in the largest level.
+    pub(super) fn ends(&self, level: &Level, found: &Found<'_>, (bodies, marks): (&Bodies, &[Mark])) -> Ends {
         let Some(table) = self.receivers.first() else {
             return Ends::default();
         };
-        let low = self.front_of_low(level, found, (size_px, marks)).map(|low| Ends {
+        let low = self.front_of_low(level, found, (bodies.size_px, marks));
+        let low = low.map(|low| Ends {
             fronts: vec![low],
             before: Vec::new(),
         });
-        let ends = low.or_else(|| self.ends_of_standing((level, table), found, (size_px, marks)));
+        let ends = low.or_else(|| self.ends_of_standing((level, table), found, (bodies, marks)));
         let ends = ends.unwrap_or_default();
-        let table_from_world = table.plane_from_camera * self.world_from_camera.inverse();
+        let table_from_world = self.plane_from_world(table);
         let in_world = ends.fronts.iter().map(|front| front.in_space(&table_from_world));
         Ends {
             fronts: in_world.collect(),
@@ -68,16 +58,15 @@ impl Sight<'_> {
         &self,
         (level, table): (&Level, &SeenReceiver),
         found: &Found<'_>,
-        (size_px, marks): (IVec2, &[Mark]),
+        (bodies, marks): (&Bodies, &[Mark]),
     ) -> Option<Ends> {
-        let bodies = self.bodies(level, found, (size_px, marks));
-        let feet = Feet::of(&bodies, self.pyramid.level(0), table);
+        let feet = Feet::of(bodies, self.pyramid.level(0), table);
         let eye = table.plane_from_camera.w_axis.truncate();
         let toy = self.shape.points.iter().sum::<DVec3>() / self.shape.points.len() as f64;
         let toy = table.plane_from_camera.transform_point3(toy);
         let n_things = bodies.thing.iter().flatten().max()? + 1;
         let standing = (0..n_things).filter_map(|thing| {
-            let columns = upright_columns(&bodies, &feet, thing)?;
+            let columns = upright_columns(bodies, &feet, thing)?;
             let tops = feet.tops(thing, |column| columns.contains(&column));
             let fronts = fronts_of(&tops, eye)?;
             (fronts[0].distance_m(toy) < 0.0).then_some((thing, fronts))
@@ -90,7 +79,7 @@ impl Sight<'_> {
         let is_other = |(at, mark): (IVec2, &Mark)| {
             *mark == Mark::BeforeToy && found.thing_at((at.as_dvec2() + 0.5) * per_px) != Some(thing)
         };
-        let n_others = places(size_px)
+        let n_others = places(bodies.size_px)
             .zip(marks)
             .filter(|pixel| is_other(*pixel))
             .count();
@@ -128,21 +117,20 @@ fn fronts_of(tops: &[DVec3], eye: DVec3) -> Option<[Front; 2]> {
 /// The columns across the upright direction in which a thing stands; `None` if it is not tall, its sides are not
 /// upright, or the picture does not show all of it. Other columns may show its shadow.
 fn upright_columns(bodies: &Bodies, feet: &Feet<'_>, thing: usize) -> Option<BTreeSet<i32>> {
-    let mut heights = BTreeMap::<i32, f64>::new();
+    let (mut heights, mut cut) = (BTreeMap::<i32, f64>::new(), Vec::new());
+    let last = bodies.size_px - 1;
     for at in places(bodies.size_px).filter(|at| bodies.of(*at) == Some(thing)) {
-        *heights.entry(feet.column(at, thing)?).or_default() += 1.0;
+        let column = feet.column(at, thing)?;
+        *heights.entry(column).or_default() += 1.0;
+        if at.cmpeq(IVec2::ZERO).any() || at.cmpeq(last).any() {
+            cut.push(column);
+        }
     }
     let all: f64 = heights.values().sum();
     let tallest = heights.values().copied().fold(0.0, f64::max);
     heights.retain(|_, height| *height >= OF_TALLEST * tallest);
     let (width, shown) = (heights.len() as f64, heights.values().sum::<f64>());
-    let last = bodies.size_px - 1;
-    let is_at_border = |at: IVec2| at.cmpeq(IVec2::ZERO).any() || at.cmpeq(last).any();
-    let is_cut = |at: IVec2| {
-        let column = feet.column(at, thing);
-        bodies.of(at) == Some(thing) && column.is_some_and(|column| heights.contains_key(&column))
-    };
-    if places(bodies.size_px).any(|at| is_at_border(at) && is_cut(at)) {
+    if cut.iter().any(|column| heights.contains_key(column)) {
         return None;
     }
     let is_upright =

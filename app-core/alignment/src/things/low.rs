@@ -19,8 +19,8 @@ use app_scene::things::{Front, Mark};
 const LOW: f64 = 0.35;
 
 impl Sight<'_> {
-    /// The plane in the receiver's space at the height above the first receiver of the highest point of the toy that things
-    /// hide, if they hide only its lower part, and no plate shows them. `marks` are those of the largest level.
+    /// The level plane at the highest point of the toy that things hide, in the first receiver's space, if they hide
+    /// only its lower part, and no plate shows them. `marks` are those of the largest level.
     pub(super) fn front_of_low(
         &self,
         level: &Level,

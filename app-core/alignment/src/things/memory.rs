@@ -145,19 +145,17 @@ impl Memory {
         steadied.collect()
     }
 
-    /// The points of things, if neither the marks nor light, toy and camera have changed.
-    pub(super) fn raised(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> Option<&[RaisedPoint]> {
-        self.is_same(now, size_px, marks).then_some(&self.raised)
-    }
-
-    /// The same for the ends of things before the toy.
-    pub(super) fn ends(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> Option<&Ends> {
-        self.is_same(now, size_px, marks).then_some(&self.ends)
-    }
-
-    fn is_same(&self, now: &Self, size_px: IVec2, marks: &[Mark]) -> bool {
+    /// The points of things and the ends of those before the toy, if neither the marks nor light, toy and camera have
+    /// changed.
+    pub(super) fn points_and_ends(
+        &self,
+        now: &Self,
+        size_px: IVec2,
+        marks: &[Mark],
+    ) -> Option<(Vec<RaisedPoint>, Ends)> {
         let (known_px, known) = &self.marks;
-        *known_px == size_px && known == marks && self.is_of_same_view(now)
+        let is_same = *known_px == size_px && known == marks && self.is_of_same_view(now);
+        is_same.then(|| (self.raised.clone(), self.ends.clone()))
     }
 
     /// Marks with the place's pattern, if neither those without it nor light, toy and camera have changed.

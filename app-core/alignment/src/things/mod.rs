@@ -180,8 +180,14 @@ impl Sight<'_> {
             }
             None => marks,
         };
-        let raised = self.raised(level, &found, (&memory, size_px, &marks));
-        let ends = self.ends(level, &found, (&memory, size_px, &marks));
+        let known = self
+            .memory
+            .and_then(|before| before.points_and_ends(&memory, size_px, &marks));
+        let (raised, ends) = known.unwrap_or_else(|| {
+            let bodies = self.bodies(level, &found, (size_px, &marks));
+            let ends = self.ends(level, &found, (&bodies, &marks));
+            (self.raised(level, &found, &bodies), ends)
+        });
         let memory = memory
             .with_marks(size_px, &marks, &raised)
             .with_ends(ends.clone());

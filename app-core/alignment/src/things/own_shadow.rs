@@ -63,7 +63,7 @@ impl Sight<'_> {
             level,
             receivers: self.receivers,
             camera_from_plane: table.plane_from_camera.inverse(),
-            light: light.moved(&(table.plane_from_camera * self.world_from_camera.inverse())),
+            light: light.moved(&self.plane_from_world(table)),
             body: &bodies[index],
             around: &around[index],
         };

@@ -26,3 +26,10 @@ pub(crate) struct Sight<'a> {
     /// Memory of the search in the previous picture; `None` for a picture by itself.
     pub(crate) memory: Option<&'a Memory>,
 }
+
+impl Sight<'_> {
+    /// A receiver's space from the world.
+    pub(super) fn plane_from_world(&self, receiver: &SeenReceiver) -> DMat4 {
+        receiver.plane_from_camera * self.world_from_camera.inverse()
+    }
+}

@@ -12,7 +12,6 @@ use super::exposure::gain;
 use super::feet::{Bodies, Feet, WITHIN_PX, pixel_of, shadow_of};
 use super::found::Found;
 use super::groups::{cross, in_level};
-use super::memory::Memory;
 use super::sight::Sight;
 use crate::lights::Compared;
 use crate::median::{median, part_of};
@@ -52,25 +51,14 @@ const UMBRA: f32 = 0.9;
 const OPEN: f32 = 0.1;
 
 impl Sight<'_> {
-    /// The points of things at the pixels of the largest level, which have these marks; empty if
-    /// there are none. `now` is the memory of this picture.
-    pub(super) fn raised(
-        &self,
-        level: &Level,
-        found: &Found<'_>,
-        (now, size_px, marks): (&Memory, IVec2, &[Mark]),
-    ) -> Vec<RaisedPoint> {
+    /// The points of things at the pixels of the largest level; empty if there are none.
+    pub(super) fn raised(&self, level: &Level, found: &Found<'_>, bodies: &Bodies) -> Vec<RaisedPoint> {
         let Some(table) = self.receivers.first() else {
             return Vec::new();
         };
-        let known = self.memory.and_then(|memory| memory.raised(now, size_px, marks));
-        if let Some(known) = known {
-            return known.to_vec();
-        }
-        let bodies = self.bodies(level, found, (size_px, marks));
-        let table_from_world = table.plane_from_camera * self.world_from_camera.inverse();
+        let table_from_world = self.plane_from_world(table);
         let upright = Upright {
-            bodies: &bodies,
+            bodies,
             largest: self.pyramid.level(0),
             level,
             compared: found.compared,

@@ -26,7 +26,7 @@ impl Sight<'_> {
             per_px: 1.0,
         };
         let feet = Feet::of(&bodies, level, table);
-        let light = light.moved(&(table.plane_from_camera * self.world_from_camera.inverse()));
+        let light = light.moved(&self.plane_from_world(table));
         let mut shadows = vec![Mask::new(size_px); things.n_things()];
         for at in places(size_px) {
             // The shadow of what is below a top lies between the foot's and the top's.

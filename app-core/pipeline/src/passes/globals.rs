@@ -20,7 +20,7 @@ use app_scene::things::MAX_FRONTS;
 pub(crate) const GLOBALS: Mirrors = mirrors!(
     "common/globals",
     structs: [ReceiverPlane, Globals],
-    constants: [MAX_LIGHTS, MAX_RECEIVERS],
+    constants: [MAX_LIGHTS, MAX_RECEIVERS, MAX_FRONTS],
 );
 /// WGSL part of the test whether a receiver hides the toy.
 pub(crate) const BEHIND: Mirrors = mirrors!("common/behind", constants: [ON_RECEIVER]);

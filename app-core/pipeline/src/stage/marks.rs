@@ -41,6 +41,9 @@ impl Stage {
             .map(Things::given)
             .filter(|things| things.count(Mark::BeforeToy) > 0);
         let fronts = things.map_or(&[][..], GivenThings::fronts);
+        if fronts.is_empty() {
+            return Vec::new();
+        }
         let world_from_anchor = self.layout().world_from_anchor();
         let camera = footprint.view.camera_in(&world_from_anchor);
         let is_near = |front: &Front| {
